@@ -1,0 +1,35 @@
+"""Why something follows, or why a map is inconsistent: data that a person or a program can read."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+Term = str
+"""One RDF term in N-Triples syntax: `<iri>`, `_:label`, `"text"`, `"text"@en`, `"1.0"^^<datatype>`."""
+
+Triple = tuple[Term, Term, Term]
+"""Subject, predicate, object."""
+
+
+class Step(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One application of a rule. `rule` is its name in the OWL 2 RL/RDF tables (`cax-sco`, `prp-dom`, ...)."""
+
+    rule: str
+    premises: tuple[Triple, ...]
+    conclusion: Triple | None
+    """None when the rule concludes that the map is inconsistent."""
+
+
+class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A proof: `steps` lead from the asserted triples in `support` (a minimal set) to `conclusion`.
+
+    `steps` are in order: each premise is in `support` or is the conclusion of an earlier step.
+    A conclusion that was asserted has itself as support and no steps.
+    """
+
+    conclusion: Triple | None
+    """None for an inconsistency."""
+    support: tuple[Triple, ...]
+    steps: tuple[Step, ...]
+    text: str
+    """The same in one sentence, with names instead of IRIs."""
