@@ -176,7 +176,7 @@ class Request:
 def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
     verb = keys.last_chunk(str(query.key_expr))
     payload = query.payload.to_bytes() if query.payload is not None else b""
-    parameters = {key: value for key, value in query.parameters}
+    parameters = dict(query.parameters)  # type: ignore[call-overload]
     as_json = "format" in parameters or codec.looks_like_json(payload)
     key = f"{prefix}/{verb}" if "*" not in verb else prefix
 

@@ -35,7 +35,7 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
     """The message in `payload`, MessagePack or a JSON object. Raises BadRequest naming the field at fault."""
     try:
         if looks_like_json(payload):
-            return msgspec.json.decode(payload, type=kind)  # type: ignore[no-any-return]
+            return msgspec.json.decode(payload, type=kind)
         decoder = _decoders.get(kind)
         if decoder is None:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
