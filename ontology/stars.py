@@ -12,12 +12,8 @@ from ontology import vocabulary as v
 from schemas.entities import IDENTITY, Pose, Size
 from schemas.explanations import Term, Triple
 
-COORDINATE_PROPERTIES = (v.COORDINATE_X, v.COORDINATE_Y, v.COORDINATE_Z)
-ORIENTATION_PROPERTIES = (v.ORIENTATION_W, v.ORIENTATION_X, v.ORIENTATION_Y, v.ORIENTATION_Z)
-SIZE_PROPERTIES = (v.SIZE_X, v.SIZE_Y, v.SIZE_Z)
-
-POSE_PROPERTIES = frozenset((v.HAS_POSITION, *COORDINATE_PROPERTIES, *ORIENTATION_PROPERTIES))
-SHAPE_PROPERTIES = frozenset((v.RDF_TYPE, v.HAS_SIZE, *SIZE_PROPERTIES))
+POSE_PROPERTIES = frozenset((v.HAS_POSITION, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
+SHAPE_PROPERTIES = frozenset((v.RDF_TYPE, v.HAS_SIZE, *v.SIZE_XYZ))
 STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
 """The edges from an entity to the individuals of its star."""
 
@@ -48,9 +44,9 @@ def star(
 def position(entity: Term, coordinates: Term, pose: Pose) -> list[Triple]:
     """Position and, unless it is the identity, orientation."""
     triples: list[Triple] = [(entity, v.HAS_POSITION, coordinates), (coordinates, v.RDF_TYPE, v.COORDINATES)]
-    triples += _numbers(coordinates, COORDINATE_PROPERTIES, pose.position_m)
+    triples += _numbers(coordinates, v.COORDINATE_XYZ, pose.position_m)
     if pose.orientation_wxyz != IDENTITY:
-        triples += _numbers(coordinates, ORIENTATION_PROPERTIES, pose.orientation_wxyz)
+        triples += _numbers(coordinates, v.ORIENTATION_WXYZ, pose.orientation_wxyz)
     return triples
 
 
@@ -59,7 +55,7 @@ def size(entity: Term, node: Term, size_m: Size) -> list[Triple]:
     return [
         (entity, v.HAS_SIZE, node),
         (node, v.RDF_TYPE, v.THREE_DIM_SIZE),
-        *_numbers(node, SIZE_PROPERTIES, size_m),
+        *_numbers(node, v.SIZE_XYZ, size_m),
     ]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from schemas.explanations import Term
+from schemas.explanations import Term, Triple
 
 TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
 ABOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#"
@@ -17,6 +17,9 @@ RDF: Final = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 RDFS: Final = "http://www.w3.org/2000/01/rdf-schema#"
 OWL: Final = "http://www.w3.org/2002/07/owl#"
 XSD: Final = "http://www.w3.org/2001/XMLSchema#"
+
+PREFIXES: Final = {"dm": TBOX, "": ABOX, "owl": OWL}
+"""The prefixes of what is written."""
 
 TBOX_ONTOLOGY: Final[Term] = f"<{TBOX.removesuffix('#')}>"
 ABOX_ONTOLOGY: Final[Term] = f"<{ABOX.removesuffix('#')}>"
@@ -35,6 +38,11 @@ def dm(local: str) -> Term:
 def entity_iri(name: str) -> Term:
     """The IRI term of the entity, place, position, size or reference with this name in the ABox."""
     return f"<{ABOX}{name}>"
+
+
+def bare(term: Term) -> str:
+    """The IRI of an IRI term, without its brackets."""
+    return term[1:-1]
 
 
 def local_name(term: Term) -> str:
@@ -73,6 +81,11 @@ def lexical(term: Term) -> str:
         ValueError: the term is not a literal, or has an escape that N-Triples does not know.
     """
     return _parts(term)[0]
+
+
+def spoken(triple: Triple) -> str:
+    """A triple in local names and plain text, for people."""
+    return " ".join(lexical(term) if term.startswith('"') else local_name(term) for term in triple)
 
 
 def datatype_of(term: Term) -> Term:
@@ -127,6 +140,7 @@ PHYSICAL_THING: Final = dm("Physical_Thing")
 LOCATION: Final = dm("Location")
 """The places' classes are this one and its subclasses."""
 OBJECT: Final = dm("Object")
+PROPERTY: Final = dm("Property")
 
 COORDINATES: Final = dm("Coordinates")
 THREE_DIM_SIZE: Final = dm("3Three_Dim_Size")
@@ -171,6 +185,7 @@ RDF_REST: Final = iri(f"{RDF}rest")
 RDF_NIL: Final = iri(f"{RDF}nil")
 RDF_LANG_STRING: Final = iri(f"{RDF}langString")
 
+RDFS_CLASS: Final = iri(f"{RDFS}Class")
 RDFS_LABEL: Final = iri(f"{RDFS}label")
 RDFS_COMMENT: Final = iri(f"{RDFS}comment")
 RDFS_SUB_CLASS_OF: Final = iri(f"{RDFS}subClassOf")
@@ -183,6 +198,9 @@ OWL_THING: Final = iri(f"{OWL}Thing")
 OWL_NOTHING: Final = iri(f"{OWL}Nothing")
 OWL_ONTOLOGY: Final = iri(f"{OWL}Ontology")
 OWL_IMPORTS: Final = iri(f"{OWL}imports")
+OWL_OBJECT_PROPERTY: Final = iri(f"{OWL}ObjectProperty")
+OWL_DATATYPE_PROPERTY: Final = iri(f"{OWL}DatatypeProperty")
+OWL_ANNOTATION_PROPERTY: Final = iri(f"{OWL}AnnotationProperty")
 OWL_NAMED_INDIVIDUAL: Final = iri(f"{OWL}NamedIndividual")
 OWL_SAME_AS: Final = iri(f"{OWL}sameAs")
 OWL_DIFFERENT_FROM: Final = iri(f"{OWL}differentFrom")

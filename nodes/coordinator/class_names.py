@@ -31,7 +31,7 @@ class ClassNames:
         """The class of a thing in space that `word` means. Raises UnknownClass."""
         found = self.find(word)
         if not found.spatial:
-            raise UnknownClass(f"'{found.name}' is not a class of things in space, so nothing of it can stand in the map")
+            raise UnknownClass(f"'{found.name}' is no class of things in space; see: semmap classes")
         return found
 
     def note(self, word: str, found: ClassInfo) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
 
 def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
     """Why a triple holds. Raises UnknownName, BadRequest for an unknown word, Refused if it does not hold."""
-    subject = v.term(semantic_map.entity(question.name).iri)
+    subject = v.iri(semantic_map.entity(question.name).iri)
     predicate = _predicate(semantic_map, question.predicate)
     for value in _values(semantic_map, subject, predicate, question.value):
         explanation = semantic_map.reasoner.explain((subject, predicate, value))

@@ -42,7 +42,7 @@ class ClassTable:
 
     def _row(self, c: Term) -> ClassInfo:
         labels = {
-            v.language(o): v.lexical(o) for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
+            v.language_of(o) or "": v.lexical(o) for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
         }
         comments = sorted(o for _, _, o in self._reasoner.asserted(c, v.RDFS_COMMENT, None))
         return ClassInfo(
@@ -75,7 +75,7 @@ class ClassTable:
 
     def _named_parents(self, c: Term) -> list[Term]:
         return sorted(
-            o for _, _, o in self._reasoner.asserted(c, v.RDFS_SUBCLASS_OF, None) if o in self.names
+            o for _, _, o in self._reasoner.asserted(c, v.RDFS_SUB_CLASS_OF, None) if o in self.names
         )
 
     def _nearest(self, c: Term, annotation: Term) -> str:

@@ -94,10 +94,10 @@ def _pose(reasoner: Reasoner, iri: Term) -> Pose | None:
     node = _object(reasoner, iri, v.HAS_POSITION)
     if node is None:
         return None
-    position = [_number(reasoner, iri, node, p) for p in stars.COORDINATE_PROPERTIES]
+    position = [_number(reasoner, iri, node, p) for p in v.COORDINATE_XYZ]
     if None in position:
         return None
-    orientation = [_number(reasoner, iri, node, p) for p in stars.ORIENTATION_PROPERTIES]
+    orientation = [_number(reasoner, iri, node, p) for p in v.ORIENTATION_WXYZ]
     if None in orientation:
         return Pose(position_m=tuple(position))  # type: ignore[arg-type]
     try:
@@ -110,7 +110,7 @@ def _size(reasoner: Reasoner, iri: Term) -> tuple[float, float, float] | None:
     node = _object(reasoner, iri, v.HAS_SIZE)
     if node is None:
         return None
-    size = [_number(reasoner, iri, node, p) for p in stars.SIZE_PROPERTIES]
+    size = [_number(reasoner, iri, node, p) for p in v.SIZE_XYZ]
     if None in size:
         return None
     if any(extent <= 0 for extent in size):  # type: ignore[operator]

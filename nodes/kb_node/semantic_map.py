@@ -64,7 +64,7 @@ class SemanticMap:
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName."""
-        iris = [v.term(self.entity(name).iri) for name in names]
+        iris = [v.iri(self.entity(name).iri) for name in names]
         return tuple(entities.read_star(self.reasoner, iri, self.seq, frozenset(iris)) for iri in iris)
 
     def class_table(self) -> Iterator[ClassInfo]:
@@ -87,7 +87,7 @@ class SemanticMap:
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
         for entity in [self.entity(name)] if name is not None else self.entities():
-            yield from sorted(self.reasoner.inferred(v.term(entity.iri), None, None))
+            yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
@@ -219,7 +219,7 @@ class SemanticMap:
         for entity in filter(None, states.values()):
             known = self._entities.get(entity.name)
             other = known.iri if known is not None else new.setdefault(entity.name, entity.iri)
-            if other != entity.iri and states.get(v.term(other), known) is not None:
+            if other != entity.iri and states.get(v.iri(other), known) is not None:
                 raise errors.NameTaken(f"the name '{entity.name}' is taken by <{other}>")
 
     def _show(
@@ -232,7 +232,7 @@ class SemanticMap:
                 self._entities[entity.name] = entity
                 self._marks[iri] = marks[iri]
                 changed.append(entity)
-            elif known is not None and v.term(known.iri) == iri:
+            elif known is not None and v.iri(known.iri) == iri:
                 del self._entities[known.name], self._marks[iri]
                 removed.append(Departed(name=known.name, types=known.types))
         return tuple(changed), tuple(removed)
