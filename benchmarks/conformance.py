@@ -64,7 +64,7 @@ def _triples(path: Path) -> list[Triple]:
 
 
 def _missing(reasoner: Reasoner, wanted: Sequence[Triple]) -> Triple | None:
-    """None when the graph follows for some choice of its blank nodes, else a triple that no choice reached."""
+    """None when the graph follows for some choice of its blank nodes, else a triple beyond reach."""
     deepest = 0
 
     def search(at: int, chosen: dict[Term, Term]) -> bool:
