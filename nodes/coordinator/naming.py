@@ -51,5 +51,8 @@ def _spiral() -> Iterator[tuple[float, float]]:
     while True:
         for k in range(8 * ring):
             angle = 2.0 * math.pi * k / (8 * ring)
-            yield round(x0 + ring * _STEP_M * math.cos(angle), 3), round(y0 + ring * _STEP_M * math.sin(angle), 3)
+            yield (
+                round(x0 + ring * _STEP_M * math.cos(angle), 3),
+                round(y0 + ring * _STEP_M * math.sin(angle), 3),
+            )
         ring += 1

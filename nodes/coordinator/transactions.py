@@ -43,7 +43,9 @@ def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) 
     return transaction(command, f"add {found.name} {name}", vacant=_subjects(triples), insert=triples)
 
 
-def update(command: Update, entity: Entity, star: Star, found: ClassInfo | None, pose: Pose | None) -> Transaction:
+def update(
+    command: Update, entity: Entity, star: Star, found: ClassInfo | None, pose: Pose | None
+) -> Transaction:
     """What is named changes; the triples that go are required to be there still."""
     retract: list[Triple] = []
     insert: list[Triple] = []
@@ -76,8 +78,16 @@ def remove(command: Command, reason: str, leaving: Sequence[Star]) -> Transactio
     return transaction(command, reason, require=require, retract=triples)
 
 
-def describe(name: str, found: ClassInfo, *, pose: Pose | None, size_m: Size | None, ref: str | None,
-             alt: tuple[str, ...], affords: tuple[str, ...]) -> list[Triple]:
+def describe(
+    name: str,
+    found: ClassInfo,
+    *,
+    pose: Pose | None,
+    size_m: Size | None,
+    ref: str | None,
+    alt: tuple[str, ...],
+    affords: tuple[str, ...],
+) -> list[Triple]:
     """The triples of an entity that a file describes."""
     triples = stars.star(name, v.iri(found.iri), pose=pose, size_m=size_m, preferred=ref, alternatives=alt)
     return triples + [(v.entity_iri(name), v.HAS_AFFORDANCE, v.dm(word)) for word in affords]

@@ -42,7 +42,8 @@ class ClassTable:
 
     def _row(self, c: Term) -> ClassInfo:
         labels = {
-            v.language_of(o) or "": v.lexical(o) for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
+            v.language_of(o) or "": v.lexical(o)
+            for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
         }
         comments = sorted(o for _, _, o in self._reasoner.asserted(c, v.RDFS_COMMENT, None))
         return ClassInfo(
@@ -59,7 +60,7 @@ class ClassTable:
         )
 
     def _spatial_roots(self) -> list[Term]:
-        """The domain of hasPosition; in a TBox that does not say it, Physical_Thing or whatever is no Property."""
+        """The domain of hasPosition; if there is none, Physical_Thing, or else whatever is no Property."""
         said = [
             o for _, _, o in self._reasoner.asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None) if o in self.names
         ]

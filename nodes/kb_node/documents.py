@@ -22,10 +22,8 @@ def sort_out(
     """
     triples = list(triples)
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
-    unknown: dict[Term, Term] = {}
-    for s, p, o in triples:
-        if p == v.RDF_TYPE and o not in classes.names and o not in declared and not _is_built_in(o):
-            unknown[s] = o
+    known = declared.union(classes.names)
+    unknown = {s: o for s, p, o in triples if p == v.RDF_TYPE and o not in known and not _is_built_in(o)}
     sentences = [f"{v.local_name(s)} (unknown class '{v.local_name(c)}')" for s, c in sorted(unknown.items())]
     if unknown and not skip_unknown:
         names = sorted({v.local_name(c) for c in unknown.values()})

@@ -14,7 +14,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance
-from schemas.explanations import Term, Triple
+from schemas.explanations import Term
 
 _NAME = re.compile(NAME_PATTERN)
 
@@ -146,4 +146,3 @@ def _references(reasoner: Reasoner, iri: Term, predicate: Term) -> list[str]:
 
 def _texts(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE, None))
-

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import uuid
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
 
 from nodes import bus
 from nodes.kb_node import answers, documents, rdf_files

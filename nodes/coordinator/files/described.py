@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from msgspec import Struct, field
 
-from schemas.entities import Angle, Name, Pose, Quaternion, Size, Text, Vector, orientation_from_yaw
+from schemas.entities import (
+    Angle,
+    Name,
+    Pose,
+    Quaternion,
+    Size,
+    Text,
+    Vector,
+    orientation_from_yaw,
+)
 from schemas.errors import BadRequest
 
 
@@ -40,4 +49,8 @@ def pose_of(
             return Pose(position_m=at, orientation_wxyz=orientation)
     except ValueError as error:
         raise BadRequest(str(error)) from None
-    return Pose(position_m=at) if before is None else Pose(position_m=at, orientation_wxyz=before.orientation_wxyz)
+    return (
+        Pose(position_m=at)
+        if before is None
+        else Pose(position_m=at, orientation_wxyz=before.orientation_wxyz)
+    )
