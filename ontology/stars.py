@@ -26,18 +26,21 @@ def star(
     size_m: Size | None = None,
     preferred: str | None = None,
     alternatives: tuple[str, ...] = (),
+    suffix: str = "",
 ) -> list[Triple]:
-    """All triples of a new entity."""
+    """All triples of a new entity; `suffix` ends the names of the individuals that describe it."""
     entity = v.entity_iri(name)
     triples: list[Triple] = [(entity, v.RDF_TYPE, class_iri)]
     if pose is not None:
-        triples += position(entity, v.entity_iri(f"{name}_coordinates"), pose)
+        triples += position(entity, v.entity_iri(f"{name}_coordinates{suffix}"), pose)
     if size_m is not None:
-        triples += size(entity, v.entity_iri(f"{name}_size"), size_m)
+        triples += size(entity, v.entity_iri(f"{name}_size{suffix}"), size_m)
     if preferred is not None:
-        triples += preferred_reference(entity, v.entity_iri(f"{name}_preferred_reference"), preferred)
+        triples += preferred_reference(entity, v.entity_iri(f"{name}_preferred_reference{suffix}"), preferred)
     for i, text in enumerate(alternatives, start=1):
-        triples += alternative_reference(entity, v.entity_iri(f"{name}_alternative_reference_{i}"), text)
+        triples += alternative_reference(
+            entity, v.entity_iri(f"{name}_alternative_reference_{i}{suffix}"), text
+        )
     return triples
 
 

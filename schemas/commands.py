@@ -202,7 +202,7 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One node, as its heartbeats tell."""
 
     node: str
-    state: Literal["starting", "ready", "silent", "gone"]
+    state: Literal["starting", "ready", "silent"]
     pid: int
     uptime_s: float
     heartbeat_age_s: float

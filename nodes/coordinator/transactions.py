@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from nodes.coordinator.files.described import Described, pose_of
 from ontology import stars
 from ontology import vocabulary as v
 from schemas.commands import Add, Command, Update
 from schemas.commits import Star, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, Size
+from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Term, Triple
 
 
@@ -35,39 +36,65 @@ def transaction(
     )
 
 
-def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) -> Transaction:
-    """A new entity. Its name must be free, and so must those of the individuals of its star."""
+def add(
+    command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None, suffix: str = ""
+) -> Transaction:
+    """A new entity. Its name must be free, and so must those of the individuals of its star.
+
+    `suffix` goes to the names of the latter, in case that somebody else's reference is named so already.
+    """
     triples = stars.star(
-        name, v.iri(found.iri), pose=pose, size_m=command.size, preferred=ref, alternatives=command.alt
+        name,
+        v.iri(found.iri),
+        pose=pose,
+        size_m=command.size,
+        preferred=ref,
+        alternatives=command.alt,
+        suffix=suffix,
     )
     return transaction(command, f"add {found.name} {name}", vacant=_subjects(triples), insert=triples)
 
 
 def update(
-    command: Update, entity: Entity, star: Star, found: ClassInfo | None, pose: Pose | None
+    command: Update, entity: Entity, star: Star, found: ClassInfo | None, pose: Pose | None, suffix: str = ""
 ) -> Transaction:
-    """What is named changes; the triples that go are required to be there still."""
+    """What is named changes; the triples that go are required to be there still. `suffix` as for `add`."""
+
+    def node(what: str) -> Term:
+        iri = v.entity_iri(f"{star.name}_{what}{suffix}")
+        taken = (star.coordinates, star.size, *star.preferred, *star.alternatives)
+        return iri if iri not in taken else v.entity_iri(f"{star.name}_{what}_{star.seq + 1}")
+
     retract: list[Triple] = []
     insert: list[Triple] = []
     if found is not None and found.name != entity.class_:
         retract += _types(star)
         insert.append((star.iri, v.RDF_TYPE, v.iri(found.iri)))
     if pose is not None:
-        node = star.coordinates or _free(star, "coordinates")
-        retract += _about(star, node, (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ)) + _edges(star, v.HAS_POSITION)
-        insert += stars.position(star.iri, node, pose)
+        coordinates = star.coordinates or node("coordinates")
+        retract += _about(star, coordinates, (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
+        retract += _edges(star, v.HAS_POSITION)
+        insert += stars.position(star.iri, coordinates, pose)
     if command.size is not None:
-        node = star.size or _free(star, "size")
-        retract += _about(star, node, v.SIZE_XYZ) + _edges(star, v.HAS_SIZE)
-        insert += stars.size(star.iri, node, command.size)
+        size = star.size or node("size")
+        retract += _about(star, size, v.SIZE_XYZ) + _edges(star, v.HAS_SIZE)
+        insert += stars.size(star.iri, size, command.size)
     if command.ref is not None and command.ref != entity.preferred_reference:
         retract += _references(star, v.HAS_PREFERRED_REFERENCE, star.preferred)
-        insert += stars.preferred_reference(star.iri, _free(star, "preferred_reference"), command.ref)
+        insert += stars.preferred_reference(star.iri, node("preferred_reference"), command.ref)
     if command.alt is not None and command.alt != entity.alternative_references:
         retract += _references(star, v.HAS_ALTERNATIVE_REFERENCE, star.alternatives)
         for i, text in enumerate(command.alt, start=1):
-            insert += stars.alternative_reference(star.iri, _free(star, f"alternative_reference_{i}"), text)
-    return transaction(command, f"update {entity.name}", require=retract, retract=retract, insert=insert)
+            insert += stars.alternative_reference(star.iri, node(f"alternative_reference_{i}"), text)
+    known = {star.iri, star.coordinates, star.size}
+    return transaction(
+        command,
+        f"update {entity.name}",
+        require=retract,
+        vacant=[s for s in _subjects(insert) if s not in known],
+        retract=retract,
+        insert=insert,
+    )
 
 
 def remove(command: Command, reason: str, leaving: Sequence[Star]) -> Transaction:
@@ -78,19 +105,18 @@ def remove(command: Command, reason: str, leaving: Sequence[Star]) -> Transactio
     return transaction(command, reason, require=require, retract=triples)
 
 
-def describe(
-    name: str,
-    found: ClassInfo,
-    *,
-    pose: Pose | None,
-    size_m: Size | None,
-    ref: str | None,
-    alt: tuple[str, ...],
-    affords: tuple[str, ...],
-) -> list[Triple]:
-    """The triples of an entity that a file describes."""
-    triples = stars.star(name, v.iri(found.iri), pose=pose, size_m=size_m, preferred=ref, alternatives=alt)
-    return triples + [(v.entity_iri(name), v.HAS_AFFORDANCE, v.dm(word)) for word in affords]
+def describe(name: str, found: ClassInfo, described: Described) -> list[Triple]:
+    """The triples of an entity that a file describes. Raises BadRequest for a pose that is none."""
+    pose = pose_of(described.at, described.yaw, described.orientation) if described.at is not None else None
+    triples = stars.star(
+        name,
+        v.iri(found.iri),
+        pose=pose,
+        size_m=described.size,
+        preferred=described.ref,
+        alternatives=described.alt,
+    )
+    return triples + [(v.entity_iri(name), v.HAS_AFFORDANCE, v.dm(word)) for word in described.affords]
 
 
 def _subjects(triples: Iterable[Triple]) -> list[Term]:
@@ -112,10 +138,3 @@ def _edges(star: Star, predicate: Term) -> list[Triple]:
 def _references(star: Star, predicate: Term, nodes: tuple[Term, ...]) -> list[Triple]:
     """The edges to its references, and those references that only it uses."""
     return _edges(star, predicate) + [t for t in star.own if t[0] in nodes]
-
-
-def _free(star: Star, what: str) -> Term:
-    """An IRI for a new individual of the star, unlike those that it or another entity has."""
-    iri = v.entity_iri(f"{star.name}_{what}")
-    taken = {star.coordinates, star.size, *star.preferred, *star.alternatives}
-    return iri if iri not in taken else v.entity_iri(f"{star.name}_{what}_{star.seq}")

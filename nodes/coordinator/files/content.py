@@ -35,6 +35,6 @@ def _kind_of_json(content: bytes, filename: str) -> Kind:
     if all(isinstance(top, dict) and any(key.startswith("@") for key in top) for top in tops):
         return "abox"
     raise BadFile(
-        f"{filename or 'the file'} is JSON, but neither a scene ({{\"entities\": [...]}})"
+        f'{filename or "the file"} is JSON, but neither a scene ({{"entities": [...]}})'
         ' nor JSON-LD (with "@id" or "@graph")'
     )

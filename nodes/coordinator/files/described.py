@@ -21,7 +21,8 @@ class Described(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     """One entity of a scene file.
 
     `at` is the bottom centre [m] in the map frame; `yaw` [rad] or `orientation` (unit quaternion wxyz) turns
-    it; `size` is its extent along its own axes [m]; `ref` is what people call it, `alt` what they call it too.
+    it; `size` is its extent along its own axes [m]; `ref` is what people call it, `alt` what they call it
+    too.
     """
 
     class_: Text = field(name="class")
