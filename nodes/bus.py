@@ -276,7 +276,7 @@ def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:
 
 
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
-    """Key and content, as JSON, of all that is published from now on. Raises BadRequest for no key expression."""
+    """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
     try:
         subscriber = session.declare_subscriber(key_expr)
     except zenoh.ZError as error:

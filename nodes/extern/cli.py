@@ -336,8 +336,7 @@ def execute(arguments: list[str], client: Client | None = None) -> int:
 
 def _run_line(client: Client, line: str) -> int:
     if line.startswith("{"):
-        with contextlib.redirect_stdout(sys.stdout):
-            return execute_message(client, line.encode())
+        return _execute_message(client, line.encode())
     try:
         return execute(shlex.split(line), client)
     except ValueError as error:
@@ -345,14 +344,13 @@ def _run_line(client: Client, line: str) -> int:
         return 2
 
 
-def execute_message(client: Client, message: bytes) -> int:
+def _execute_message(client: Client, message: bytes) -> int:
     """Send one JSON message that names its verb, print the reply, and return the exit status."""
     try:
-        verb = codec.decode(message, dict[str, Any]).get("verb", "")
+        said: dict[str, Any] = codec.decode(message, dict[str, Any])
+        verb = str(said.get("verb", ""))
         if verb not in commands.COMMANDS:
-            raise errors.UnknownVerb(
-                f"unknown verb '{verb}'{errors.did_you_mean(str(verb), commands.COMMANDS)}"
-            )
+            raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
         reply = client.send(codec.decode(message, commands.COMMANDS[verb]))
     except errors.SemmapError as error:
         _complain(error.text)
@@ -386,8 +384,13 @@ def _print_entities(entities: tuple[Entity, ...]) -> None:
     print(f"{len(entities)} {'entity' if len(entities) == 1 else 'entities'}")
 
 
-def _format_of(file: Path) -> str:
-    endings = {".ttl": "turtle", ".nt": "ntriples", ".jsonld": "jsonld", ".json": "jsonld"}
+def _format_of(file: Path) -> commands.RdfFormat:
+    endings: dict[str, commands.RdfFormat] = {
+        ".ttl": "turtle",
+        ".nt": "ntriples",
+        ".jsonld": "jsonld",
+        ".json": "jsonld",
+    }
     return endings.get(file.suffix.lower(), "rdfxml")
 
 

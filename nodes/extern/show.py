@@ -92,7 +92,12 @@ def status_table(status: SystemStatus) -> Table:
 
 def status_line(status: SystemStatus) -> str:
     """The map and the scene in one line."""
-    agree = "map and scene agree" if status.in_agreement else "map and scene do not agree (yet)"
+    verdicts = {
+        True: "map and scene agree",
+        False: "map and scene do not agree (yet)",
+        None: "no simulator runs",
+    }
+    agree = verdicts[status.in_agreement]
     counts = f"{status.entities} entities, {status.bodies} bodies, commit {status.commit}"
     return f"{counts}; truth: {status.truth}; {agree}"
 

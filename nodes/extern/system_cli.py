@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from nodes import bus
-from nodes.supervisor.settings import Settings, default_data
+from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
 
@@ -102,12 +102,14 @@ def _settings(
     no_sim: bool, no_record: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
+    folder = (data or default_data()).resolve()
     if world is None:
-        world = str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+        before = None if fresh or abox is not None else _world_before(folder)
+        world = before or str(FLAT_WORLD if abox is None else EMPTY_WORLD)
     world = str(EMPTY_WORLD) if world == "empty" else world
     abox = str(FLAT_TTL) if abox is None else abox
     values = {
-        "data": str((data or default_data()).resolve()),
+        "data": str(folder),
         "tbox": _existing(tbox),
         "abox": None if abox == "none" else _existing(Path(abox)),
         "world": _existing(Path(world)),
@@ -121,6 +123,15 @@ def _settings(
         "fresh": fresh,
     }
     return codec.convert(values, Settings)
+
+
+def _world_before(data: Path) -> str | None:
+    """The world that the map in `data` was last run with, if there is such a map and the file is still there."""
+    try:
+        settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
+    except (OSError, errors.BadRequest):
+        return None
+    return settings.world if (data / JOURNAL).exists() and Path(settings.world).exists() else None
 
 
 def _existing(path: Path) -> str:
