@@ -26,7 +26,7 @@ def free_name(class_name: str, taken: Container[str]) -> str:
 
 
 def free_position(entities: Iterable[Entity], size_m: Size | None) -> Vector:
-    """The place nearest to the default position where a thing of `size_m` touches nothing that stands there."""
+    """The place nearest to the default position where a thing of `size_m` touches nothing."""
     standing = [e for e in entities if e.pose is not None and not e.place and not _is_underfoot(e)]
     width, depth, _ = size_m or _USUAL_SIZE
     reach_m = math.hypot(width, depth) / 2.0 + _GAP_M

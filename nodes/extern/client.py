@@ -222,7 +222,7 @@ class Client:
 
 
 def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:
-    """The fields that were given, by their names on the wire; `convert` then checks them as the wire would."""
+    """The fields that were given, by their names on the wire, where `convert` checks them."""
     given = {name: value for name, value in fields.items() if value is not None}
     if "class_" in given:
         given["class"] = given.pop("class_")

@@ -126,7 +126,7 @@ def _settings(
 
 
 def _world_before(data: Path) -> str | None:
-    """The world that the map in `data` was last run with, if there is such a map and the file is still there."""
+    """The world that the map in `data` was last run with, if both are there."""
     try:
         settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
     except (OSError, errors.BadRequest):
