@@ -86,11 +86,11 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What the simulator makes of an entity.
 
     `present`: it stands there. `ghost`: seen but not colliding, because something else fills the place.
-    `pending`: not spawned yet. `failed`: cannot be made, `detail` says why. `none`: places have no bodies.
-    `unknown`: no simulator runs.
+    `pending`: not spawned yet. `failed`: cannot be made, `detail` says why. `missing`: the scene, which is
+    the truth here, does not have it. `none`: places have no bodies. `unknown`: no simulator runs.
     """
 
-    status: Literal["present", "ghost", "pending", "failed", "none", "unknown"]
+    status: Literal["present", "ghost", "pending", "failed", "missing", "none", "unknown"]
     detail: str = ""
     model: str = ""
     """The model that the body was made from; for a pending one, the model that it will have."""

@@ -11,9 +11,11 @@ SemmapError
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import ClassVar
 
 from msgspec import Struct
+from rapidfuzz import fuzz, process, utils
 
 from schemas.explanations import Explanation
 
@@ -133,3 +135,21 @@ def to_message(error: SemmapError) -> ErrorMessage:
 def from_message(message: ErrorMessage) -> SemmapError:
     """The error that `message` stands for; a code from a newer version becomes a plain SemmapError."""
     return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
+    near = process.extract(
+        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+    )
+    names = [name for name, _, _ in near]
+    if not names:
+        return ""
+    return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
+
+
+def unknown_classes(names: Iterable[str], known: Iterable[str], whose: Iterable[str]) -> str:
+    """One sentence on all the unknown classes of a file, and how to go on without them."""
+    known = list(known)
+    said = ", ".join(f"'{name}'{did_you_mean(name, known)}" for name in names).replace("?,", ",").rstrip("?")
+    return f"unknown class {said} (of {', '.join(whose)}); --skip-unknown leaves these out"

@@ -12,7 +12,7 @@ Triple = tuple[Term, Term, Term]
 
 
 class Step(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One application of a rule. `rule` is its name in the OWL 2 RL/RDF tables (`cax-sco`, `prp-dom`, ...)."""
+    """One application of a rule, by its name in the OWL 2 RL/RDF tables (`cax-sco`, `prp-dom`, ...)."""
 
     rule: str
     premises: tuple[Triple, ...]

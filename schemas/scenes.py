@@ -90,6 +90,10 @@ class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     failed: dict[str, str]
 
 
+class SceneQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Every body as it stands."""
+
+
 class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Every body. `version` grows with each spawn and delete; `run` differs after a restart."""
 

@@ -1,0 +1,1 @@
+"""Measurements of semmap, each runnable as `python -m benchmarks.<name>`."""

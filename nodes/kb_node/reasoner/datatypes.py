@@ -1,0 +1,265 @@
+"""Table 8 of OWL 2 RL: the values that literals denote, and the datatypes that hold them.
+
+A value is a hashable key: equal keys, same value (dt-eq); different keys, different values (dt-diff).
+Floats are compared as IEEE 754 identifies them, as OWL 2 demands: `0.0` and `-0.0` are two values.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+import struct
+from collections.abc import Callable, Hashable
+from datetime import UTC, date, datetime, time, timedelta, timezone
+from decimal import Decimal
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, Final
+from xml.parsers import expat
+
+from nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal
+from schemas.explanations import Term
+
+Value = tuple[str, Hashable]
+"""A primitive datatype's name, and the key of the value in it."""
+
+_XSD, _RDF = PREFIXES["xsd"], PREFIXES["rdf"]
+LITERAL: Final = iri("rdfs:Literal")
+
+_INTEGERS: Final[dict[str, tuple[int | None, int | None]]] = {
+    "integer": (None, None),
+    "nonNegativeInteger": (0, None),
+    "positiveInteger": (1, None),
+    "nonPositiveInteger": (None, 0),
+    "negativeInteger": (None, -1),
+    "long": (-(2**63), 2**63 - 1),
+    "int": (-(2**31), 2**31 - 1),
+    "short": (-(2**15), 2**15 - 1),
+    "byte": (-(2**7), 2**7 - 1),
+    "unsignedLong": (0, 2**64 - 1),
+    "unsignedInt": (0, 2**32 - 1),
+    "unsignedShort": (0, 2**16 - 1),
+    "unsignedByte": (0, 2**8 - 1),
+}
+"""Smallest and greatest value of the integer types."""
+
+_NAME_START = r":A-Z_a-z\u00C0-\u00D6\u00D8-\u00F6\u00F8-\u02FF\u0370-\u037D\u037F-\u1FFF\u200C-\u200D" + (
+    r"\u2070-\u218F\u2C00-\u2FEF\u3001-\uD7FF\uF900-\uFDCF\uFDF0-\uFFFD\U00010000-\U000EFFFF"
+)
+_NAME_CHAR = _NAME_START + r"\-.0-9\u00B7\u0300-\u036F\u203F-\u2040"
+_STRINGS: Final = {
+    "string": re.compile(r"[\s\S]*"),
+    "normalizedString": re.compile(r"[^\t\n\r]*"),
+    "token": re.compile(r"(?:[^\t\n\r ]+(?: [^\t\n\r ]+)*)?"),
+    "language": re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*"),
+    "NMTOKEN": re.compile(f"[{_NAME_CHAR}]+"),
+    "Name": re.compile(f"[{_NAME_START}][{_NAME_CHAR}]*"),
+    "NCName": re.compile(f"[{_NAME_START.replace(':', '', 1)}][{_NAME_CHAR.replace(':', '', 1)}]*"),
+}
+"""The values of the string types."""
+
+_FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
+_DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
+_INTEGER = re.compile(r"[+-]?\d+")
+_BOOLEAN = {"true": True, "1": True, "false": False, "0": False}
+_ZONE = r"(Z|[+-](?:0\d|1[0-3]):[0-5]\d|[+-]14:00)?"
+_DATE_TIME = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d)T(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
+_DATE = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d){_ZONE}")
+_BASE64 = re.compile(r"(?:[A-Za-z0-9+/] ?){0,}(?:= ?){0,2}")
+_IRI = re.compile(
+    r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a colon up front
+    r"(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*(?:\#(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*)?"
+)
+_PLAIN = re.compile(r"([\s\S]*)@([A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*|)")
+
+
+def is_datatype(term: Term) -> bool:
+    """Whether the term names a datatype whose values are known here."""
+    return term in _KNOWN
+
+
+@lru_cache(maxsize=4096)
+def value(term: Term) -> Value | None:
+    """The value of a literal; None when it has none (ill-typed) or its datatype is unknown.
+
+    A literal of an unknown datatype is told from an ill-typed one by `is_ill_typed`.
+    """
+    text, datatype, language = literal(term)
+    if language:
+        return ("text", (text, language.lower()))
+    if not is_datatype(f"<{datatype}>"):
+        return None
+    name = datatype.removeprefix(_XSD)
+    try:
+        if name in _INTEGERS:
+            return _integer(text, name)
+        if name in _STRINGS:
+            collapsed = text if name in ("string", "normalizedString") else " ".join(text.split())
+            return ("text", (collapsed, "")) if _STRINGS[name].fullmatch(collapsed) else None
+        read = _READERS.get(name)
+        return read(text) if read else None
+    except (ValueError, OverflowError, binascii.Error, expat.ExpatError):
+        return None
+
+
+def is_ill_typed(term: Term) -> bool:
+    """Whether a literal claims a known datatype and is outside of its lexical space."""
+    return value(term) is None and is_datatype(f"<{literal(term).datatype}>")
+
+
+def contains(datatype: Term, term: Term) -> bool:
+    """Whether the value of a literal is in a known datatype's value space."""
+    found = value(term)
+    if found is None:
+        return False
+    if datatype == LITERAL:
+        return True
+    kind: str
+    key: Any
+    kind, key = found
+    name = datatype[1:-1].removeprefix(_XSD)
+    if kind == "decimal":
+        return name == "decimal" or (name in _INTEGERS and _in_range(key, name))
+    if kind == "text":
+        text, language = key
+        if language:
+            return datatype in (iri("rdf:langString"), iri("rdf:PlainLiteral"))
+        return datatype == iri("rdf:PlainLiteral") or (
+            name in _STRINGS and _STRINGS[name].fullmatch(text) is not None
+        )
+    if kind == "dateTime":
+        return name == "dateTime" or (name == "dateTimeStamp" and key[0] == "zoned")
+    return kind == name
+
+
+def datatypes(term: Term) -> list[Term]:
+    """All known datatypes that hold the value of a literal (dt-type2)."""
+    return [datatype for datatype in sorted(_KNOWN) if contains(datatype, term)] if is_literal(term) else []
+
+
+def _integer(text: str, name: str) -> Value | None:
+    text = text.strip(" \t\n\r")
+    if not _INTEGER.fullmatch(text) or not _in_range(number := Fraction(int(text)), name):
+        return None
+    return ("decimal", number)
+
+
+def _in_range(number: Hashable, name: str) -> bool:
+    low, high = _INTEGERS[name]
+    assert isinstance(number, Fraction)
+    if number.denominator != 1:
+        return False
+    return (low is None or number >= low) and (high is None or number <= high)
+
+
+def _decimal(text: str) -> Value | None:
+    text = text.strip(" \t\n\r")
+    return ("decimal", Fraction(Decimal(text))) if _DECIMAL.fullmatch(text) else None
+
+
+def _binary_float(name: str, code: str) -> Callable[[str], Value | None]:
+    def read(text: str) -> Value | None:
+        text = text.strip(" \t\n\r")
+        if not _FLOAT.fullmatch(text):
+            return None
+        try:
+            bits = struct.pack(code, float(text))
+        except OverflowError:  # beyond the greatest single: rounds to infinity
+            bits = struct.pack(code, float("-inf" if text[0] == "-" else "inf"))
+        return (name, bits)
+
+    return read
+
+
+def _boolean(text: str) -> Value | None:
+    found = _BOOLEAN.get(text.strip(" \t\n\r"))
+    return None if found is None else ("boolean", found)
+
+
+def _hex(text: str) -> Value | None:
+    text = text.strip(" \t\n\r")
+    return ("hexBinary", bytes.fromhex(text)) if re.fullmatch(r"(?:[0-9A-Fa-f]{2})*", text) else None
+
+
+def _base64(text: str) -> Value | None:
+    text = text.strip(" \t\n\r")
+    return ("base64Binary", base64.b64decode(text, validate=False)) if _BASE64.fullmatch(text) else None
+
+
+def _any_uri(text: str) -> Value | None:
+    text = text.strip(" \t\n\r")
+    return ("anyURI", text) if _IRI.fullmatch(text) else None
+
+
+def _zone(text: str | None) -> timezone | None:
+    if text is None:
+        return None
+    if text == "Z":
+        return UTC
+    sign = -1 if text[0] == "-" else 1
+    return timezone(sign * timedelta(hours=int(text[1:3]), minutes=int(text[4:6])))
+
+
+def _date_time(text: str) -> Value | None:
+    match = _DATE_TIME.fullmatch(text.strip(" \t\n\r"))
+    if match is None:
+        return None
+    year, month, day, hour, minute, second = map(int, match.groups()[:6])
+    fraction = Fraction(match[7] or "0")
+    if hour == 24 and (minute or second or fraction):
+        return None
+    zone = _zone(match[8])
+    moment = datetime.combine(date(year, month, day), time(hour % 24, minute, second))
+    moment += timedelta(days=hour // 24) - (zone.utcoffset(None) if zone else timedelta())
+    return ("dateTime", ("zoned" if zone else "local", moment.isoformat(), fraction))
+
+
+def _stamp(text: str) -> Value | None:
+    found = _date_time(text)
+    return found if found and found[1][0] == "zoned" else None  # type: ignore[index]
+
+
+def _date(text: str) -> Value | None:
+    match = _DATE.fullmatch(text.strip(" \t\n\r"))
+    if match is None:
+        return None
+    year, month, day = map(int, match.groups()[:3])
+    return ("date", (date(year, month, day), match[4]))
+
+
+def _plain(text: str) -> Value | None:
+    match = _PLAIN.fullmatch(text)
+    return ("text", (match[1], match[2].lower())) if match else None
+
+
+def _xml(text: str) -> Value | None:
+    parser = expat.ParserCreate()
+    parser.EntityDeclHandler = _refuse_entity  # a document type has no place in a literal
+    parser.Parse(f"<_>{text}</_>", True)
+    return (_RDF + "XMLLiteral", text)
+
+
+def _refuse_entity(*_: object) -> None:
+    raise ValueError("an XML literal that declares entities")
+
+
+_READERS: Final[dict[str, Callable[[str], Value | None]]] = {
+    "decimal": _decimal,
+    "float": _binary_float("float", "<f"),
+    "double": _binary_float("double", "<d"),
+    "boolean": _boolean,
+    "hexBinary": _hex,
+    "base64Binary": _base64,
+    "anyURI": _any_uri,
+    "dateTime": _date_time,
+    "dateTimeStamp": _stamp,
+    "date": _date,
+    _RDF + "PlainLiteral": _plain,
+    _RDF + "XMLLiteral": _xml,
+}
+_KNOWN: Final = frozenset(
+    {f"<{_XSD}{name}>" for name in (*_INTEGERS, *_STRINGS)}
+    | {f"<{name if ':' in name else _XSD + name}>" for name in _READERS}
+    | {iri("rdf:langString"), LITERAL}
+)

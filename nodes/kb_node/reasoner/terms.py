@@ -1,0 +1,84 @@
+"""RDF terms as strings in N-Triples syntax, and the vocabulary that the rules speak of."""
+
+from __future__ import annotations
+
+import re
+from typing import Final, NamedTuple
+
+from schemas.explanations import Term
+
+PREFIXES: Final = {
+    "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
+    "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
+    "owl": "http://www.w3.org/2002/07/owl#",
+    "xsd": "http://www.w3.org/2001/XMLSchema#",
+}
+_LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"(?:@([A-Za-z0-9-]+)|\^\^<([^>]*)>)?', re.DOTALL)
+_ESCAPE = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|U([0-9A-Fa-f]{8})|(.))", re.DOTALL)
+_CONTROL = {"t": "\t", "b": "\b", "n": "\n", "r": "\r", "f": "\f"}
+
+
+def iri(name: str) -> Term:
+    """The term for a prefixed name: `iri("owl:Thing")`; `a` is rdf:type."""
+    if name == "a":
+        name = "rdf:type"
+    prefix, local = name.split(":", 1)
+    return f"<{PREFIXES[prefix]}{local}>"
+
+
+def iris(names: str) -> tuple[Term, ...]:
+    """The terms for prefixed names with blanks between them."""
+    return tuple(map(iri, names.split()))
+
+
+TYPE: Final = iri("rdf:type")
+FIRST: Final = iri("rdf:first")
+REST: Final = iri("rdf:rest")
+NIL: Final = iri("rdf:nil")
+SAME_AS: Final = iri("owl:sameAs")
+DIFFERENT_FROM: Final = iri("owl:differentFrom")
+THING: Final = iri("owl:Thing")
+NOTHING: Final = iri("owl:Nothing")
+
+
+class Literal(NamedTuple):
+    """A literal taken apart: text without escapes, the datatype's IRI (no brackets), language or ''."""
+
+    text: str
+    datatype: str
+    language: str
+
+
+def is_literal(term: Term) -> bool:
+    """Whether the term is a literal."""
+    return term[0] == '"'
+
+
+def is_reserved(term: Term) -> bool:
+    """Whether the term is an IRI of the RDF, RDFS, OWL or XSD vocabulary."""
+    return term.startswith(_RESERVED)
+
+
+_RESERVED = tuple(f"<{namespace}" for namespace in PREFIXES.values())
+
+
+def literal(term: Term) -> Literal:
+    """Take a literal apart.
+
+    Raises:
+        ValueError: the term is no literal in N-Triples syntax.
+    """
+    match = _LITERAL.fullmatch(term)
+    if match is None:
+        raise ValueError(f"not a literal in N-Triples syntax: {term}")
+    text, language, datatype = match.groups()
+    if "\\" in text:
+        text = _ESCAPE.sub(_unescaped, text)
+    if language:
+        return Literal(text, PREFIXES["rdf"] + "langString", language)
+    return Literal(text, datatype or PREFIXES["xsd"] + "string", "")
+
+
+def _unescaped(match: re.Match[str]) -> str:
+    short, long, char = match.groups()
+    return _CONTROL.get(char, char) if char else chr(int(short or long, 16))
