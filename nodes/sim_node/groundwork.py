@@ -24,9 +24,12 @@ def bare_floor() -> mujoco.MjSpec:
     spec.worldbody.add_geom(
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], rgba=[0.62, 0.60, 0.56, 1.0]
     )
-    spec.worldbody.add_light(pos=[0, 0, 6], dir=[0.2, 0.1, -1], diffuse=[0.6] * 3)
+    spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.35] * 3, [0.35] * 3
+    spec.worldbody.add_light(
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=[-0.3, 0.5, -1], diffuse=[0.5] * 3
+    )
     spec.worldbody.add_camera(
-        name="overview", pos=[-3.0, -4.0, 4.0], xyaxes=[0.8, -0.6, 0, 0.36, 0.48, 0.8], fovy=58
+        name="overview", pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
     )
     return spec
 

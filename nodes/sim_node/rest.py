@@ -10,7 +10,10 @@ from nodes.sim_node.bodies import Floats
 STILL_M = 0.001
 STILL_RAD = 0.005
 STILL_S = 0.3
-"""A body rests when it sleeps, or when for this long it stayed within both tolerances."""
+"""A body rests when for this long it stayed within both tolerances."""
+
+ASLEEP_S = 0.1
+"""One that sleeps rests after this; no sooner, so that followers of the poses see that it moved."""
 
 
 class RestWatch:
@@ -28,7 +31,7 @@ class RestWatch:
         moved = (step > STILL_M) | (turn > STILL_RAD)
         self._anchor[moved] = poses[moved]
         self._since_s[moved] = time_s
-        return np.asarray(asleep | (time_s - self._since_s >= STILL_S))
+        return np.asarray(time_s - self._since_s >= np.where(asleep, ASLEEP_S, STILL_S))
 
     def disturb(self, rows: list[int], time_s: float) -> None:
         """These were taken in hand: they do not rest before they have been still anew."""

@@ -27,6 +27,7 @@ REACH_M = 1000.0
 _AWAKE = -(1 + mujoco.mjMINAWAKE)
 _READY_TO_SLEEP = -1
 _NEAR_M = 0.02
+_STEPS_A_LOOK = 10
 _REBUILD_FROM = 16
 
 ModelSource = Callable[[str, Vec3 | None], Model]
@@ -46,7 +47,6 @@ class World:
         self.name = str(mjcf) if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
-        self.paused = False
         groundwork.prepare(self._spec)
         build.set_memory(self._spec, 0)
         self._pristine = self._spec.copy()
@@ -127,22 +127,23 @@ class World:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
         end = self.data.time + duration_s
         timestep = self.model.opt.timestep
-        while self.data.time < end - timestep / 2:
+        while (left := round((end - self.data.time) / timestep)) > 0:
             if self.asleep:
                 self.data.time = end
-                break
-            before = self.data.qpos.copy()
-            mujoco.mj_step(self.model, self.data)
-            if not np.isfinite(self.data.qpos).all():
-                self._calm(before)
-        self._resting = self._rest.update(self._poses(), self.data.time, self._sleeping())
+            else:
+                before = self.data.qpos.copy()
+                mujoco.mj_step(self.model, self.data, nstep=min(left, _STEPS_A_LOOK))
+                if not np.isfinite(self.data.qpos).all():
+                    self._calm(before)
+            self._resting = self._rest.update(self._poses(), self.data.time, self._sleeping())
 
-    def reset(self) -> None:
-        """Back to the map: each body goes where it was last ordered to be."""
+    def reset(self) -> int:
+        """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
         self._put({name: record.ordered for name, record in self._records.items()})
         self._settle(self._records)
         self._wake(self._records)
         self._free_ghosts()
+        return len(self)
 
     @property
     def asleep(self) -> bool:
@@ -150,6 +151,17 @@ class World:
         return bool((self.data.tree_asleep >= 0).all()) and not self._poked()
 
     # what is told
+
+    def __len__(self) -> int:
+        """How many bodies there are."""
+        return len(self._records)
+
+    def extent(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner, each (3,) [m], of the box around all bodies."""
+        stage = Stage(self.model, self.data, self._index, self._records)
+        if not len(self):
+            return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
+        return stage.body_low.min(axis=0), stage.body_high.max(axis=0)
 
     def poses(self) -> Poses:
         """Where all bodies are."""
@@ -298,6 +310,7 @@ class World:
             build.set_standing(self._spec, self._records[name], pose)
         if poses:
             self._recompile()
+            self.version += 1
 
     def _free_ghosts(self) -> None:
         """Ghosts whose place has become free turn solid."""
