@@ -217,8 +217,8 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     commit: int
     entities: int
     bodies: int
-    in_agreement: bool
-    """Map and scene are the same, to within the thresholds."""
+    in_agreement: bool | None
+    """Map and scene are the same, to within the thresholds; None when no simulator runs."""
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
 

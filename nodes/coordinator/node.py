@@ -153,7 +153,7 @@ class Coordinator:
             commit=self._door.seq,
             entities=len(self._door.entities),
             bodies=len(self._keeping.scene.bodies),
-            in_agreement=self._has_map and self._keeping.in_agreement(),
+            in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
             problems=tuple(self._keeping.problems()),
         )
