@@ -273,3 +273,18 @@ def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:
     """The nodes whose liveliness token is there."""
     replies = session.liveliness().get(keys.live_key(node), timeout=2.0)
     return {str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok is not None}
+
+
+def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
+    """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
+    try:
+        subscriber = session.declare_subscriber(key_expr)
+    except zenoh.ZError as error:
+        raise errors.BadRequest(
+            f"'{key_expr}' is no key expression: {str(error).split(' at /', 1)[0]}"
+        ) from None
+    for sample in subscriber:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            yield str(sample.key_expr), "gone"
+        else:
+            yield str(sample.key_expr), codec.as_json(sample.payload.to_bytes())

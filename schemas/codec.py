@@ -90,3 +90,13 @@ def _sentence(error: Exception) -> str:
     if match := re.fullmatch(r"(.*) - at `\$\.?(.*)`", text):
         return f"{match.group(2)}: {match.group(1).lower()}"
     return text[0].lower() + text[1:] if text else type(error).__name__
+
+
+def as_json(payload: bytes) -> str:
+    """Any payload on one line for bare eyes: MessagePack or JSON as JSON, else its size."""
+    try:
+        if looks_like_json(payload):
+            return msgspec.json.format(payload, indent=-1).decode()
+        return msgspec.json.encode(msgspec.msgpack.decode(payload)).decode()
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return f"{len(payload)} bytes"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from msgspec import Struct, field
+from typing import Annotated
+
+from msgspec import Meta, Struct, field
 
 from schemas.entities import Name, Pose, Size
 
@@ -94,8 +96,25 @@ class SceneQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Every body as it stands."""
 
 
+class PictureQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
+
+    camera: str = ""
+    width: Annotated[int, Meta(ge=16, le=4096)] = 960
+    height: Annotated[int, Meta(ge=16, le=4096)] = 640
+
+
+class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A PNG file."""
+
+    png: bytes
+
+
 class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Every body. `version` grows with each spawn and delete; `run` differs after a restart."""
+    """Every body. `run` differs after a restart.
+
+    `version` grows with each spawn and delete, and when a body becomes a ghost or ceases to be one.
+    """
 
     run: str
     version: int

@@ -217,7 +217,7 @@ class Door:
         return stars
 
     def _commit(self, build: Callable[[str], Transaction]) -> Commit | None:
-        """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name that the star needs."""
+        """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
         suffix = ""
         for attempt in range(_ATTEMPTS):
             transaction = build(suffix)

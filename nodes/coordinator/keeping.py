@@ -80,11 +80,13 @@ class Keeping:
             self._door.entities, self.scene.bodies, self._config.truth, self._config.thresholds, failed
         )
 
-    def in_agreement(self) -> bool:
-        """Map and scene are the same, and nothing is under way."""
+    def in_agreement(self) -> bool | None:
+        """Map and scene are the same, and nothing is under way; None when no simulator runs."""
+        if not self.scene.known:
+            return None
         wanted = self.wanted()
         foreign = [body for body in wanted.adopt if body.name not in self._foreign]
-        return not self._busy and self.scene.known and not (any(wanted[:4]) or foreign or wanted.missing)
+        return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands."""

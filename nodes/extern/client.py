@@ -27,6 +27,7 @@ from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
+from schemas.scenes import Picture
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
@@ -203,6 +204,12 @@ class Client:
         moved: commands.Moved = self.send(commands.Move(name=name, at=at, yaw=yaw))
         return moved
 
+    def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
+        """A picture of the scene as PNG, from one of the world's cameras or from above."""
+        command = commands.TakePicture(camera=camera, width=width, height=height)
+        picture: Picture = self.send(command)
+        return picture.png
+
     # To watch
 
     @contextlib.contextmanager
@@ -222,7 +229,7 @@ class Client:
 
 
 def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:
-    """The fields that were given, by their names on the wire; `convert` then checks them as the wire would."""
+    """The fields that were given, by their names on the wire, where `convert` checks them."""
     given = {name: value for name, value in fields.items() if value is not None}
     if "class_" in given:
         given["class"] = given.pop("class_")

@@ -22,8 +22,12 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
 
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
-    """What follows that was not said, without what is true of everything."""
-    triples = tuple(t for t in semantic_map.inferred(name) if t[2] != v.OWL_THING and t[1] != v.OWL_SAME_AS)
+    """What follows that was not said, without what is true of everything or of nameless classes."""
+    triples = tuple(
+        (s, p, o)
+        for s, p, o in semantic_map.inferred(name)
+        if o != v.OWL_THING and p != v.OWL_SAME_AS and not (p == v.RDF_TYPE and o.startswith("_:"))
+    )
     return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
 
 

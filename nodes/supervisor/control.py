@@ -15,7 +15,7 @@ from typing import Any
 
 from supervisor.xmlrpc import SupervisorTransport
 
-from nodes.supervisor.settings import Settings
+from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
 GROUP = "semmap"
@@ -30,7 +30,7 @@ class Supervisor:
     def __init__(self, data: Path) -> None:
         self.data = data
         self.logs = data / "logs"
-        self._settings_path = data / "settings.json"
+        self._settings_path = data / SETTINGS
         self._conf_path = data / "supervisord.conf"
 
     @property

@@ -12,6 +12,10 @@ from msgspec import Meta, Struct
 from nodes.bus import DEFAULT_ENDPOINT, Network
 
 ANY_PORT = "tcp/127.0.0.1:0"
+SETTINGS = "settings.json"
+"""The file of the settings in the data folder."""
+JOURNAL = "journal.sqlite"
+"""The file of the journal there: where it is, there is a map to go on with."""
 
 
 def default_data() -> Path:
