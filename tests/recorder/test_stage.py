@@ -1,0 +1,89 @@
+import pytest
+
+from nodes.recorder.map_state import MapState
+from nodes.recorder.stage import Stage
+from schemas.commits import Snapshot
+from tests.recorder.messages import body, commit, entity, pose, relation, star
+
+
+class Told:
+    """A recording that only lists what it is told."""
+
+    def __init__(self):
+        self.calls = []
+
+    def __getattr__(self, verb):
+        return lambda name, *_: self.calls.append((verb, name))
+
+    def take(self):
+        calls, self.calls = self.calls, []
+        return calls
+
+
+@pytest.fixture
+def told():
+    return Told()
+
+
+@pytest.fixture
+def stage(told):
+    return Stage(told)
+
+
+def test_what_appears_gets_a_shape_and_a_pose_once(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    assert told.take() == [("shape", "c"), ("pose", "c")]
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    assert told.take() == []
+
+
+def test_a_body_gives_its_entity_another_shape(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=True)
+    told.take()
+    stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
+    assert told.take() == [("shape", "c")]
+
+
+def test_what_leaves_is_erased_and_may_come_back(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    told.take()
+    stage.show(["c"], {}, {}, simulated=False)
+    assert told.take() == [("erase", "c")]
+    stage.show(["c"], {"c": entity("c")}, {}, simulated=False)
+    assert told.take() == [("shape", "c"), ("pose", "c")]
+
+
+def test_what_changes_its_branch_leaves_nothing_behind(stage, told):
+    stage.show_all({}, {"c": body("c", entity=False)}, simulated=True)
+    told.take()
+    stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
+    assert told.take() == [("erase", "c"), ("shape", "c"), ("pose", "c")]
+
+
+def test_an_entity_that_is_nowhere_is_not_drawn(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    told.take()
+    nowhere = entity("c").__class__(**{f: getattr(entity("c"), f) for f in entity("c").__struct_fields__} | {"pose": None})
+    stage.show(["c"], {"c": nowhere}, {}, simulated=False)
+    assert told.take() == [("erase", "c")]
+
+
+def test_moves_are_told_when_they_are_moves(stage, told):
+    stage.show_all({}, {"c": body("c")}, simulated=True)
+    told.take()
+    stage.move("c", pose(0.0001))
+    stage.move("unknown", pose(1.0))
+    assert told.take() == []
+    stage.move("c", pose(0.5))
+    assert told.take() == [("pose", "c")]
+
+
+def test_the_graph_follows_the_map(stage, told):
+    state = MapState()
+    on = relation("cup1", "isOn", "table1")
+    state.begin(Snapshot(seq=1, entities=(entity("cup1"), entity("table1"))), [star("cup1", on)])
+    stage.show_graph(state)
+    assert told.take() == [("node", "cup1"), ("node", "table1")]
+    state.take(commit(2, entity("cup1"), removed=("table1",)))
+    stage.show_graph(state)
+    assert told.take() == [("forget_node", "table1"), ("node", "cup1")]
