@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from nodes.recorder.figures import Figure, figure_of, pose_of, still
-from nodes.recorder.map_state import MapState, Relation
+from nodes.recorder.graph import Graph
 from nodes.recorder.recording import Recording
 from schemas.entities import Entity, Pose
 from schemas.scenes import Body
@@ -18,7 +18,7 @@ class Stage:
         self._recording = recording
         self._figures: dict[str, Figure] = {}
         self._poses: dict[str, Pose] = {}
-        self._nodes: dict[str, tuple[str, tuple[Relation, ...]]] = {}
+        self._graph = Graph({}, ())
 
     def show(
         self,
@@ -51,16 +51,11 @@ class Stage:
             self._poses[name] = pose
             self._recording.pose(name, figure, pose)
 
-    def show_graph(self, state: MapState) -> None:
-        """Draw the knowledge graph."""
-        relations = state.relations()
-        nodes = {name: (entity.class_, relations[name]) for name, entity in state.entities.items()}
-        for name in sorted(self._nodes.keys() - nodes.keys()):
-            self._recording.forget_node(name)
-        for name, node in nodes.items():
-            if self._nodes.get(name) != node:
-                self._recording.node(name, *node)
-        self._nodes = nodes
+    def show_graph(self, graph: Graph) -> None:
+        """Draw the knowledge graph, if it is another."""
+        if graph != self._graph:
+            self._graph = graph
+            self._recording.graph(graph)
 
     @property
     def poses(self) -> Iterable[Pose]:
