@@ -53,15 +53,13 @@ class Recording:
         """Arrange the viewer so that it looks at these bounds."""
         self._stream.send_blueprint(layout(bounds))
 
-    def shape(self, name: str, figure: Figure) -> None:
-        """Draw a figure; it stands where `pose` last put it."""
-        self._stream.log(["map", figure.group, name], *shape_of(figure))
+    def draw(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Draw a figure where it stands."""
+        self._stream.log(["map", figure.group, name], *shape_of(figure), _transform(pose))
 
-    def pose(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Put a figure somewhere."""
-        w, x, y, z = pose.orientation_wxyz
-        transform = rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
-        self._stream.log(["map", figure.group, name], transform)
+    def move(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Put a figure somewhere else."""
+        self._stream.log(["map", figure.group, name], _transform(pose))
 
     def erase(self, name: str, figure: Figure) -> None:
         """Take a figure away."""
@@ -84,6 +82,11 @@ class Recording:
         """Say something about the recording itself."""
         level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
         self._stream.log(COMMIT_LOG, rr.TextLog(text, level=level))
+
+
+def _transform(pose: Pose) -> rr.Transform3D:
+    w, x, y, z = pose.orientation_wxyz
+    return rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
 
 
 def _fields(commit: Commit) -> dict[str, NDArray[Any]]:

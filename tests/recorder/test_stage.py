@@ -30,9 +30,9 @@ def stage(told):
     return Stage(told)
 
 
-def test_what_appears_gets_a_shape_and_a_pose_once(stage, told):
+def test_what_appears_is_drawn_once(stage, told):
     stage.show_all({"c": entity("c")}, {}, simulated=False)
-    assert told.take() == [("shape", "c"), ("pose", "c")]
+    assert told.take() == [("draw", "c")]
     stage.show_all({"c": entity("c")}, {}, simulated=False)
     assert told.take() == []
 
@@ -41,7 +41,7 @@ def test_a_body_gives_its_entity_another_shape(stage, told):
     stage.show_all({"c": entity("c")}, {}, simulated=True)
     told.take()
     stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
-    assert told.take() == [("shape", "c")]
+    assert told.take() == [("draw", "c")]
 
 
 def test_what_leaves_is_erased_and_may_come_back(stage, told):
@@ -50,14 +50,14 @@ def test_what_leaves_is_erased_and_may_come_back(stage, told):
     stage.show(["c"], {}, {}, simulated=False)
     assert told.take() == [("erase", "c")]
     stage.show(["c"], {"c": entity("c")}, {}, simulated=False)
-    assert told.take() == [("shape", "c"), ("pose", "c")]
+    assert told.take() == [("draw", "c")]
 
 
 def test_what_changes_its_branch_leaves_nothing_behind(stage, told):
     stage.show_all({}, {"c": body("c", entity=False)}, simulated=True)
     told.take()
     stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
-    assert told.take() == [("erase", "c"), ("shape", "c"), ("pose", "c")]
+    assert told.take() == [("erase", "c"), ("draw", "c")]
 
 
 def test_an_entity_that_is_nowhere_is_not_drawn(stage, told):
@@ -74,7 +74,7 @@ def test_moves_are_told_when_they_are_moves(stage, told):
     stage.move("unknown", pose(1.0))
     assert told.take() == []
     stage.move("c", pose(0.5))
-    assert told.take() == [("pose", "c")]
+    assert told.take() == [("move", "c")]
 
 
 def test_a_graph_is_drawn_when_it_changes(stage, told):
