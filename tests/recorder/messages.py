@@ -32,7 +32,7 @@ def body(name, at=None, **others):
     return Body(
         name=name,
         pose=at or pose(),
-        size_m=(0.5, 0.5, 0.9),
+        size_m=(0.5, 0.5, 1.0),
         resting=True,
         commit=1,
         shape_commit=1,

@@ -8,7 +8,7 @@ from tests.recorder.messages import body, entity, pose
 def test_the_scene_knows_the_size_better_than_the_map():
     chair = entity("chair1", size_m=(1.0, 1.0, 1.0))
     figure = figure_of(chair, body("chair1"), simulated=True)
-    assert figure == Figure("chair1", "Chair", (0.5, 0.5, 0.9), "solid")
+    assert figure == Figure("chair1", "Chair", (0.5, 0.5, 1.0), "solid")
 
 
 def test_without_a_simulator_the_map_is_drawn():
