@@ -10,7 +10,9 @@ import rerun.blueprint as rrb
 from schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)
-_LOG_COLUMNS = rrb.TextLogColumns(text_log_columns=["body"])
+_LOG_COLUMNS = rrb.TextLogColumns(
+    timeline_columns=[rrb.encodings.TimelineColumn("time", visible=False)], text_log_columns=["body"]
+)
 _GRID = (255, 255, 255, 30)
 
 
@@ -57,10 +59,10 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
                 rrb.GraphView(
                     origin="/graph",
                     name="Knowledge graph",
-                    force_link=rrb.archetypes.ForceLink(distance=40.0),
-                    force_many_body=rrb.archetypes.ForceManyBody(strength=-60.0),
+                    force_link=rrb.archetypes.ForceLink(distance=60.0),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-300.0),
                 ),
-                row_shares=[3, 2, 4],
+                row_shares=[4, 2, 4],
             ),
             column_shares=[2, 1],
         ),
