@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from nodes.sim_node.models.forms import shifted
 from nodes.sim_node.models.parts import Inertial, Part, Vec3, bounds, box, inertial, quarter_turned
 from nodes.sim_node.models.table import MODELS, ModelKind
 
@@ -25,19 +26,12 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True)
 class Model:
-    """A model at one size: its parts, what they weigh, and their bounding box from `low_m` to `high_m`."""
+    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m]."""
 
     name: str
     parts: tuple[Part, ...]
     inertial: Inertial
-    low_m: Vec3
-    high_m: Vec3
-
-    @property
-    def size_m(self) -> Vec3:
-        """Real extents along the body's own axes [m]."""
-        low, high = self.low_m, self.high_m
-        return (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+    size_m: Vec3
 
 
 @lru_cache(maxsize=1024)
@@ -81,11 +75,12 @@ def _plain_box(size_m: Vec3) -> Model:
 
 def _model(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
     low, high = bounds(parts)
+    parts = shifted(parts, x=-(low[0] + high[0]) / 2, y=-(low[1] + high[1]) / 2, z=-low[2])
+    low, high = bounds(parts)
     mass_kg = min(max(mass_kg, 0.002), 5000.0)
     return Model(
         name=name,
         parts=tuple(parts),
         inertial=inertial(parts, mass_kg),
-        low_m=(float(low[0]), float(low[1]), float(low[2])),
-        high_m=(float(high[0]), float(high[1]), float(high[2])),
+        size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
     )
