@@ -360,13 +360,11 @@ def toilet_roll(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 def cushion(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Soft: thick in the middle, thin at its square border."""
-    layers = 6
-    soft = [
-        box((x * (1 - 0.5 * t**3), y * (1 - 0.5 * t**3), z / layers), (0, 0, z * (i + 0.5) / layers), colour)
-        for i in range(layers)
-        for t in (abs(2 * (i + 0.5) / layers - 1),)
+    return [
+        *seen(box((x, y, 0.34 * z), (0, 0, 0.5 * z), shade(colour, 0.9))),
+        *seen(ball((0.98 * x, 0.98 * y, z), (0, 0, 0.5 * z), colour)),
+        *felt(box((0.9 * x, 0.9 * y, z), (0, 0, z / 2), colour)),
     ]
-    return [*seen(soft), *felt(box((0.9 * x, 0.9 * y, z), (0, 0, z / 2), colour))]
 
 
 def rug(x: float, y: float, z: float, colour: Colour) -> Parts:
