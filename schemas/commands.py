@@ -24,6 +24,7 @@ from schemas.entities import (
     Vector,
 )
 from schemas.explanations import Explanation, Triple
+from schemas.scenes import Picture
 
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
@@ -255,6 +256,14 @@ class Reset(Command, frozen=True, kw_only=True, tag="reset"):
     """Put every body back where the map says it stands."""
 
 
+class TakePicture(Command, frozen=True, kw_only=True, tag="picture"):
+    """A picture of the scene, from one of the world's cameras or from above."""
+
+    camera: str | None = None
+    width: Annotated[int, Meta(ge=16, le=4096)] = 960
+    height: Annotated[int, Meta(ge=16, le=4096)] = 720
+
+
 class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """It was done."""
 
@@ -279,6 +288,7 @@ REPLIES: dict[type[Command], Any] = {
     Pause: Done,
     StepOnce: Done,
     Reset: Done,
+    TakePicture: Picture,
 }
 
 COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in REPLIES}

@@ -11,7 +11,7 @@ SemmapError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
 from msgspec import Struct
@@ -148,8 +148,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
 
 
-def unknown_classes(names: Iterable[str], known: Iterable[str], whose: Iterable[str]) -> str:
-    """One sentence on all the unknown classes of a file, and how to go on without them."""
+def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
+    """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
     known = list(known)
-    said = ", ".join(f"'{name}'{did_you_mean(name, known)}" for name in names).replace("?,", ",").rstrip("?")
-    return f"unknown class {said} (of {', '.join(whose)}); --skip-unknown leaves these out"
+    said = [f"'{name}' (of {', '.join(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
+    return f"unknown class {', '.join(said)}; --skip-unknown leaves these out"

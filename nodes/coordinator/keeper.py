@@ -46,10 +46,11 @@ def reconcile(
     failed = failed or {}
     delete, spawn, place, follow, adopt, missing = [], [], [], [], [], []
     for name, entity in entities.items():
-        if entity.place:
-            continue
         body = bodies.get(name)
-        if truth == "scene":
+        if entity.place:
+            if body is not None and body.entity:
+                delete.append(name)
+        elif truth == "scene":
             if body is None:
                 missing.append(name)
             elif _moved(entity, body, thresholds):

@@ -22,7 +22,7 @@ from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity, Pose, orientation_from_yaw
 from schemas.health import Health
-from schemas.scenes import BodiesMoved, MoveBodies, Placement, Poses
+from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
 
 _WAIT_S = 20.0
 _COMMIT_TIMEOUT_S = 120.0
@@ -60,6 +60,7 @@ class Coordinator:
             c.Pause: lambda m: self._ask_sim("pause", m, c.Done),
             c.StepOnce: lambda m: self._ask_sim("step", m, c.Done),
             c.Reset: self._reset,
+            c.TakePicture: self._picture,
         }
         handlers = {
             verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
@@ -183,6 +184,10 @@ class Coordinator:
             self._keeping.place_all(),
             lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
         )
+
+    def _picture(self, m: c.TakePicture) -> Future[Any]:
+        query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
+        return self._ask_sim("picture", query, Picture)
 
     def _waitable(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], Any]:
         """The reply to a command with `wait` is held back until the body stands there."""

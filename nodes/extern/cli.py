@@ -258,6 +258,18 @@ def reset(client: Client) -> None:
 
 
 @app.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--camera", metavar="NAME", help="A camera of the world; without one, from above.")
+@click.option("--width", type=int, default=960, show_default=True)
+@click.option("--height", type=int, default=720, show_default=True)
+@talks
+def picture(client: Client, file: Path, camera: str | None, width: int, height: int) -> None:
+    """Write a picture of the scene to FILE (PNG)."""
+    _write_atomically(file, client.picture(camera, width=width, height=height))
+    print(f"wrote {file}")
+
+
+@app.command()
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @talks
 def watch(client: Client, keyexpr: str) -> None:
@@ -355,7 +367,10 @@ def _execute_message(client: Client, message: bytes) -> int:
     except errors.SemmapError as error:
         _complain(error.text)
         return error.exit_status
-    print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
+    if isinstance(reply, commands.Changed):
+        _say(show.changed(reply))
+    else:
+        print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0
 
 

@@ -27,6 +27,7 @@ from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
+from schemas.scenes import Picture
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
@@ -202,6 +203,12 @@ class Client:
         """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
         moved: commands.Moved = self.send(commands.Move(name=name, at=at, yaw=yaw))
         return moved
+
+    def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
+        """A picture of the scene as PNG, from one of the world's cameras or from above."""
+        command = commands.TakePicture(camera=camera, width=width, height=height)
+        picture: Picture = self.send(command)
+        return picture.png
 
     # To watch
 
