@@ -137,6 +137,9 @@ def from_message(message: ErrorMessage) -> SemmapError:
     return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
 
 
+_FEW = 10
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
     near = process.extract(
@@ -149,7 +152,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def unknown_classes(names: Iterable[str], known: Iterable[str], whose: Iterable[str]) -> str:
-    """One sentence on all the unknown classes of a file, and how to go on without them."""
-    known = list(known)
-    said = ", ".join(f"'{name}'{did_you_mean(name, known)}" for name in names).replace("?,", ",").rstrip("?")
-    return f"unknown class {said} (of {', '.join(whose)}); --skip-unknown leaves these out"
+    """One sentence on all the unknown classes of a file, whose they are, and how to go on without them."""
+    known, whose = list(known), list(whose)
+    said = [f"'{name}'{did_you_mean(name, known).replace('; ', ' (').replace('?', '?)')}" for name in names]
+    few = ", ".join(whose[:_FEW]) + (f" and {len(whose) - _FEW} more" if len(whose) > _FEW else "")
+    kind = "unknown class" if len(said) == 1 else "unknown classes"
+    return f"{kind} {', '.join(said)}: {few}; --skip-unknown leaves these out"
