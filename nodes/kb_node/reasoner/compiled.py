@@ -53,7 +53,7 @@ def _may_be_spoken_of(term: Term) -> bool:
     return term in ANNOTATIONS or term in (THING, NOTHING, NIL) or datatypes.is_datatype(term)
 
 
-class Refused(Exception):  # noqa: N818 - carries the explanation to the reasoner
+class Refused(Exception):
     """A change was undone because it contradicts the rest."""
 
     def __init__(self, explanation: Explanation) -> None:
