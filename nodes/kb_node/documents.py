@@ -24,10 +24,12 @@ def sort_out(
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
     unknown = {s: o for s, p, o in triples if p == v.RDF_TYPE and o not in known and not _is_built_in(o)}
-    sentences = [f"{v.local_name(s)} (unknown class '{v.local_name(c)}')" for s, c in sorted(unknown.items())]
+    users: dict[str, list[str]] = {}
+    for s, c in sorted(unknown.items()):
+        users.setdefault(v.local_name(c), []).append(v.local_name(s))
     if unknown and not skip_unknown:
-        names = sorted({v.local_name(c) for c in unknown.values()})
-        raise errors.UnknownClass(errors.unknown_classes(names, classes.names.values(), sentences))
+        raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
+    sentences = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     return _without(set(unknown), triples), sentences
 
 

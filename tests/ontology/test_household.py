@@ -152,7 +152,7 @@ def test_quantities_are_single_floats(tbox: Graph, quantity: str, axis: str) -> 
 
 def composite_properties(graph: Graph) -> set[URIRef]:
     """Properties that are transitive or the end of a chain, or imply or invert into one that is."""
-    found = {p for p in graph.subjects(RDF.type, OWL.TransitiveProperty)}
+    found = set(graph.subjects(RDF.type, OWL.TransitiveProperty))
     found |= set(graph.subjects(OWL.propertyChainAxiom, None))
     while True:
         more = {q for p in found for q in graph.objects(p, RDFS.subPropertyOf)}
