@@ -39,7 +39,7 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
     e = bounds.extent_m
     eye = rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,
-        position=(x - 0.25 * e, y - 0.75 * e, z + 0.8 * e),
+        position=(x - 0.25 * e, y - 0.8 * e, z + 0.85 * e),
         look_target=(x, y, z),
         eye_up=(0.0, 0.0, 1.0),
     )
@@ -59,8 +59,8 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
                 rrb.GraphView(
                     origin="/graph",
                     name="Knowledge graph",
-                    force_link=rrb.archetypes.ForceLink(distance=60.0),
-                    force_many_body=rrb.archetypes.ForceManyBody(strength=-300.0),
+                    force_link=rrb.archetypes.ForceLink(distance=45.0),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-150.0),
                 ),
                 row_shares=[4, 2, 4],
             ),
