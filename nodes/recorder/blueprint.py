@@ -60,6 +60,7 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
                     origin="/graph",
                     name="Knowledge graph",
                     force_link=rrb.archetypes.ForceLink(distance=45.0),
+                    force_position=rrb.archetypes.ForcePosition(enabled=True, strength=0.05),
                     force_many_body=rrb.archetypes.ForceManyBody(strength=-150.0),
                 ),
                 row_shares=[4, 2, 4],
