@@ -1,7 +1,7 @@
 """What owlrl concludes from the TBox: the reference for any other reasoner.
 
 Closing the TBox with the flat takes owlrl a good while, so one closure, with the examples below, serves the
-file. What needs the whole TBox is marked long.
+file. The fault catalogue and the check of every class are marked long.
 """
 
 import pytest
