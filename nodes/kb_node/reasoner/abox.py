@@ -73,11 +73,16 @@ class ABox:
         """Assert a triple; whether it is new. Conclusions come with `run`."""
         s, p, o = triple
         store, schema = self.store, self.schema
-        subject = store.node(s)
+        subject = store.numbers.get(s)
+        if subject is None:
+            subject = store.node(s)
         if p == TYPE:
             cls = schema.find_class(o)
             return self._give(subject, self._first_use(o, schema.cls) if cls is None else cls)
-        predicate, object_ = schema.find_property(p), store.node(o)
+        object_ = store.numbers.get(o)
+        if object_ is None:
+            object_ = store.node(o)
+        predicate = schema.find_property(p)
         if predicate is None:
             predicate = self._first_use(p, schema.property)
         edge = store.edge(subject, predicate, object_)
@@ -185,11 +190,12 @@ class ABox:
         kind = self.store.kind[node]
         if cls in kind.given:
             return False
-        given = self.kinds.of(kind.given | {cls})
-        self.set(node, self.kinds.widen(given, kind.mask))
-        if kind.mask != self.store.kind[node].mask:
-            self._widen(node, self.store.kind[node].mask)
-            self.dirty[node] = None
+        wider = self.kinds.give(kind, cls)
+        self.set(node, wider)
+        if wider.mask != kind.mask:
+            self._widen(node, wider.mask)
+            if wider.clash or wider.values or not self.store.is_bare(node):
+                self.dirty[node] = None
         return True
 
     def _widen(self, node: int, mask: int) -> None:
@@ -220,8 +226,7 @@ class ABox:
 
     def add_values(self, node: int) -> None:
         """Add the edges that a node's classes come with (cls-hv1)."""
-        for cls in self.store.kind[node].values:
-            predicate, term = self.schema.values[cls]
+        for predicate, term in self.store.kind[node].values:
             value = self.store.node(term)
             if self.find(node, (predicate, False), value) == NONE:
                 self.fresh.append(self.store.add(node, predicate, value, VALUE))
@@ -241,8 +246,9 @@ class ABox:
             return
         self._step(edge)
         rules = self.steps.rules(p)
-        if rules is not None:
-            self._apply(rules, edge, s, o)
+        if rules is None or (rules.of_values and s not in self.equals and store.out.is_alone(edge)):
+            return
+        self._apply(rules, edge, s, o)
 
     def _step(self, edge: int) -> None:
         store = self.store
@@ -300,7 +306,15 @@ class ABox:
 
     def _limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
         """At most one value: this one and any other are the same (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
-        for other, end, found in self.related(owner, self.steps.group(limit.role)):
+        group = self.steps.group(limit.role)
+        if (
+            not group.into
+            and len(group.out) == 1
+            and owner not in self.equals
+            and self.store.out.is_alone(edge)
+        ):
+            return
+        for other, end, found in self.related(owner, group):
             if other == edge or self.is_same(value, found):
                 continue
             if limit.filler != ANY and not self.store.kind[found].mask >> limit.filler & 1:

@@ -41,7 +41,7 @@ class Retraction:
                 self._reset_all(node)
         for node in self.touched:
             equals = self._abox.equals.get(node)
-            if equals is not None and self._abox.is_literal(node) and self._is_bare(node):
+            if equals is not None and self._abox.is_literal(node) and self._store.is_bare(node):
                 self._dissolve(equals)
         for node in self._loosened:
             self._abox.fresh += self._store.out.all(node)
@@ -54,9 +54,6 @@ class Retraction:
         """Forget the nodes that nothing is said of any more."""
         for node in self.touched:
             self._abox.forget(node)
-
-    def _is_bare(self, node: int) -> bool:
-        return self._store.out.heads[node] == NONE and self._store.into.heads[node] == NONE
 
     # What goes
 
@@ -147,9 +144,9 @@ class Retraction:
         return step.subject.mask if node == s else step.object.mask
 
     def _comes_with(self, edge: int) -> bool:
-        store, schema = self._store, self._abox.schema
+        store = self._store
         value = (store.predicate[edge], store.terms[store.object[edge]])
-        return any(schema.values[cls] == value for cls in store.kind[store.subject[edge]].base.values)
+        return value in store.kind[store.subject[edge]].base.values
 
     def _reset_all(self, node: int) -> None:
         equals = self._abox.equals.get(node)

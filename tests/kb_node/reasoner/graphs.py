@@ -60,10 +60,12 @@ def _names(text):
 
 
 CLASSES = _names(
-    "A B C D E F U I N D2 X Y Z W O G Some SomeThing Only Has K2 HasData Max0 Max1 MaxQ0 MaxQ1 Exactly1 K DataSome"
+    "A B C D E F U I N D2 X Y Z W O G Some SomeThing Only Has K2 HasData Max0 Max1 MaxQ0 MaxQ1 "
+    "Exactly1 K DataSome"
 )
 OBJECT_PROPERTIES = _names(
-    "p q inv sym tra subtra fun subfun ifp irr asy eq1 eq2 dis1 dis2 adp1 adp2 chain long m0 m1 key1 subkey free"
+    "p q inv sym tra subtra fun subfun ifp irr asy eq1 eq2 dis1 dis2 adp1 adp2 chain long m0 m1 "
+    "key1 subkey free"
 )
 DATA_PROPERTIES = _names("data fundata key2 int ifd")
 LITERALS = (

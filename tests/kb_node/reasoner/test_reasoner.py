@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled, datatypes
 from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.compiled import CompiledEngine, is_schema
+from nodes.kb_node.reasoner.compiled import CompiledEngine
+from nodes.kb_node.reasoner.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, is_literal
 from tests.kb_node.reasoner.graphs import (
     CLASSES,
@@ -90,7 +91,7 @@ def check_same(reasoner, asserted):
     assert closure.clash is None
     assert set(reasoner.asserted()) == set(asserted)
     assert len(reasoner) == len(asserted)
-    individuals = {t for fact in reasoner._engine._abox.store._numbers for t in (fact,) if not is_literal(t)}
+    individuals = {t for fact in reasoner._engine._abox.store.numbers for t in (fact,) if not is_literal(t)}
     wanted = {f for f in expected(closure, asserted) if f[0] in individuals}
     found = list(reasoner.inferred())
     assert len(found) == len(set(found))
