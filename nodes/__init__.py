@@ -1,1 +1,1 @@
-"""To be written."""
+"""The processes of the system. They never import one another: they meet on the wire."""

@@ -1,1 +1,14 @@
-"""To be written."""
+"""The household TBox, and a furnished flat to begin with: an ABox and the MJCF world it stands in."""
+
+from pathlib import Path
+
+_HERE = Path(__file__).parent
+
+HOUSEHOLD_TTL = _HERE / "household.ttl"
+"""The TBox."""
+FLAT_TTL = _HERE / "flat.ttl"
+"""An ABox: a flat of 10 m x 8 m with its rooms and furniture."""
+FLAT_WORLD = _HERE / "flat_world.xml"
+"""The flat's floor, walls, lights and cameras, without anything that is an entity of the ABox."""
+EMPTY_WORLD = _HERE / "empty_world.xml"
+"""A bare floor with a light and a camera."""

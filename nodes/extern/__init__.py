@@ -1,1 +1,1 @@
-"""To be written."""
+"""What a person or an outside program touches: the command line, the client, the zenoh-cli codecs."""

@@ -22,7 +22,7 @@ from nodes.kb_node.reasoner.view import View
 from schemas.explanations import Explanation, Term, Triple
 
 
-class Refused(Exception):  # noqa: N818 - carries the explanation to the reasoner
+class Refused(Exception):
     """A change was undone because it contradicts the rest."""
 
     def __init__(self, explanation: Explanation) -> None:

@@ -15,7 +15,7 @@ from schemas.explanations import Explanation, Term, Triple
 _SUB_CLASS_OF = iri("rdfs:subClassOf")
 
 
-class Inconsistent(Exception):  # noqa: N818 - what is wrong is the map, not the program
+class Inconsistent(Exception):
     """A change that contradicts the rest; it was undone. `explanation` says why."""
 
     def __init__(self, explanation: Explanation) -> None:

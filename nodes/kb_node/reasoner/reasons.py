@@ -45,7 +45,7 @@ class Reason:
         self.alive = True
 
 
-class Clash(Exception):  # noqa: N818 - caught by the transaction
+class Clash(Exception):
     """A contradiction, and the claims that make it."""
 
     def __init__(self, *claims: Claim) -> None:

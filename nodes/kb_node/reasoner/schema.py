@@ -83,7 +83,7 @@ class Axioms:
     irreflexive: bool = False
 
 
-class NotCompilable(Exception):  # noqa: N818 - nothing is wrong: the general engine takes over
+class NotCompilable(Exception):
     """The graph uses the vocabulary in a way that the compiled engine does not know (OWL Full)."""
 
 

@@ -1,0 +1,50 @@
+# Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test test-long lint format schema bench clean
+
+UV_VERSION := 0.13.8
+UV := .tools/bin/uv
+BIN := .venv/bin
+export UV_PYTHON_DOWNLOADS := never
+
+help:  ## Show this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /  make \1\t/' | expand -t 20
+
+setup: .venv/.ready  ## Install everything into .venv, as locked; and what rendering needs, where allowed
+	@sh demo/rendering.sh
+
+$(UV):
+	python3 -m venv .tools
+	.tools/bin/pip install --quiet --disable-pip-version-check uv==$(UV_VERSION)
+
+.venv/.ready: uv.lock pyproject.toml | $(UV)
+	$(UV) sync --locked --compile-bytecode --python python3
+	@touch $@
+
+demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png
+	$(BIN)/python -m demo.tour
+
+test: setup  ## The tests, under 5 minutes
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n 2 -m "not long"
+
+test-long: setup  ## The tests that take longer too
+	$(BIN)/pytest -n 2
+
+lint: setup  ## Style, types and the rules of who imports whom
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: setup  ## Format the code
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+schema: setup  ## Write the JSON Schema of scene files anew
+	$(BIN)/python -m nodes.coordinator.files.scene_file > schemas/scene.schema.json
+
+clean:  ## Remove what was installed and built
+	rm -rf .venv .tools .pytest_cache .hypothesis .mypy_cache .ruff_cache demo/data

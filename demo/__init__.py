@@ -1,0 +1,1 @@
+"""A tour through every command, run for real."""

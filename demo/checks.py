@@ -1,0 +1,50 @@
+"""Is what the tour leaves as it should be?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from nodes.recorder.replay import read_commits
+from PIL import Image
+
+if TYPE_CHECKING:
+    from demo.tour import Tour
+
+_SAID = ("name", "class", "types", "pose", "size_m", "preferred_reference", "alternative_references")
+
+
+def check_export(t: Tour) -> None:
+    """The export loads back equal: once over the map as it is, once into an empty one."""
+    from demo.tour import EXPORT
+
+    before = _said(t)
+    t.do("load", str(EXPORT), "--replace", holds="says nothing that the map does not hold already")
+    t.do("clear")
+    t.do("load", str(EXPORT), holds=f"loaded {len(before)} entities")
+    if _said(t) != before:
+        t.failures.append(f"{EXPORT} does not load back equal")
+
+
+def check_recording(path: Path, commits: int, failures: list[str]) -> None:
+    """The recording holds every commit from where it began to the last one."""
+    recorded = [commit.seq for commit in read_commits(path)]
+    print(f"{path.name}: {len(recorded)} commits, of {commits}")
+    if not recorded or recorded != list(range(recorded[0], commits + 1)) or recorded[0] > 2:
+        failures.append(f"{path} does not hold every commit: {recorded}")
+
+
+def check_picture(path: Path, failures: list[str]) -> None:
+    """The picture shows something."""
+    pixels = np.asarray(Image.open(path).convert("L"), dtype=float)
+    print(f"{path.name}: {pixels.shape[1]} x {pixels.shape[0]}, contrast {pixels.std():.0f}")
+    if pixels.std() < 5.0:
+        failures.append(f"{path} is blank")
+
+
+def _said(t: Tour) -> list[dict[str, Any]]:
+    """What the map says of each entity, without when and by whom it was said."""
+    entities = t.ask("list")
+    assert isinstance(entities, list)
+    return [{key: entity[key] for key in _SAID} for entity in entities]

@@ -1,0 +1,232 @@
+"""`make demo`: a system on loopback, a tour through every command, and a check of what it leaves.
+
+Everything goes through the command line, as a user would do it. Ends with 0 when every step did what was
+expected of it and what it leaves is as it should be.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from demo.checks import check_export, check_picture, check_recording
+
+HERE = Path(__file__).parent
+DATA = HERE / "data"
+EXPORT = HERE / "flat.owl"
+RECORDING = HERE / "session.rrd"
+PICTURE = HERE / "scene.png"
+_BIN = Path(sys.executable).parent
+_SHOWN_LINES = 14
+_PATIENCE_S = 30.0
+
+
+class Tour:
+    """A running system and what is done with it."""
+
+    def __init__(self, endpoint: str) -> None:
+        self.endpoint = endpoint
+        self._environment = {**os.environ, "SEMMAP_CONNECT": endpoint, "COLUMNS": "110"}
+        self.failures: list[str] = []
+
+    def tell(self, text: str) -> None:
+        """A word on what comes next."""
+        print(f"\n\033[1m# {text}\033[0m" if sys.stdout.isatty() else f"\n# {text}", flush=True)
+
+    def do(self, *words: str, status: int = 0, holds: str = "") -> str:
+        """Run `semmap WORDS`, show it, and note it when it does not end as expected; its output."""
+        return self._show(["semmap", *words], status, holds)
+
+    def zenoh(self, *words: str, holds: str = "") -> str:
+        """Run the zenoh command line against the system."""
+        return self._show(["zenoh", "--mode", "client", "--connect", self.endpoint, *words], 0, holds)
+
+    def background(self, *words: str) -> subprocess.Popen[str]:
+        """Start `semmap WORDS` and go on."""
+        print(f"$ semmap {' '.join(words)} &", flush=True)
+        command = [_BIN / "semmap", *words]
+        return subprocess.Popen(command, env=self._environment, text=True, stdout=subprocess.PIPE)
+
+    def ask(self, *words: str) -> object:
+        """What `semmap WORDS` answers in JSON, without showing it."""
+        command = [_BIN / "semmap", *words, "--format", "json"]
+        run = subprocess.run(command, env=self._environment, capture_output=True, text=True)
+        return json.loads(run.stdout) if run.returncode == 0 else None
+
+    def until(self, what: str, condition: Callable[[], object]) -> None:
+        """Wait until `condition()` holds, and note it when it does not come to hold."""
+        deadline = time.monotonic() + _PATIENCE_S
+        while time.monotonic() < deadline:
+            if condition():
+                print(f"({what})", flush=True)
+                return
+            time.sleep(0.2)
+        self.failures.append(f"waited {_PATIENCE_S:g} s in vain: {what}")
+
+    def agrees(self) -> bool:
+        """Do map and scene agree?"""
+        status = self.ask("status")
+        return isinstance(status, dict) and status["in_agreement"]
+
+    def pid(self, node: str) -> int:
+        """The process of a node."""
+        status = self.ask("status")
+        assert isinstance(status, dict)
+        return next(int(n["pid"]) for n in status["nodes"] if n["node"] == node)
+
+    def _show(self, words: list[str], status: int, holds: str) -> str:
+        print(f"$ {shlex.join(words)}", flush=True)
+        command = [_BIN / words[0], *words[1:]]
+        run = subprocess.run(command, env=self._environment, capture_output=True, text=True, cwd=HERE.parent)
+        output = run.stdout + run.stderr
+        lines = [line for line in output.splitlines() if line.strip()]
+        for line in lines[:_SHOWN_LINES]:
+            print(line[:160])
+        if len(lines) > _SHOWN_LINES:
+            print(f"... and {len(lines) - _SHOWN_LINES} more lines")
+        if run.returncode != status:
+            self.failures.append(f"{' '.join(words)}: status {run.returncode}, expected {status}")
+        if holds not in output:
+            self.failures.append(f"{' '.join(words)}: does not say '{holds}'")
+        return output
+
+
+def tour(t: Tour) -> None:
+    """Through all commands."""
+    t.tell("Who is there, and what is in the map")
+    t.do("status")
+    t.until("map and scene agree", t.agrees)
+    t.do("list", "--class", "Furniture", holds="chair1")
+    t.do("classes")
+
+    t.tell("Add a beer on the kitchen table; it is a drink, though nobody said so")
+    t.do(
+        "add", "Beer", "beer7", "--at", "8.0", "2.3", "0.76", "--ref", "cold beer", "--alt", "lager", "--wait"
+    )
+    t.do("get", "beer7", holds="cold beer")
+    t.do("list", "--class", "Drinkable", holds="beer7")
+    t.do("infer", "beer7", holds="beer7 type Drinkable")
+    t.do("explain", "beer7", "type", "Food", holds="beer7")
+
+    t.tell("A chair with all defaults, and a change of it: what is not named stays")
+    t.do("add", "Chair", "--default", "--wait", holds="body: present")
+    t.do("update", "beer7", "--ref", "warm beer", "--yaw", "0.5", holds="updated beer7")
+
+    t.tell("What cannot be is refused, with the reason, and nothing is changed")
+    t.do("add", "Chiar", status=2, holds="did you mean")
+    t.do("add", "Beer", "beer7", status=1, holds="taken")
+    t.do("add", "Beer", "my beer", status=2, holds="valid name")
+    t.do("add", "Beer", "--at", "nan", "0", "0", status=2)
+    t.do("load", "demo/nonsense.ttl", status=1, holds="beer7")
+    t.do("remove", "beer8", status=1, holds="no entity is named 'beer8'")
+
+    t.tell("Drag a chair: a hand takes the body, it comes to rest, the map follows")
+    before = t.ask("get", "chair1")
+    t.do("move", "chair1", "--at", "2.0", "1.2", "0.1")
+    t.until("the map followed", lambda: t.ask("get", "chair1")["pose"] != before["pose"])  # type: ignore[index]
+    t.do("get", "chair1", holds="by scene")
+
+    t.tell("Is it all consistent?")
+    t.do("check", holds="consistent")
+
+    t.tell("Load a scene in JSON and a HuRIC map, the file told apart by its content")
+    t.do("load", "demo/picnic.json", holds="loaded 3")
+    t.do("load", "demo/house.hrc", status=2, holds="Hair")
+    t.do("load", "demo/house.hrc", "--skip-unknown", holds="hair_1")
+    t.until("every body stands", t.agrees)
+
+    t.tell("A file of requests")
+    t.do("run", "demo/requests.txt", holds="orange7")
+
+    t.tell("The same from outside, with nothing but the zenoh command line")
+    t.zenoh("get", "-s", "semmap/cmd/get?name=beer7;format=json", "--decoder", "text", holds="warm beer")
+    t.zenoh("get", "-s", "semmap/cmd/list", "-v", '{"class": "Drinkable"}', "--encoder", "msgpack",
+            "--decoder", "msgpack", holds="beer7")  # fmt: skip
+    t.zenoh(
+        "put", "-k", "semmap/cmd/update", "-v", '{"name": "beer7", "ref": "my beer"}', "--encoder", "json"
+    )
+    t.until("the put was executed", lambda: t.ask("get", "beer7")["preferred_reference"] == "my beer")  # type: ignore[index]
+
+    t.tell("Watch changes as they happen")
+    watching = t.background("watch")
+    time.sleep(1.5)
+    t.do("add", "Apple", "apple9", "--at", "1.3", "1.3", "0")
+    t.do("remove", "apple9")
+    time.sleep(0.5)
+    watching.send_signal(signal.SIGINT)
+    seen = watching.communicate()[0]
+    print(seen, end="")
+    if seen.count("apple9") < 2:
+        t.failures.append("watch did not show the coming and going of apple9")
+
+    t.tell("The entity list as other systems read it")
+    t.do("list", "--class", "Beer", "--format", "lu4r", holds='"atom": "beer7"')
+    t.do("list", "--class", "Beer", "--format", "legacy", holds="type_full")
+
+    t.tell("Stop time, let it go on for a moment, let it run; put every body back; take a picture")
+    t.do("pause")
+    t.do("step", "--seconds", "0.5")
+    t.do("pause")
+    t.do("reset")
+    t.do("picture", str(PICTURE))
+
+    t.tell("Kill the simulator: it comes back, and every body with it")
+    os.kill(t.pid("sim_node"), signal.SIGKILL)
+    time.sleep(1.0)
+    t.until("map and scene agree again", t.agrees)
+
+    t.tell("Export; clear; load it back: the same map as before")
+    t.do("export", str(EXPORT), holds="wrote")
+    check_export(t)
+    t.until("every body stands", t.agrees)
+    t.do("status")
+
+
+def main() -> int:
+    """Run the tour."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    shutil.rmtree(DATA, ignore_errors=True)
+    for left in (EXPORT, RECORDING, PICTURE):
+        left.unlink(missing_ok=True)
+    words = ["up", "--data", str(DATA), "--listen", endpoint]
+    print(f"$ semmap {' '.join(words)}", flush=True)
+    system = subprocess.Popen([_BIN / "semmap", *words], stdout=subprocess.PIPE, text=True)
+    t = Tour(endpoint)
+    try:
+        assert system.stdout is not None
+        for line in system.stdout:
+            print(line, end="", flush=True)
+            if line.startswith("stop"):
+                break
+        else:
+            return system.wait() or 1
+        tour(t)
+        commits = int(t.ask("status")["commit"])  # type: ignore[index, call-overload]
+    finally:
+        t.tell("Stop")
+        system.send_signal(signal.SIGINT)
+        system.wait()
+    (recorded,) = sorted((DATA / "recordings").glob("*.rrd"))
+    shutil.copy(recorded, RECORDING)
+    t.tell("Check what is left")
+    check_recording(RECORDING, commits, t.failures)
+    check_picture(PICTURE, t.failures)
+    for failure in t.failures:
+        print(f"FAILED  {failure}")
+    print("demo: " + (f"{len(t.failures)} steps failed" if t.failures else "all went well"))
+    return 1 if t.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

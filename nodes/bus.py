@@ -1,0 +1,290 @@
+"""The only code that knows Zenoh: open a session, ask, serve, publish, follow.
+
+What was learnt by measuring (Zenoh 1.10.2): a session that has a Python callback keeps the process from
+exiting until it is closed, so sessions are context managers; a `get` that finds nobody comes back empty
+at once, so an empty answer is asked again until patience ends, and never read as an answer; a time-out
+comes as an error reply that is not ours.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import zenoh
+from zenoh import ext
+
+from schemas import codec, errors, keys
+from schemas.commands import Document
+
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+PATIENCE_S = 3.0
+TIMEOUT_S = 30.0
+
+_ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
+_JSON = "application/json"
+
+
+@dataclass(frozen=True)
+class Network:
+    """How a process joins the system. `namespace` prefixes every key (one robot of many)."""
+
+    connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
+    listen: tuple[str, ...] = ()
+    mode: str = "client"
+    namespace: str = ""
+
+    def as_config(self) -> zenoh.Config:
+        """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
+        node = self.mode != "client"
+        retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
+        values: dict[str, Any] = {
+            "mode": self.mode,
+            "connect/endpoints": list(self.connect),
+            "connect/timeout_ms": -1 if node else int(PATIENCE_S * 1000),
+            "connect/exit_on_failure": not node,
+            "connect/retry": retry,
+            "listen/endpoints": list(self.listen),
+            "scouting/multicast/enabled": False,
+            "transport/shared_memory/enabled": False,
+            "transport/link/tx/lease": 2000,
+        }
+        if self.namespace:
+            values["namespace"] = self.namespace
+        config = zenoh.Config()
+        for key, value in values.items():
+            config.insert_json5(key, json.dumps(value))
+        return config
+
+
+@contextmanager
+def open_session(network: Network) -> Iterator[zenoh.Session]:
+    """A session that is closed whatever happens. Raises NoAnswer or BadRequest (a malformed endpoint)."""
+    try:
+        session = zenoh.open(network.as_config())
+    except zenoh.ZError as error:
+        where = ", ".join((*network.listen, *network.connect))
+        if network.mode == "client" and "Unable to connect" in str(error):
+            raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
+        reason = str(error).split(" at /", 1)[0]
+        raise errors.BadRequest(f"cannot open a session at {where}: {reason}") from None
+    try:
+        yield session
+    finally:
+        session.close()  # type: ignore[no-untyped-call]
+
+
+def ask(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    *,
+    timeout_s: float = TIMEOUT_S,
+    patience_s: float = PATIENCE_S,
+) -> Any:
+    """Send `message` to `prefix/verb` and return the reply, of type `kind`.
+
+    Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
+    that does takes longer than `timeout_s`.
+    """
+    key = f"{prefix}/{verb}"
+    payload, encoding = codec.encode(message), codec.encoding_of(message)
+    deadline = time.monotonic() + patience_s
+    while True:
+        for reply in session.get(key, payload=payload, encoding=encoding, timeout=timeout_s):
+            return read_reply(key, reply, kind, timeout_s)
+        if time.monotonic() > deadline:
+            raise _nobody(key)
+        time.sleep(0.05)
+
+
+def ask_later(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    answer: Callable[[Any], None],
+    *,
+    timeout_s: float = TIMEOUT_S,
+) -> None:
+    """Like `ask`, without waiting: `answer` gets the reply or the error, once, on a thread of Zenoh's."""
+    key = f"{prefix}/{verb}"
+    answers: list[Any] = []
+
+    def on_reply(reply: zenoh.Reply) -> None:
+        try:
+            answers.append(read_reply(key, reply, kind, timeout_s))
+        except errors.SemmapError as error:
+            answers.append(error)
+
+    def on_end() -> None:
+        answer(answers[0] if answers else _nobody(key))
+
+    handler = zenoh.handlers.Callback(on_reply, on_end)
+    payload, encoding = codec.encode(message), codec.encoding_of(message)
+    session.get(key, handler, payload=payload, encoding=encoding, timeout=timeout_s)
+
+
+def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Any:
+    """The message of a reply; raises the error that it carries."""
+    if reply.ok is not None:
+        return codec.decode(reply.ok.payload.to_bytes(), kind)
+    assert reply.err is not None
+    if str(reply.err.encoding) != _ERROR_ENCODING:
+        raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
+    raise errors.from_message(codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage))
+
+
+def _nobody(key: str) -> errors.NoAnswer:
+    return errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
+
+
+@dataclass(frozen=True)
+class Request:
+    """A request as it came: from a query, or from a put that is answered on `semmap/ack`."""
+
+    verb: str
+    payload: bytes
+    parameters: dict[str, str] = field(default_factory=dict)
+    send: Callable[[Any, bool], None] = field(default=lambda message, ok: None)
+
+    def read(self, kind: Any) -> Any:
+        """The message, of type `kind`. Raises BadRequest."""
+        parameters = {k: v for k, v in self.parameters.items() if (k, v) != ("format", "json")}
+        if self.payload:
+            if parameters:
+                raise errors.BadRequest("give the fields in the message or as parameters, not both")
+            return codec.decode(self.payload, kind)
+        return codec.from_text(parameters, kind)
+
+    def reply(self, message: Any) -> None:
+        """Answer it."""
+        self.send(message, True)
+
+    def refuse(self, error: errors.SemmapError) -> None:
+        """Answer it with an error."""
+        self.send(errors.to_message(error), False)
+
+
+def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
+    verb = keys.last_chunk(str(query.key_expr))
+    payload = query.payload.to_bytes() if query.payload is not None else b""
+    parameters = dict(query.parameters)  # type: ignore[call-overload]
+    as_json = "format" in parameters or codec.looks_like_json(payload)
+    key = f"{prefix}/{verb}" if "*" not in verb else prefix
+
+    def send(message: Any, ok: bool) -> None:
+        if as_json and isinstance(message, Document):
+            content, encoding = message.content, message.media_type
+        elif as_json:
+            content, encoding = codec.encode_json(message), _JSON
+        else:
+            content, encoding = codec.encode(message), codec.encoding_of(message)
+        with query:
+            if ok:
+                query.reply(key, content, encoding=encoding)
+            else:
+                query.reply_err(content, encoding=encoding)
+
+    return Request(verb, payload, parameters, send)
+
+
+def serve(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
+    """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them."""
+    session.declare_queryable(f"{prefix}/*", lambda query: receive(_request_of_query(prefix, query)))
+
+
+def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
+    """Puts on `prefix` and `prefix/<verb>` go to `receive`; what is replied is published on `semmap/ack`."""
+    acks = publisher(session, keys.ACK)
+
+    def on_put(sample: zenoh.Sample) -> None:
+        key, payload = str(sample.key_expr), sample.payload.to_bytes()
+        said = _envelope(payload)
+        verb = keys.last_chunk(key) if key != prefix else str(said.get("verb", ""))
+        encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
+
+        def send(message: Any, ok: bool) -> None:
+            body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
+            acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
+
+        receive(Request(verb, payload, {}, send))
+
+    session.declare_subscriber(f"{prefix}/**", on_put)
+
+
+def _envelope(payload: bytes) -> dict[str, Any]:
+    """What can be read of a message before its type is known."""
+    try:
+        return dict(codec.decode(payload, dict[str, Any]))
+    except errors.BadRequest:
+        return {}
+
+
+def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None) -> Any:
+    """A publisher with the topic's quality of service."""
+    key = key or topic.key
+    if topic.qos == "newest":
+        return session.declare_publisher(key, congestion_control=zenoh.CongestionControl.DROP)
+    return ext.declare_advanced_publisher(
+        session,
+        key,
+        congestion_control=zenoh.CongestionControl.BLOCK,
+        cache=ext.CacheConfig(max_samples=1000),
+        sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5),
+        publisher_detection=True,
+    )
+
+
+def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, Any], None]) -> Any:
+    """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
+
+    A malformed one is dropped: whoever sent it is not one of ours.
+    """
+
+    def on_sample(sample: zenoh.Sample) -> None:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            receive(str(sample.key_expr), None)
+            return
+        try:
+            message = codec.decode(sample.payload.to_bytes(), topic.message)
+        except errors.BadRequest:
+            return
+        receive(str(sample.key_expr), message)
+
+    if topic.qos == "newest" or "*" in topic.key:
+        return session.declare_subscriber(topic.key, on_sample)
+    return ext.declare_advanced_subscriber(
+        session,
+        topic.key,
+        on_sample,
+        recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+    )
+
+
+def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:
+    """The nodes whose liveliness token is there."""
+    replies = session.liveliness().get(keys.live_key(node), timeout=2.0)
+    return {str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok is not None}
+
+
+def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
+    """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
+    try:
+        subscriber = session.declare_subscriber(key_expr)
+    except zenoh.ZError as error:
+        raise errors.BadRequest(
+            f"'{key_expr}' is no key expression: {str(error).split(' at /', 1)[0]}"
+        ) from None
+    for sample in subscriber:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            yield str(sample.key_expr), "gone"
+        else:
+            yield str(sample.key_expr), codec.as_json(sample.payload.to_bytes())

@@ -1,0 +1,28 @@
+"""Settings of the coordinator."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+from nodes.bus import Network
+
+Truth = Literal["map", "scene"]
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """How far a body must be from where the map says, to count as moved."""
+
+    distance_m: float = 0.05
+    angle_rad: float = math.radians(5.0)
+
+
+@dataclass(frozen=True)
+class CoordinatorConfig:
+    """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way."""
+
+    truth: Truth = "map"
+    thresholds: Thresholds = field(default_factory=Thresholds)
+    network: Network = field(default_factory=Network)

@@ -1,0 +1,285 @@
+"""The door: a command in, a transaction to the knowledge base, a reply out.
+
+It validates, resolves names, and leaves consistency to the knowledge base. It knows no Zenoh: what it
+asks of the knowledge base goes through the functions that it is given.
+"""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from msgspec import structs
+
+from nodes.coordinator import transactions
+from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files.content import kind_of
+from nodes.coordinator.files.described import Described, pose_of
+from nodes.coordinator.naming import free_name, free_position
+from schemas import errors
+from schemas.bridge import LoadDocument, Loaded, StarQuery
+from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
+from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.entities import ClassInfo, Entity, Pose
+from schemas.explanations import Triple
+
+READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
+    "scene": scene_file.read,
+    "huric": huric.read,
+}
+_ATTEMPTS = 5
+
+
+class Door:
+    """Executes the commands that change the map. Owned by the coordinator's thread."""
+
+    def __init__(self, ask: Callable[[str, Any], Any]) -> None:
+        """`ask(verb, message)` asks the knowledge base."""
+        self._ask = ask
+        self.classes = ClassNames()
+        self.entities: dict[str, Entity] = {}
+        self.seq = 0
+
+    def entity(self, name: str) -> Entity:
+        """The entity of that name. Raises UnknownName with the nearest ones."""
+        if name in self.entities:
+            return self.entities[name]
+        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
+
+    def begin(self, snapshot: Snapshot) -> None:
+        """Take over a snapshot, unless it is older than what is known."""
+        if snapshot.seq >= self.seq:
+            self.seq = snapshot.seq
+            self.entities = {entity.name: entity for entity in snapshot.entities}
+
+    def take(self, commit: Commit) -> bool:
+        """Show a commit in `entities`. False when one before it was missed, so that a snapshot is needed."""
+        if commit.seq <= self.seq:
+            return True
+        if commit.seq != self.seq + 1:
+            return False
+        self.seq = commit.seq
+        for gone in commit.removed:
+            self.entities.pop(gone.name, None)
+        self.entities.update({entity.name: entity for entity in commit.changed})
+        return True
+
+    def add(self, command: Add) -> Changed:
+        """Put an entity into the map."""
+        command = _with_id(command)
+        found = self.classes.spatial(command.class_)
+        name = command.name or free_name(found.name, self.entities)
+        if name in self.entities:
+            raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
+        at = command.at or free_position(self.entities.values(), command.size)
+        pose = pose_of(at, command.yaw, command.orientation)
+        ref = command.ref or (_label(found) if command.default else None)
+        commit = self._commit(lambda suffix: transactions.add(command, name, found, pose, ref, suffix))
+        return Changed(
+            commit=_seq(commit),
+            text=f"added {found.name} {name} at {_metres(pose)}",
+            names=(name,),
+            notes=self.classes.note(command.class_, found),
+        )
+
+    def update(self, command: Update) -> Changed:
+        """Change what is named; what is not named stays."""
+        command = _with_id(command)
+        entity = self.entity(command.name)
+        found = self.classes.spatial(command.class_) if command.class_ is not None else None
+        _require_authority(command, entity, whatever=found or command.ref or command.alt or command.size)
+
+        def build(suffix: str) -> Transaction:
+            (star,) = self._stars((entity.name,))
+            return transactions.update(
+                command, self.entity(entity.name), star, found, self._pose(command), suffix
+            )
+
+        commit = self._commit(build)
+        return Changed(
+            commit=_seq(commit),
+            text=f"updated {entity.name}" if commit else f"{entity.name} is like that already",
+            names=(entity.name,),
+            notes=self.classes.note(command.class_ or "", found) if found else (),
+        )
+
+    def remove(self, command: Remove) -> Changed:
+        """Take entities out: all of them, or, if one is unknown, none."""
+        if not command.names:
+            raise errors.BadRequest("name at least one entity to remove")
+        leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
+        for entity in leaving:
+            _require_authority(command, entity, whatever=True)
+        return self._remove(_with_id(command), f"remove {' '.join(e.name for e in leaving)}", leaving)
+
+    def clear(self, command: Clear) -> Changed:
+        """Take every entity out."""
+        return self._remove(_with_id(command), "clear", list(self.entities.values()))
+
+    def load(self, command: Load) -> Changed:
+        """Add what a file describes."""
+        command = _with_id(command)
+        if command.source == "operator":
+            command = structs.replace(command, source="file")
+        kind = kind_of(command.content, command.filename)
+        if kind == "abox":
+            return self._load_document(command)
+        described = READERS[kind](command.content, command.filename)
+        known, skipped, notes = self._sort_out(described, skip_unknown=command.skip_unknown)
+        taken = set() if command.replace else set(self.entities)
+        insert: dict[Triple, None] = {}
+        names: list[str] = []
+        for item, found in known:
+            name = item.name or free_name(found.name, taken)
+            if name in taken:
+                raise errors.NameTaken(
+                    f"the name '{name}' is taken already; --replace takes the present map out"
+                )
+            taken.add(name)
+            names.append(name)
+            insert.update(dict.fromkeys(transactions.describe(name, found, item)))
+        gone = self._stars(tuple(self.entities)) if command.replace and self.entities else ()
+        commit = self._commit(
+            lambda _: transactions.transaction(
+                command,
+                f"load {command.filename}",
+                retract=[t for star in gone for t in (*star.own, *star.incoming)],
+                insert=insert,
+            )
+        )
+        return _loaded(command, commit, tuple(names), skipped, notes)
+
+    def follow(self, name: str, pose: Pose) -> None:
+        """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
+        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
+
+        def build(suffix: str) -> Transaction:
+            (star,) = self._stars((name,))
+            return transactions.update(command, self.entity(name), star, None, pose, suffix)
+
+        self._commit(build)
+
+    def _load_document(self, command: Load) -> Changed:
+        document = LoadDocument(
+            id=command.id,
+            source=command.source,
+            agent=command.agent,
+            reason=command.reason or f"load {command.filename}",
+            content=command.content,
+            filename=command.filename,
+            replace=command.replace,
+            skip_unknown=command.skip_unknown,
+        )
+        loaded: Loaded = self._ask("load", document)
+        names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
+        return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
+
+    def _sort_out(
+        self, described: Iterable[Described], *, skip_unknown: bool
+    ) -> tuple[list[tuple[Described, ClassInfo]], tuple[str, ...], tuple[str, ...]]:
+        """Those of a known class, a word on each of the others, and how class names were read."""
+        known: list[tuple[Described, ClassInfo]] = []
+        unknown: dict[str, list[str]] = {}
+        notes: dict[str, None] = {}
+        for i, item in enumerate(described, start=1):
+            try:
+                found = self.classes.spatial(item.class_)
+            except errors.UnknownClass:
+                unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
+                continue
+            known.append((item, found))
+            notes.update(dict.fromkeys(self.classes.note(item.class_, found)))
+        if unknown and not skip_unknown:
+            raise errors.UnknownClass(errors.unknown_classes(unknown, self.classes.by_name))
+        skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
+        return known, skipped, tuple(notes)
+
+    def _remove(self, command: Command, reason: str, leaving: list[Entity]) -> Changed:
+        names = tuple(entity.name for entity in leaving)
+        if not names:
+            return Changed(commit=None, text="the map is empty already")
+        commit = self._commit(lambda _: transactions.remove(command, reason, self._stars(names)))
+        return Changed(commit=_seq(commit), text=f"removed {len(names)}: {_few(names)}", names=names)
+
+    def _pose(self, command: Update) -> Pose | None:
+        before = self.entity(command.name).pose
+        if command.at is None and command.yaw is None and command.orientation is None:
+            return None
+        at = command.at or (before.position_m if before is not None else None)
+        if at is None:
+            raise errors.BadRequest(f"{command.name} has no position yet; give one with --at")
+        return pose_of(at, command.yaw, command.orientation, before)
+
+    def _stars(self, names: tuple[str, ...]) -> tuple[Star, ...]:
+        stars: tuple[Star, ...] = self._ask("star", StarQuery(names=names))
+        return stars
+
+    def _commit(self, build: Callable[[str], Transaction]) -> Commit | None:
+        """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
+        suffix = ""
+        for attempt in range(_ATTEMPTS):
+            transaction = build(suffix)
+            try:
+                return self._taken(self._ask("commit", transaction))
+            except errors.PreconditionFailed:
+                if attempt == _ATTEMPTS - 1:
+                    raise
+            except errors.NameTaken:
+                if suffix:
+                    raise
+                suffix = f"_{self.seq + 1}"
+        raise AssertionError("the last attempt returns or raises")
+
+    def _taken(self, commit: Commit | None) -> Commit | None:
+        if commit is not None:
+            self.take(commit)
+        return commit
+
+
+def _with_id(command: Any) -> Any:
+    return command if command.id else structs.replace(command, id=_new_id())
+
+
+def _new_id() -> str:
+    return uuid.uuid4().hex
+
+
+def _require_authority(command: Command, entity: Entity, *, whatever: object) -> None:
+    """What an operator or a file said a thing is, the scene and perception do not change."""
+    if whatever and command.source == "perception" and entity.shape_provenance.source in ("operator", "file"):
+        raise errors.Refused(
+            f"{entity.name} was put in by an operator, so only an operator may change what it is"
+        )
+
+
+def _label(found: ClassInfo) -> str:
+    return found.labels.get("en") or found.labels.get("") or found.name.replace("_", " ").lower()
+
+
+def _metres(pose: Pose) -> str:
+    return "({:g}, {:g}, {:g})".format(*pose.position_m)
+
+
+def _few(names: tuple[str, ...]) -> str:
+    return ", ".join(names) if len(names) <= 10 else f"{', '.join(names[:9])} and {len(names) - 9} more"
+
+
+def _loaded(
+    command: Load,
+    commit: Commit | None,
+    names: tuple[str, ...],
+    skipped: tuple[str, ...],
+    notes: tuple[str, ...],
+) -> Changed:
+    text = f"loaded {len(names)} entities from {command.filename or 'the file'}"
+    if commit is None:
+        text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
+    if skipped:
+        text += f", left out {len(skipped)}"
+    return Changed(commit=_seq(commit), text=text, names=names, skipped=skipped, notes=notes)
+
+
+def _seq(commit: Commit | None) -> int | None:
+    return None if commit is None else commit.seq

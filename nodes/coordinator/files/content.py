@@ -1,0 +1,40 @@
+"""Telling files apart by what is in them."""
+
+from __future__ import annotations
+
+import json
+from typing import Literal
+
+from schemas.errors import BadFile
+
+Kind = Literal["abox", "scene", "huric"]
+
+_BLANK = b"\xef\xbb\xbf \t\r\n"
+
+
+def kind_of(content: bytes, filename: str) -> Kind:
+    """What kind of file this is. Raises BadFile for an empty one, or JSON that is neither."""
+    start = content.lstrip(_BLANK)
+    if not start:
+        raise BadFile(f"{filename or 'the file'} is empty")
+    if start[:1] == b"<" and b"<huricExample" in content[:4096]:
+        return "huric"
+    if start[:1] in (b"{", b"["):
+        return _kind_of_json(content, filename)
+    return "abox"
+
+
+def _kind_of_json(content: bytes, filename: str) -> Kind:
+    try:
+        document = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise BadFile(f"{filename or 'the file'} is no valid JSON: {error}") from None
+    if isinstance(document, dict) and "entities" in document:
+        return "scene"
+    tops = document if isinstance(document, list) else [document]
+    if all(isinstance(top, dict) and any(key.startswith("@") for key in top) for top in tops):
+        return "abox"
+    raise BadFile(
+        f'{filename or "the file"} is JSON, but neither a scene ({{"entities": [...]}})'
+        ' nor JSON-LD (with "@id" or "@graph")'
+    )

@@ -1,0 +1,51 @@
+"""Semantic maps of the Human Robot Interaction Corpus (`.hrc`): a house in which a command was spoken."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+from nodes.coordinator.files.described import Described
+from schemas import codec
+from schemas.errors import BadFile, BadRequest
+
+_ABILITIES = {"contain_ability": "containing", "support_ability": "supporting"}
+
+
+def read(content: bytes, filename: str) -> tuple[Described, ...]:
+    """The entities of the map in a HuRIC example. Raises BadFile naming the entity at fault."""
+    name = filename or "the file"
+    if b"<!ENTITY" in content or b"<!DOCTYPE" in content:
+        raise BadFile(f"{name} declares XML entities, which no HuRIC map needs")
+    try:
+        root = ET.fromstring(content)
+    except ET.ParseError as error:
+        raise BadFile(f"{name} is no valid XML: {error}") from None
+    elements = root.findall("./semanticMap/entities/entity")
+    if not elements:
+        raise BadFile(f"{name} has no semantic map with entities")
+    return tuple(_described(element, name) for element in elements)
+
+
+def _described(element: ET.Element, filename: str) -> Described:
+    values = {
+        attribute.get("name", ""): [(value.text or "").strip() for value in attribute.findall("value")]
+        for attribute in element.findall("./attributes/attribute")
+    }
+    references = [text for text in values.get("lexical_references", []) if text]
+    described: dict[str, object] = {
+        "class": element.get("type", ""),
+        "name": element.get("atom", ""),
+        "alt": references[1:],
+        "affords": [word for ability, word in _ABILITIES.items() if values.get(ability) == ["true"]],
+    }
+    if references:
+        described["ref"] = references[0]
+    place = element.find("coordinate")
+    try:
+        if place is not None:
+            described["at"] = [float(place.get(axis, "0")) for axis in "xyz"]
+            described["yaw"] = float(place.get("angle", "0"))
+        return codec.convert(described, Described)
+    except (BadRequest, ValueError) as error:
+        reason = str(error).removeprefix("malformed message: ")
+        raise BadFile(f"{filename}: entity '{element.get('atom')}': {reason}") from None

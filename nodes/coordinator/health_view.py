@@ -1,0 +1,43 @@
+"""What the heartbeats say of the nodes."""
+
+from __future__ import annotations
+
+import time
+
+from schemas.commands import NodeStatus
+from schemas.health import Health
+
+SILENT_AFTER_S = 3.0
+
+
+class HealthView:
+    """The last heartbeat of each node, and when it came."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, tuple[Health, float]] = {}
+
+    def take(self, health: Health) -> bool:
+        """Remember a heartbeat. True when the node is another process than before."""
+        before = self._last.get(health.node)
+        self._last[health.node] = (health, time.monotonic())
+        return before is not None and before[0].pid != health.pid
+
+    def alive(self, node: str) -> bool:
+        """Was the node heard of lately?"""
+        return node in self._last and time.monotonic() - self._last[node][1] < SILENT_AFTER_S
+
+    def nodes(self) -> tuple[NodeStatus, ...]:
+        """One row a node, by name."""
+        return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))
+
+    def _status(self, health: Health, at: float) -> NodeStatus:
+        age_s = time.monotonic() - at
+        return NodeStatus(
+            node=health.node,
+            state=health.state if age_s < SILENT_AFTER_S else "silent",
+            pid=health.pid,
+            uptime_s=round((time.time_ns() - health.started_ns) / 1e9, 1),
+            heartbeat_age_s=round(age_s, 2),
+            detail=health.detail,
+            last_error=health.last_error,
+        )

@@ -1,0 +1,205 @@
+"""The keeper at work: what `reconcile` wants is asked of the simulator and of the door.
+
+One batch of orders is under way at a time, and ends with a fresh snapshot; so the next look at the scene is
+never older than the orders before it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.door import Door
+from nodes.coordinator.keeper import Actions, latest, reconcile
+from nodes.coordinator.scene_view import SceneView
+from schemas import errors
+from schemas.commands import Add
+from schemas.entities import BodyState, Entity
+from schemas.scenes import (
+    BodiesMoved,
+    Body,
+    Delete,
+    Deleted,
+    MoveBodies,
+    Placement,
+    Poses,
+    Scene,
+    SceneQuery,
+    Spawn,
+    Spawned,
+)
+
+Ask = Callable[[str, Any, Any], Future[Any]]
+Step = tuple[str, Any, Any, Callable[[Any], None]]
+"""Verb, message, type of the reply, what to do with it."""
+
+
+class Keeping:
+    """Keeps the scene and the door's map the same. Owned by the coordinator's thread."""
+
+    def __init__(
+        self, config: CoordinatorConfig, door: Door, ask: Ask, report: Callable[[str], None]
+    ) -> None:
+        """`ask(verb, message, kind)` asks the simulator, without waiting."""
+        self._config = config
+        self._door = door
+        self._ask = ask
+        self._report = report
+        self.scene = SceneView()
+        self._failed: dict[str, tuple[int, str]] = {}
+        self._foreign: dict[str, str] = {}
+        self._steps: deque[Step] = deque()
+        self._busy = False
+
+    def on_poses(self, poses: Poses) -> None:
+        """New poses from the simulator."""
+        if self.scene.update(poses):
+            self.keep()
+        elif not self._busy:
+            self._start([])
+
+    def keep(self) -> None:
+        """Do what must be done, unless orders are under way already."""
+        if self._busy or not self.scene.known:
+            return
+        actions = self.wanted()
+        refused = [placement for placement in map(self._follow, actions.follow) if placement is not None]
+        for body in actions.adopt:
+            self._adopt(body)
+        steps = self._orders(actions, refused)
+        if steps:
+            self._start(steps)
+
+    def wanted(self) -> Actions:
+        """What map and scene still differ in."""
+        failed = {name: commit for name, (commit, _) in self._failed.items()}
+        return reconcile(
+            self._door.entities, self.scene.bodies, self._config.truth, self._config.thresholds, failed
+        )
+
+    def in_agreement(self) -> bool | None:
+        """Map and scene are the same, and nothing is under way; None when no simulator runs."""
+        if not self.scene.known:
+            return None
+        wanted = self.wanted()
+        foreign = [body for body in wanted.adopt if body.name not in self._foreign]
+        return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
+
+    def place_all(self) -> Future[Any]:
+        """Put every body back where the map says it stands."""
+        placements = tuple(
+            Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
+            for e in self._door.entities.values()
+            if e.pose is not None and e.name in self.scene.bodies
+        )
+        return self._ask("move", MoveBodies(placements=placements), BodiesMoved)
+
+    def body_state(self, entity: Entity) -> BodyState:
+        """What has become of the body of `entity`."""
+        body = self.scene.bodies.get(entity.name)
+        if entity.place:
+            return BodyState(status="none", detail="places have no bodies")
+        if not self.scene.known:
+            return BodyState(status="unknown", detail="no simulator runs", model=entity.model)
+        if body is not None:
+            detail = "overlaps something, so it does not collide until it is free" if body.ghost else ""
+            return BodyState(status="ghost" if body.ghost else "present", detail=detail, model=body.model)
+        if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
+            return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)
+        if self._config.truth == "scene":
+            return BodyState(status="missing", detail="the scene does not have it", model=entity.model)
+        detail = "" if entity.pose is not None else "it has no position"
+        return BodyState(status="pending", detail=detail, model=entity.model)
+
+    def problems(self) -> list[str]:
+        """What is amiss between map and scene, one sentence each."""
+        states = ((name, self.body_state(entity)) for name, entity in sorted(self._door.entities.items()))
+        amiss = [
+            f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
+            for name, state in states
+            if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
+        ]
+        return amiss + [f"{name}: {reason}" for name, reason in sorted(self._foreign.items())]
+
+    def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step]:
+        steps: list[Step] = []
+        if actions.delete:
+            steps.append(("delete", Delete(names=actions.delete), Deleted, lambda _: None))
+        if actions.spawn:
+            tried = {order.name: order.commit for order in actions.spawn}
+            steps.append(
+                ("spawn", Spawn(bodies=actions.spawn), Spawned, lambda reply: self._spawned(reply, tried))
+            )
+        placements = (*actions.place, *refused)
+        if placements:
+            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, lambda _: None))
+        return steps
+
+    def _start(self, steps: list[Step]) -> None:
+        self._busy = True
+        self._steps = deque([*steps, ("snapshot", SceneQuery(), Scene, self.scene.take)])
+        self._next()
+
+    def _next(self) -> None:
+        if not self._steps:
+            self._busy = False
+            return
+        verb, message, kind, handle = self._steps.popleft()
+
+        def on_done(future: Future[Any]) -> None:
+            error = future.exception()
+            if error is None:
+                handle(future.result())
+                self._next()
+            else:
+                self._busy = False
+                self._report(f"the simulator did not {verb}: {error}")
+
+        self._ask(verb, message, kind).add_done_callback(on_done)
+
+    def _spawned(self, reply: Spawned, tried: dict[str, int]) -> None:
+        for name in tried:
+            self._failed.pop(name, None)
+        for name, reason in reply.failed.items():
+            self._failed[name] = (tried[name], reason)
+            self._report(f"{name} has no body: {reason}")
+
+    def _follow(self, placement: Placement) -> Placement | None:
+        """Let the map follow a body; if the map refuses, the body has to go back."""
+        try:
+            self._door.follow(placement.name, placement.pose)
+        except errors.Refused as error:
+            self._report(f"{placement.name} goes back, because the map refused its new place: {error.text}")
+            entity = self._door.entities[placement.name]
+            if entity.pose is not None:
+                commit = entity.pose_provenance.commit
+                return Placement(name=placement.name, pose=entity.pose, commit=commit)
+        return None
+
+    def _adopt(self, body: Body) -> None:
+        """Let a body of the scene become an entity."""
+        if body.name in self._foreign or not body.resting:
+            return
+        try:
+            if body.class_ is None:
+                raise errors.UnknownClass(
+                    "nothing says its class: name it like chair_3 or add a text semmap:BODY"
+                )
+            x, y, z = body.pose.position_m
+            self._door.add(
+                Add(
+                    source="scene",
+                    reason=f"{body.name} stands in the scene",
+                    class_=body.class_,
+                    name=body.name,
+                    at=(x, y, z),
+                    orientation=body.pose.orientation_wxyz,
+                    size=body.size_m,
+                )
+            )
+        except (errors.Refused, errors.BadRequest) as error:
+            self._foreign[body.name] = f"a body of the scene that is no entity: {error.text}"
+            self._report(f"{body.name} did not become an entity: {error.text}")

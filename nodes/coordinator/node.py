@@ -1,0 +1,240 @@
+"""The coordinator on the wire: `semmap/cmd/<verb>` in, transactions and orders out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from msgspec import structs
+
+from nodes.coordinator import formats
+from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.door import Door
+from nodes.coordinator.health_view import HealthView
+from nodes.coordinator.keeping import Keeping
+from nodes.loop import Node, open_node, then
+from schemas import commands as c
+from schemas import errors, keys
+from schemas.bridge import BRIDGE, SnapshotQuery
+from schemas.commits import Commit, Snapshot
+from schemas.entities import Entity, Pose, orientation_from_yaw
+from schemas.health import Health
+from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
+
+_WAIT_S = 20.0
+_COMMIT_TIMEOUT_S = 120.0
+_CHECK_TIMEOUT_S = 660.0
+
+
+class Coordinator:
+    """Binds the door and the keeper to the wire."""
+
+    def __init__(self, node: Node, config: CoordinatorConfig) -> None:
+        self._node = node
+        self._config = config
+        self._door = Door(self._ask_kb)
+        self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
+        self._health = HealthView()
+        self._has_map = False
+        self._fetching = False
+        self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
+        door = self._door
+        functions: dict[type[c.Command], Callable[[Any], Any]] = {
+            c.Add: self._waitable(door.add),
+            c.Update: self._waitable(door.update),
+            c.Remove: door.remove,
+            c.Clear: door.clear,
+            c.Load: door.load,
+            c.List: self._list,
+            c.Get: self._get,
+            c.Check: lambda m: self._later("check", m, timeout_s=_CHECK_TIMEOUT_S),
+            c.Infer: lambda m: self._later("infer", m),
+            c.Explain: lambda m: self._later("explain", m),
+            c.Export: lambda m: self._later("export", m),
+            c.Classes: lambda m: self._later("classes", m),
+            c.Status: self._status,
+            c.Move: self._move,
+            c.Pause: lambda m: self._ask_sim("pause", m, c.Done),
+            c.StepOnce: lambda m: self._ask_sim("step", m, c.Done),
+            c.Reset: self._reset,
+            c.TakePicture: self._picture,
+        }
+        handlers = {
+            verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
+            for verb, kind in c.COMMANDS.items()
+        }
+        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.POSES, self._on_poses)
+        node.follow(keys.HEALTH, self._on_health)
+        node.serve(keys.CMD, handlers, puts=True)
+        node.every(0.2, self._tick)
+
+    # Following
+
+    def _on_commit(self, commit: Commit) -> None:
+        if self._has_map and not self._door.take(commit):
+            self._fetch_map()
+        self._keep()
+
+    def _on_poses(self, poses: Poses) -> None:
+        if self._has_map:
+            self._keeping.on_poses(poses)
+            self._answer_waiting()
+
+    def _on_health(self, health: Health) -> None:
+        if self._health.take(health) and health.node == "kb_node":
+            self._fetch_map()
+
+    def _tick(self) -> None:
+        if not self._has_map:
+            self._fetch_map()
+        if self._keeping.scene.known and not self._health.alive("sim_node"):
+            self._keeping.scene.forget()
+        self._keep()
+
+    def _keep(self) -> None:
+        if self._has_map:
+            self._keeping.keep()
+            self._answer_waiting()
+            self._node.describe(
+                f"{len(self._door.entities)} entities, {len(self._keeping.scene.bodies)} bodies"
+            )
+
+    def _fetch_map(self) -> None:
+        """Ask for the class table and a snapshot: the first time, and when a commit was missed."""
+        if self._fetching:
+            return
+        self._fetching = True
+        fetched: list[Any] = []
+
+        def on_classes(future: Future[Any]) -> None:
+            if future.exception() is None:
+                fetched.append(future.result())
+            self._later("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+
+        def on_snapshot(future: Future[Snapshot]) -> None:
+            self._fetching = False
+            if future.exception() is not None or not fetched:
+                return
+            self._door.classes = ClassNames(fetched[0])
+            self._door.begin(future.result())
+            self._has_map = True
+            self._node.ready(f"{len(self._door.entities)} entities")
+            self._keep()
+
+        self._later("classes", c.Classes()).add_done_callback(on_classes)
+
+    # Asking
+
+    def _list(self, query: c.List) -> Future[Any]:
+        if query.class_ is not None:
+            query = structs.replace(query, class_=self._door.classes.find(query.class_).name)
+        return then(self._later("list", query), lambda entities: self._formatted(entities, query.format))
+
+    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
+        if wanted == "lu4r":
+            return formats.lu4r(entities)
+        if wanted == "legacy":
+            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
+            return formats.legacy(entities, iris)
+        return tuple(map(self._with_body, entities))
+
+    def _get(self, query: c.Get) -> Future[Any]:
+        return then(self._later("get", query), self._with_body)
+
+    def _with_body(self, entity: Entity) -> Entity:
+        return structs.replace(entity, body=self._keeping.body_state(entity))
+
+    def _status(self, _: c.Status) -> c.SystemStatus:
+        return c.SystemStatus(
+            truth=self._config.truth,
+            commit=self._door.seq,
+            entities=len(self._door.entities),
+            bodies=len(self._keeping.scene.bodies),
+            in_agreement=self._keeping.in_agreement(),
+            nodes=self._health.nodes(),
+            problems=tuple(self._keeping.problems()),
+        )
+
+    # Running
+
+    def _move(self, command: c.Move) -> Future[Any]:
+        entity = self._door.entity(command.name)
+        body = self._keeping.scene.bodies.get(command.name)
+        if body is None:
+            state = self._keeping.body_state(entity)
+            raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
+        orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
+        pose = Pose(position_m=command.at, orientation_wxyz=orientation)
+        order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
+
+        def moved(reply: BodiesMoved) -> c.Moved:
+            if command.name in reply.failed:
+                raise errors.Refused(reply.failed[command.name])
+            x, y, z = command.at
+            return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
+
+        return then(self._ask_sim("move", order, BodiesMoved), moved)
+
+    def _reset(self, _: c.Reset) -> Future[Any]:
+        return then(
+            self._keeping.place_all(),
+            lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
+        )
+
+    def _picture(self, m: c.TakePicture) -> Future[Any]:
+        query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
+        return self._ask_sim("picture", query, Picture)
+
+    def _waitable(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], Any]:
+        """The reply to a command with `wait` is held back until the body stands there."""
+
+        def handle(command: Any) -> c.Changed | Future[c.Changed]:
+            changed = change(command)
+            if not command.wait:
+                return changed
+            future: Future[c.Changed] = Future()
+            self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
+            self._keep()
+            return future
+
+        return handle
+
+    def _answer_waiting(self) -> None:
+        still = []
+        for name, deadline, changed, future in self._waiting:
+            entity = self._door.entities.get(name)
+            state = self._keeping.body_state(entity) if entity is not None else None
+            if state is not None and state.status == "pending" and time.monotonic() < deadline:
+                still.append((name, deadline, changed, future))
+                continue
+            status = f"{state.status} {state.detail}".strip() if state is not None else "removed meanwhile"
+            future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
+        self._waiting = still
+
+    def _with_map(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        def guarded(command: Any) -> Any:
+            if not self._has_map:
+                raise errors.NoAnswer("the knowledge base does not answer yet; see: semmap status")
+            return handle(command)
+
+        return guarded
+
+    def _ask_kb(self, verb: str, message: Any) -> Any:
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_COMMIT_TIMEOUT_S)
+
+    def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+
+    def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
+        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_COMMIT_TIMEOUT_S)
+
+
+def run(config: CoordinatorConfig) -> None:
+    """Serve until stopped."""
+    with open_node("coordinator", config.network) as node:
+        Coordinator(node, config)
+        node.run()

@@ -1,0 +1,50 @@
+"""What the coordinator knows of the scene: the last snapshot, kept fresh by the poses."""
+
+from __future__ import annotations
+
+from msgspec import structs
+
+from schemas.entities import Pose
+from schemas.scenes import Body, Poses, Scene
+
+
+class SceneView:
+    """The bodies as last heard of. `known` is false until a first snapshot, and after the simulator ends."""
+
+    def __init__(self) -> None:
+        self.known = False
+        self.bodies: dict[str, Body] = {}
+        self._run = ""
+        self._version = -1
+        self._stamp_ns = 0
+
+    def take(self, scene: Scene) -> None:
+        """Take over a snapshot, unless it is older than what is known."""
+        if scene.run == self._run and scene.stamp_ns < self._stamp_ns:
+            return
+        self.known = True
+        self.bodies = {body.name: body for body in scene.bodies}
+        self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
+
+    def update(self, poses: Poses) -> bool:
+        """Take over new poses. False when bodies came or went, so that a snapshot is needed."""
+        if (poses.run, poses.version) != (self._run, self._version):
+            return poses.run == self._run and poses.stamp_ns <= self._stamp_ns
+        if poses.stamp_ns <= self._stamp_ns:
+            return True
+        self._stamp_ns = poses.stamp_ns
+        for i, name in enumerate(poses.names):
+            body = self.bodies.get(name)
+            resting = poses.resting[i]
+            if body is None or (resting and body.resting and body.commit == poses.commits[i]):
+                continue
+            x, y, z, *orientation = poses.poses[7 * i : 7 * i + 7]
+            pose = Pose(position_m=(x, y, z), orientation_wxyz=tuple(orientation))  # type: ignore[arg-type]
+            self.bodies[name] = structs.replace(body, pose=pose, resting=resting, commit=poses.commits[i])
+        return True
+
+    def forget(self) -> None:
+        """The simulator is gone."""
+        self.known = False
+        self.bodies = {}
+        self._run, self._version, self._stamp_ns = "", -1, 0

@@ -1,0 +1,248 @@
+"""The typed Python client.
+
+    from nodes.extern.client import connect
+
+    with connect() as semmap:
+        semmap.add("Beer", "beer1", at=(1.0, 2.0, 0.9), ref="beer")
+        for entity in semmap.list("Drinkable"):
+            print(entity.name, entity.pose)
+
+Every method sends one command and returns its reply. Positions are metres in the map frame, angles radians,
+quaternions `wxyz`. Errors are those of `schemas.errors`: Refused, BadRequest, NoAnswer.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal
+
+import zenoh
+
+from nodes import bus
+from schemas import codec, commands, errors, keys
+from schemas.commits import Commit
+from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
+from schemas.explanations import Explanation
+from schemas.scenes import Picture
+
+CONNECT_VARIABLE = "SEMMAP_CONNECT"
+_LONG_S = 700.0
+
+
+def endpoint() -> str:
+    """The system that is meant when nothing else is said: `SEMMAP_CONNECT`, or the usual one."""
+    return os.environ.get(CONNECT_VARIABLE) or bus.DEFAULT_ENDPOINT
+
+
+@contextlib.contextmanager
+def connect(
+    where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
+) -> Iterator[Client]:
+    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
+    network = bus.Network(connect=(where or endpoint(),), namespace=namespace)
+    with bus.open_session(network) as session:
+        yield Client(session, source=source, agent=agent)
+
+
+class Client:
+    """Commands over a session of yours; `source` and `agent` sign what it changes."""
+
+    def __init__(self, session: zenoh.Session, *, source: Source = "operator", agent: str = "") -> None:
+        self.session = session
+        self._signed: dict[str, Any] = {"source": source, "agent": agent}
+
+    def send(self, command: commands.Command, *, timeout_s: float = _LONG_S) -> Any:
+        """Send any command and return its reply."""
+        verb = str(command.__struct_config__.tag)
+        kind = commands.REPLIES[type(command)]
+        return bus.ask(self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s)
+
+    # To change
+
+    def add(
+        self,
+        class_: str,
+        name: str | None = None,
+        *,
+        at: Vector | None = None,
+        yaw: float | None = None,
+        orientation: Quaternion | None = None,
+        size: Size | None = None,
+        ref: str | None = None,
+        alt: tuple[str, ...] = (),
+        confidence: float | None = None,
+        default: bool = False,
+        wait: bool = False,
+        id: str = "",
+    ) -> commands.Changed:
+        """Put an entity into the map; see `schemas.commands.Add`."""
+        return self._change(
+            commands.Add,
+            class_=class_,
+            name=name,
+            at=at,
+            yaw=yaw,
+            orientation=orientation,
+            size=size,
+            ref=ref,
+            alt=alt,
+            confidence=confidence,
+            default=default,
+            wait=wait,
+            id=id,
+        )
+
+    def update(
+        self,
+        name: str,
+        *,
+        class_: str | None = None,
+        at: Vector | None = None,
+        yaw: float | None = None,
+        orientation: Quaternion | None = None,
+        size: Size | None = None,
+        ref: str | None = None,
+        alt: tuple[str, ...] | None = None,
+        confidence: float | None = None,
+        wait: bool = False,
+        id: str = "",
+    ) -> commands.Changed:
+        """Change what is given; what is not given stays."""
+        return self._change(
+            commands.Update,
+            name=name,
+            class_=class_,
+            at=at,
+            yaw=yaw,
+            orientation=orientation,
+            size=size,
+            ref=ref,
+            alt=alt,
+            confidence=confidence,
+            wait=wait,
+            id=id,
+        )
+
+    def remove(self, *names: str, id: str = "") -> commands.Changed:
+        """Take entities out of map and scene: all of them, or, if one is unknown, none."""
+        return self._change(commands.Remove, names=names, id=id)
+
+    def clear(self) -> commands.Changed:
+        """Take every entity out."""
+        return self._change(commands.Clear)
+
+    def load(
+        self, path: str | Path, *, replace: bool = False, skip_unknown: bool = False
+    ) -> commands.Changed:
+        """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile."""
+        content = read_file(Path(path))
+        return self._change(
+            commands.Load,
+            content=content,
+            filename=Path(path).name,
+            replace=replace,
+            skip_unknown=skip_unknown,
+        )
+
+    # To ask
+
+    def list(self, class_: str | None = None) -> tuple[Entity, ...]:
+        """The entities of a class, over inferred types; all of them without one."""
+        reply = self.send(commands.List(class_=class_))
+        entities: tuple[Entity, ...] = codec.convert(reply, tuple[Entity, ...])
+        return entities
+
+    def list_as(self, format: Literal["lu4r", "legacy"], class_: str | None = None) -> dict[str, Any]:
+        """The entity list in the format of another system."""
+        document: dict[str, Any] = self.send(commands.List(class_=class_, format=format))
+        return document
+
+    def get(self, name: str) -> Entity:
+        """One entity. Raises UnknownName."""
+        entity: Entity = self.send(commands.Get(name=name))
+        return entity
+
+    def check(self, engine: Literal["semmap", "owlrl"] = "semmap") -> commands.Checked:
+        """Is the map consistent, and if not, why?"""
+        checked: commands.Checked = self.send(commands.Check(engine=engine))
+        return checked
+
+    def infer(self, name: str | None = None) -> commands.Inferred:
+        """What follows that was not said."""
+        inferred: commands.Inferred = self.send(commands.Infer(name=name))
+        return inferred
+
+    def explain(self, name: str, predicate: str, value: str) -> Explanation:
+        """Why a triple holds. Raises Refused when it does not."""
+        question = commands.Explain(name=name, predicate=predicate, value=value)
+        explanation: Explanation = self.send(question)
+        return explanation
+
+    def export(self, format: commands.RdfFormat = "rdfxml", *, inferred: bool = False) -> commands.Document:
+        """The map as a document, checked first."""
+        document: commands.Document = self.send(commands.Export(format=format, inferred=inferred))
+        return document
+
+    def classes(self) -> tuple[ClassInfo, ...]:
+        """The classes of the TBox, with the number of entities of each."""
+        classes: tuple[ClassInfo, ...] = self.send(commands.Classes())
+        return classes
+
+    def status(self) -> commands.SystemStatus:
+        """The nodes and the map."""
+        status: commands.SystemStatus = self.send(commands.Status())
+        return status
+
+    # To run
+
+    def move(self, name: str, at: Vector, yaw: float | None = None) -> commands.Moved:
+        """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
+        moved: commands.Moved = self.send(commands.Move(name=name, at=at, yaw=yaw))
+        return moved
+
+    def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
+        """A picture of the scene as PNG, from one of the world's cameras or from above."""
+        command = commands.TakePicture(camera=camera, width=width, height=height)
+        picture: Picture = self.send(command)
+        return picture.png
+
+    # To watch
+
+    @contextlib.contextmanager
+    def commits(self) -> Iterator[Iterator[Commit]]:
+        """`with client.commits() as commits: for commit in commits: ...`: every commit from now on."""
+        events: queue.SimpleQueue[Commit] = queue.SimpleQueue()
+        subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
+        try:
+            yield iter(events.get, None)
+        finally:
+            subscriber.undeclare()
+
+    def _change(self, kind: type[commands.Command], **fields: Any) -> commands.Changed:
+        command = codec.convert({**_given(kind, fields), **self._signed}, kind)
+        changed: commands.Changed = self.send(command)
+        return changed
+
+
+def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:
+    """The fields that were given, by their names on the wire, where `convert` checks them."""
+    given = {name: value for name, value in fields.items() if value is not None}
+    if "class_" in given:
+        given["class"] = given.pop("class_")
+    return given
+
+
+def read_file(path: Path) -> bytes:
+    """The content of a file. Raises BadFile in one sentence when there is none to be read."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise errors.BadFile(f"there is no file {path}") from None
+    except IsADirectoryError:
+        raise errors.BadFile(f"{path} is a directory, not a file") from None
+    except OSError as error:
+        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None

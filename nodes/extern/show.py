@@ -1,0 +1,172 @@
+"""Replies as a person reads them in a terminal."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+from rich.tree import Tree
+
+from schemas.commands import Changed, Inferred, SystemStatus
+from schemas.commits import Commit
+from schemas.entities import ClassInfo, Entity, Pose
+from schemas.explanations import Explanation
+
+_NARROWEST = 80
+
+
+def console() -> Console:
+    """A console that does not squeeze tables when its output goes to a file or a pipe."""
+    out = Console(highlight=False, soft_wrap=True)
+    return out if out.is_terminal else Console(highlight=False, soft_wrap=True, width=200)
+
+
+def entity_table(entities: Iterable[Entity]) -> Table:
+    """One row an entity."""
+    table = _table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body")
+    for column in table.columns[2:6]:
+        column.justify = "right"
+    for e in entities:
+        table.add_row(e.name, e.class_, *_pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
+    return table
+
+
+def entity_card(e: Entity) -> Table:
+    """All about one entity."""
+    card = Table(box=None, show_header=False, pad_edge=False)
+    card.add_column(style="dim", no_wrap=True)
+    card.add_column()
+    pose = "none" if e.pose is None else "({}, {}, {}) m, yaw {}°".format(*_pose_cells(e.pose))
+    body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
+    rows = {
+        "name": e.name,
+        "iri": e.iri,
+        "class": e.class_,
+        "types": ", ".join(e.types),
+        "pose": pose,
+        "size": _size(e) or "the model's own",
+        "reference": e.preferred_reference or "none",
+        "also called": ", ".join(e.alternative_references) or "-",
+        "body": body,
+        "model": e.body.model if e.body is not None and e.body.model else e.model or "a box",
+        "last change": f"commit {e.provenance.commit} by {e.provenance.source}: {e.provenance.reason}",
+    }
+    for key, value in rows.items():
+        card.add_row(key, Text(value))
+    return card
+
+
+def class_tree(classes: Iterable[ClassInfo]) -> Tree:
+    """The class tree with the number of entities of each class, by inference."""
+    by_name = {c.name: c for c in classes}
+    children: dict[str, list[str]] = {}
+    for c in by_name.values():
+        for parent in c.parents or ("",):
+            children.setdefault(parent, []).append(c.name)
+    root = Tree("[bold]classes[/] [dim](entities by inference; those that say so themselves)[/]")
+    _grow(root, "", children, by_name)
+    return root
+
+
+def status_table(status: SystemStatus) -> Table:
+    """One row a node."""
+    table = _table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
+    for column in table.columns[5:]:
+        column.no_wrap, column.overflow = False, "fold"
+    for n in status.nodes:
+        colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
+        table.add_row(
+            n.node,
+            f"[{colour}]{n.state}[/]",
+            str(n.pid),
+            _duration(n.uptime_s),
+            f"{n.heartbeat_age_s:.1f} s ago",
+            n.detail,
+            n.last_error,
+        )
+    return table
+
+
+def status_line(status: SystemStatus) -> str:
+    """The map and the scene in one line."""
+    verdicts = {
+        True: "map and scene agree",
+        False: "map and scene do not agree (yet)",
+        None: "no simulator runs",
+    }
+    agree = verdicts[status.in_agreement]
+    counts = f"{status.entities} entities, {status.bodies} bodies, commit {status.commit}"
+    return f"{counts}; truth: {status.truth}; {agree}"
+
+
+def changed(reply: Changed) -> Iterable[str]:
+    """A change in words, with what was left out and how it was read."""
+    yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
+    yield from (f"  left out: {skipped}" for skipped in reply.skipped)
+    yield from (f"  note: {note}" for note in reply.notes)
+
+
+def inferred(reply: Inferred) -> Iterable[str]:
+    """What follows, one line a triple."""
+    return reply.text or ("nothing follows that was not said",)
+
+
+def explanation(e: Explanation) -> Iterable[str]:
+    """The sentence, and the asserted triples that it rests on."""
+    yield e.text
+
+
+def commit_line(commit: Commit) -> str:
+    """A commit in one line."""
+    stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
+    counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
+    names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
+    who = f"{commit.source}{f'/{commit.agent}' if commit.agent else ''}"
+    shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+    return f"{stamp}  commit {commit.seq}  {who}: {commit.reason}  [{counts}]  {shown}"
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(column, no_wrap=True)
+    return table
+
+
+def _pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
+    if pose is None:
+        return ("-", "-", "-", "-")
+    x, y, z = (_plain(value, 3) for value in pose.position_m)
+    return (x, y, z, _plain(math.degrees(pose.yaw_rad), 0))
+
+
+def _plain(value: float, digits: int) -> str:
+    """Rounded, and never minus zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def _size(e: Entity) -> str:
+    return "" if e.size_m is None else " x ".join(f"{extent:.3g}" for extent in e.size_m)
+
+
+def _body(e: Entity) -> str:
+    return "" if e.body is None else e.body.status
+
+
+def _duration(seconds: float) -> str:
+    minutes, s = divmod(int(seconds), 60)
+    hours, m = divmod(minutes, 60)
+    return f"{hours} h {m} min" if hours else f"{m} min {s} s" if m else f"{s} s"
+
+
+def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict[str, ClassInfo]) -> None:
+    for name in sorted(children.get(parent, [])):
+        c = by_name[name]
+        count = f"  [bold green]{c.inferred}[/]" if c.inferred else ""
+        own = f" [dim]({c.asserted})[/]" if c.asserted and c.asserted != c.inferred else ""
+        _grow(tree.add(f"{name}{count}{own}"), name, children, by_name)

@@ -1,0 +1,142 @@
+"""The verbs that start and stop a system: `up`, `down`, `node`."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from nodes import bus
+from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
+from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
+from schemas import codec, errors
+
+_path = click.Path(path_type=Path)
+
+
+def settings_options(function: Callable[..., None]) -> Callable[..., None]:
+    """The options of `up` and `node`; the function gets them as Settings."""
+
+    @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
+    @click.option("--abox", help="ABox file, or none for an empty map. Default: the shipped flat.")
+    @click.option("--world", help="MJCF file or JSON scene, or empty for a bare floor. Default: the flat's.")
+    @click.option("--data", type=_path, default=None, help="Folder of the journal, the logs, the recordings.")
+    @click.option("--fresh", is_flag=True, help="Begin anew; the old data is kept aside.")
+    @click.option(
+        "--truth",
+        type=click.Choice(["map", "scene"]),
+        default="map",
+        show_default=True,
+        help="Who owns existence.",
+    )
+    @click.option(
+        "--threshold",
+        type=float,
+        default=0.05,
+        show_default=True,
+        metavar="M",
+        help="A body that is off by more has moved.",
+    )
+    @click.option("--angle-threshold", type=float, default=5.0, show_default=True, metavar="DEG")
+    @click.option(
+        "--listen",
+        default=bus.DEFAULT_ENDPOINT,
+        show_default=True,
+        metavar="EP",
+        help="Zenoh endpoint that the system listens on.",
+    )
+    @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option("--no-sim", is_flag=True, help="Without the simulator.")
+    @click.option("--no-record", is_flag=True, help="Without the recorder.")
+    @functools.wraps(function)
+    def with_settings(**options: Any) -> None:
+        names = {name: options.pop(name) for name in _NAMES}
+        function(settings=_settings(**names), **options)
+
+    return with_settings
+
+
+_NAMES = (
+    "tbox", "abox", "world", "data", "fresh", "truth", "threshold", "angle_threshold",
+    "listen", "connect", "no_sim", "no_record",
+)  # fmt: skip
+
+
+@click.command()
+@settings_options
+def up(settings: Settings) -> None:
+    """Start the whole system in the foreground; Ctrl-C ends it."""
+    from nodes.supervisor.up import up as run_up
+
+    run_up(settings, say=lambda line: click.echo(line))
+
+
+@click.command()
+@click.option("--data", type=_path, default=None, help="Folder that the system was started on.")
+def down(data: Path | None) -> None:
+    """Stop a running system."""
+    from nodes.supervisor.control import Supervisor
+
+    Supervisor((data or default_data()).resolve()).shut_down()
+    click.echo("stopping")
+
+
+@click.command()
+@click.argument("name")
+@settings_options
+def node(name: str, settings: Settings) -> None:
+    """Run one node by itself, in the foreground."""
+    from nodes.supervisor.launch import run_node, seed
+
+    if name == "kb_node":
+        seed(settings)
+    run_node(name, settings)
+
+
+def _settings(
+    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str,
+    threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
+    no_sim: bool, no_record: bool,
+) -> Settings:  # fmt: skip
+    """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
+    folder = (data or default_data()).resolve()
+    if world is None:
+        before = None if fresh or abox is not None else _world_before(folder)
+        world = before or str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+    world = str(EMPTY_WORLD) if world == "empty" else world
+    abox = str(FLAT_TTL) if abox is None else abox
+    values = {
+        "data": str(folder),
+        "tbox": _existing(tbox),
+        "abox": None if abox == "none" else _existing(Path(abox)),
+        "world": _existing(Path(world)),
+        "truth": truth,
+        "threshold_m": threshold,
+        "angle_threshold_deg": angle_threshold,
+        "listen": listen,
+        "connect": connect,
+        "sim": not no_sim,
+        "record": not no_record,
+        "fresh": fresh,
+    }
+    return codec.convert(values, Settings)
+
+
+def _world_before(data: Path) -> str | None:
+    """The world that the map in `data` was last run with, if both are there."""
+    try:
+        settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
+    except (OSError, errors.BadRequest):
+        return None
+    return settings.world if (data / JOURNAL).exists() and Path(settings.world).exists() else None
+
+
+def _existing(path: Path) -> str:
+    if path.is_dir():
+        raise errors.BadFile(f"{path} is a directory, not a file")
+    if not path.exists():
+        raise errors.BadFile(f"there is no file {path}")
+    return str(path.resolve())

@@ -1,0 +1,116 @@
+"""What the knowledge base answers to the questions of `semmap/bridge`: pure functions of the map."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+from nodes.kb_node import rdf_files
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.second_opinion import owlrl_faults
+from nodes.kb_node.semantic_map import SemanticMap
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Checked, Document, Explain, Export, Inferred
+from schemas.entities import Entity
+from schemas.explanations import Explanation, Term, Triple
+
+
+def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
+    """The entities of a class, given by its exact name. Raises UnknownClass."""
+    return tuple(semantic_map.entities(_class_iri(semantic_map, class_name) if class_name else None))
+
+
+def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
+    """What follows that was not said, without what is true of everything or of nameless classes."""
+    triples = tuple(
+        (s, p, o)
+        for s, p, o in semantic_map.inferred(name)
+        if o != v.OWL_THING and p != v.OWL_SAME_AS and not (p == v.RDF_TYPE and o.startswith("_:"))
+    )
+    return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
+
+
+def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
+    """Why a triple holds. Raises UnknownName, BadRequest for an unknown word, Refused if it does not hold."""
+    subject = v.iri(semantic_map.entity(question.name).iri)
+    predicate = _predicate(semantic_map, question.predicate)
+    for value in _values(semantic_map, subject, predicate, question.value):
+        explanation = semantic_map.reasoner.explain((subject, predicate, value))
+        if explanation is not None:
+            return explanation
+    raise errors.Refused(f"it does not hold that {question.name} {question.predicate} {question.value}")
+
+
+def export(semantic_map: SemanticMap, question: Export) -> Document:
+    """The ABox as a document, with `inferred` also what follows from it."""
+    triples = set(semantic_map.abox())
+    if question.inferred:
+        triples |= {t for t in semantic_map.reasoner.inferred(None, None, None) if not t[0].startswith('"')}
+    return Document(
+        content=rdf_files.serialise(triples, question.format),
+        media_type=rdf_files.MEDIA_TYPES[question.format],
+        triples=len(triples),
+        seq=semantic_map.seq,
+    )
+
+
+def check(triples: Iterable[Triple], engine: str) -> Checked:
+    """Are the triples (TBox and ABox) consistent? Worked out from nothing, so that it is a check."""
+    triples = list(triples)
+    start = time.perf_counter()
+    explanation = None
+    if engine == "owlrl":
+        faults = owlrl_faults(triples)
+        reason = "; ".join(faults)
+    else:
+        try:
+            Reasoner(triples)
+        except Inconsistent as error:
+            explanation = error.explanation
+        reason = explanation.text if explanation else ""
+    return Checked(
+        consistent=not reason,
+        engine=engine,
+        triples=len(triples),
+        elapsed_s=round(time.perf_counter() - start, 4),
+        text=f"inconsistent: {reason}" if reason else "consistent",
+        explanation=explanation,
+    )
+
+
+def _class_iri(semantic_map: SemanticMap, name: str) -> Term:
+    iris = semantic_map.classes.iris
+    if name not in iris:
+        raise errors.UnknownClass(f"unknown class '{name}'{errors.did_you_mean(name, iris)}")
+    return iris[name]
+
+
+def _predicate(semantic_map: SemanticMap, word: str) -> Term:
+    if word in ("a", "type"):
+        return v.RDF_TYPE
+    if word.startswith("<"):
+        return word
+    kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
+    names = {
+        v.local_name(p): p
+        for kind in kinds
+        for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
+    }
+    if word not in names:
+        raise errors.BadRequest(f"unknown property '{word}'{errors.did_you_mean(word, names)}")
+    return names[word]
+
+
+def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
+    """The terms that `word` may stand for as the object of this subject and predicate."""
+    if word.startswith(("<", '"', "_:")):
+        return [word]
+    if predicate == v.RDF_TYPE:
+        return [_class_iri(semantic_map, word)]
+    held = (
+        *semantic_map.reasoner.asserted(subject, predicate),
+        *semantic_map.reasoner.inferred(subject, predicate),
+    )
+    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.local_name(o)) == word]
+    return named or [v.entity_iri(word)]

@@ -1,0 +1,91 @@
+"""The class table: what commands need to know of the TBox, worked out once when it is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+from nodes.kb_node.reasoner import Reasoner
+from ontology import vocabulary as v
+from schemas.entities import ClassInfo
+from schemas.explanations import Term
+
+_BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
+
+
+class ClassTable:
+    """The named classes of a TBox: which are of things in space, which are places, what they look like."""
+
+    def __init__(self, reasoner: Reasoner) -> None:
+        self._reasoner = reasoner
+        self.names: dict[Term, str] = {
+            c: v.local_name(c)
+            for c, _, _ in sorted(reasoner.asserted(None, v.RDF_TYPE, v.OWL_CLASS))
+            if c.startswith("<") and c not in _BUILT_IN
+        }
+        self.spatial: frozenset[Term] = frozenset().union(*map(self._named_below, self._spatial_roots()))
+        self.places: frozenset[Term] = self._named_below(v.LOCATION)
+        self.iris = {name: c for c, name in self.names.items()}
+        self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
+        self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
+        self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
+        self.fixed: frozenset[Term] = frozenset(c for c in self.names if self._nearest(c, v.FIXED) == "true")
+
+    def special_first(self, types: Iterable[Term]) -> list[Term]:
+        """Those of `types` that are named classes of the TBox, the most special one first."""
+        return sorted((t for t in types if t in self.names), key=lambda c: (-self._depth[c], c))
+
+    @cached_property
+    def rows(self) -> list[ClassInfo]:
+        """One row a class, by name, without counts."""
+        return sorted(map(self._row, self.names), key=lambda row: row.name)
+
+    def _row(self, c: Term) -> ClassInfo:
+        labels = {
+            v.language_of(o) or "": v.lexical(o)
+            for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
+        }
+        comments = sorted(o for _, _, o in self._reasoner.asserted(c, v.RDFS_COMMENT, None))
+        return ClassInfo(
+            name=self.names[c],
+            iri=v.bare(c),
+            parents=tuple(self.names[p] for p in self._parents[c]),
+            ancestors=tuple(self.names[a] for a in self.special_first(self._reasoner.superclasses(c) - {c})),
+            labels=labels,
+            comment=v.lexical(comments[0]) if comments else "",
+            spatial=c in self.spatial,
+            place=c in self.places,
+            fixed=c in self.fixed,
+            model=self.models[c],
+        )
+
+    def _spatial_roots(self) -> list[Term]:
+        """The domain of hasPosition; if there is none, Physical_Thing, or else whatever is no Property."""
+        said = [
+            o for _, _, o in self._reasoner.asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None) if o in self.names
+        ]
+        if said:
+            return said
+        if v.PHYSICAL_THING in self.names:
+            return [v.PHYSICAL_THING]
+        properties = self._named_below(v.PROPERTY)
+        return [c for c in self.names if c not in properties]
+
+    def _named_below(self, root: Term) -> frozenset[Term]:
+        return frozenset(c for c in self._reasoner.subclasses(root) if c in self.names)
+
+    def _named_parents(self, c: Term) -> list[Term]:
+        return sorted(
+            o for _, _, o in self._reasoner.asserted(c, v.RDFS_SUB_CLASS_OF, None) if o in self.names
+        )
+
+    def _nearest(self, c: Term, annotation: Term) -> str:
+        """The value of `annotation` at `c` or its nearest ancestor, breadth first; "" when there is none."""
+        seen, level = set[Term](), [c]
+        while level:
+            for ancestor in level:
+                for _, _, value in self._reasoner.asserted(ancestor, annotation, None):
+                    return v.lexical(value)
+            seen.update(level)
+            level = [p for a in level for p in self._parents.get(a, ()) if p not in seen]
+        return ""

@@ -1,0 +1,133 @@
+"""The knowledge base on the wire: `semmap/bridge/<verb>` in, commits and entities out."""
+
+from __future__ import annotations
+
+import uuid
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from nodes import bus
+from nodes.kb_node import answers, documents, rdf_files
+from nodes.kb_node.config import KbConfig
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.loop import Node, open_node
+from schemas import codec, errors, keys
+from schemas.bridge import BRIDGE, LoadDocument, Loaded, SnapshotQuery, StarQuery
+from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
+from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.entities import ClassInfo, Entity
+from schemas.explanations import Explanation
+
+
+class KnowledgeBase:
+    """Binds the map to the wire."""
+
+    def __init__(self, node: Node, journal: Journal) -> None:
+        self._node = node
+        tbox = rdf_files.parse(journal.tbox(), f"the TBox in {journal.path}")
+        self.map = SemanticMap(journal, tbox, progress=node.beat)
+        self._commits = bus.publisher(node.session, keys.COMMIT)
+        self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        functions = {
+            name.removeprefix("on_"): getattr(self, name) for name in dir(self) if name.startswith("on_")
+        }
+        node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        node.ready(self._summary())
+
+    def on_commit(self, transaction: Transaction) -> Commit | None:
+        """One transaction: journal (durable), publish, reply."""
+        before = self.map.seq
+        commit = self.map.commit(transaction)
+        if commit is not None and commit.seq > before:
+            self._publish(commit)
+        return commit
+
+    def on_load(self, load: LoadDocument) -> Loaded:
+        """An RDF document in one commit."""
+        label = uuid.uuid4().hex[:8]
+        triples = rdf_files.parse(load.content, load.filename, label_prefix=label)
+        kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
+        transaction = Transaction(
+            id=load.id,
+            source=load.source,
+            agent=load.agent,
+            reason=load.reason,
+            retract=tuple(self.map.abox()) if load.replace else (),
+            insert=tuple(t for t in kept if t not in self.map.tbox),
+        )
+        return Loaded(commit=self.on_commit(transaction), skipped=tuple(skipped))
+
+    def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
+        """Every entity, as of the last commit."""
+        return self.map.snapshot()
+
+    def on_star(self, query: StarQuery) -> tuple[Star, ...]:
+        """The triples about some entities."""
+        return self.map.stars(query.names)
+
+    def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
+        """The class table."""
+        return tuple(self.map.class_table())
+
+    def on_list(self, query: List) -> tuple[Entity, ...]:
+        """The entities of a class."""
+        return answers.entities_of(self.map, query.class_)
+
+    def on_get(self, query: Get) -> Entity:
+        """One entity."""
+        return self.map.entity(query.name)
+
+    def on_infer(self, query: Infer) -> Inferred:
+        """What follows."""
+        return answers.infer(self.map, query.name)
+
+    def on_explain(self, query: Explain) -> Explanation:
+        """Why it follows."""
+        return answers.explain(self.map, query)
+
+    def on_export(self, query: Export) -> Document:
+        """The map as a document; checked first."""
+        checked = answers.check([*self.map.tbox, *self.map.abox()], "semmap")
+        if not checked.consistent:
+            raise errors.Inconsistent(checked.text, explanation=checked.explanation)
+        return answers.export(self.map, query)
+
+    def on_check(self, query: Check) -> Future[Checked]:
+        """Consistency, worked out beside the node's own work."""
+        return self._aside.submit(answers.check, [*self.map.tbox, *self.map.abox()], query.engine)
+
+    def close(self) -> None:
+        """Leave a checkpoint for a quick start."""
+        self._aside.shutdown(wait=False, cancel_futures=True)
+        self.map.checkpoint()
+
+    def _publish(self, commit: Commit) -> None:
+        self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
+        for entity in commit.changed:
+            payload = codec.encode(entity)
+            for class_name in entity.types:
+                self._node.session.put(
+                    keys.entity_key(class_name, entity.name), payload, encoding=codec.encoding_of(entity)
+                )
+        for gone in commit.removed:
+            for class_name in gone.types:
+                self._node.session.delete(keys.entity_key(class_name, gone.name))
+        self._node.describe(self._summary())
+
+    def _summary(self) -> str:
+        return f"{len(self.map)} entities, {len(self.map.reasoner)} triples, commit {self.map.seq}"
+
+
+def run(config: KbConfig) -> None:
+    """Serve until stopped."""
+    path = config.data / FILENAME
+    if not path.exists():
+        raise errors.BadFile(f"there is no map in {config.data}; seed one with --tbox and --abox")
+    with open_node("kb_node", config.network) as node:
+        journal = Journal(path)
+        try:
+            knowledge_base = KnowledgeBase(node, journal)
+            node.run()
+            knowledge_base.close()
+        finally:
+            journal.close()

@@ -1,0 +1,210 @@
+"""What every `node.py` is made of: one thread that owns the node's state, and a queue that feeds it.
+
+Callbacks of Zenoh's threads only queue. Whatever fails in a handler is caught here and nowhere else:
+it is logged, answered, shown in the heartbeat, and the node lives on.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import queue
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
+from contextlib import contextmanager
+from typing import Any, Literal
+
+import zenoh
+
+from nodes import bus
+from schemas import codec, errors, keys
+from schemas.health import Health
+
+log = logging.getLogger(__name__)
+
+Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
+"""Verb to (type of the message, function of the message). A function may return a Future."""
+
+HEARTBEAT_S = 1.0
+
+
+class Node:
+    """A running node: bind handlers, then `run`. Use `open_node`."""
+
+    def __init__(self, name: str, session: zenoh.Session) -> None:
+        self.name = name
+        self.session = session
+        self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._timers: list[tuple[float, Callable[[], None]]] = []
+        self._stopping = False
+        self._started_ns = time.time_ns()
+        self._state: Literal["starting", "ready"] = "starting"
+        self._detail = ""
+        self._last_error = ""
+        self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
+        self._beat_due = 0.0
+
+    def serve(self, prefix: str, handlers: Handlers, *, puts: bool = False) -> None:
+        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too."""
+
+        def receive(request: bus.Request) -> None:
+            self._events.put(lambda: self._handle(request, handlers))
+
+        bus.serve(self.session, prefix, receive)
+        if puts:
+            bus.serve_puts(self.session, prefix, receive)
+
+    def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
+        """Call `handle(message)` for each publication."""
+        bus.follow(self.session, topic, lambda key, message: self._events.put(lambda: handle(message)))
+
+    def every(self, period_s: float, handle: Callable[[], None]) -> None:
+        """Call `handle()` each `period_s`, as well as the load allows."""
+        self._timers.append((period_s, handle))
+
+    def ask(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Any:
+        """`bus.ask` on this node's session; the heartbeat waits meanwhile."""
+        return bus.ask(self.session, prefix, verb, message, kind, **limits)
+
+    def ask_later(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Future[Any]:
+        """Like `ask`, without waiting; the future is resolved on this node's own thread."""
+        future: Future[Any] = Future()
+
+        def answer(reply: Any) -> None:
+            self._events.put(lambda: _resolve(future, reply))
+
+        bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
+        return future
+
+    def beat(self) -> None:
+        """Send the heartbeat if it is due. Long work calls this between its steps."""
+        now = time.monotonic()
+        if now < self._beat_due:
+            return
+        self._beat_due = now + HEARTBEAT_S
+        health = Health(
+            node=self.name,
+            pid=os.getpid(),
+            started_ns=self._started_ns,
+            stamp_ns=time.time_ns(),
+            state=self._state,
+            detail=self._detail,
+            last_error=self._last_error,
+        )
+        self._health.put(codec.encode(health))
+
+    def ready(self, detail: str) -> None:
+        """Tell the others: the liveliness token appears and the next heartbeat says so."""
+        if self._state != "ready":
+            self._state = "ready"
+            self._token = self.session.liveliness().declare_token(keys.live_key(self.name, str(os.getpid())))
+            log.info("ready: %s", detail)
+        self.describe(detail)
+
+    def describe(self, detail: str) -> None:
+        """What the heartbeat says of the node's state, from now on."""
+        if detail != self._detail:
+            self._detail, self._beat_due = detail, 0.0
+            self.beat()
+
+    def report(self, text: str) -> None:
+        """Log an error and show it in the heartbeat."""
+        log.error("%s", text)
+        self._last_error, self._beat_due = text, 0.0
+
+    def stop(self) -> None:
+        """End `run` after the event in hand."""
+        self._events.put(self._stop)
+
+    def run(self) -> None:
+        """Handle events until stopped."""
+        due = [0.0] * len(self._timers)
+        while not self._stopping:
+            now = time.monotonic()
+            for i, (period_s, handle) in enumerate(self._timers):
+                if now >= due[i]:
+                    due[i] = max(due[i] + period_s, now)
+                    self._guard(handle)
+            self.beat()
+            wait_s = max(0.0, min([self._beat_due, *due]) - time.monotonic())
+            try:
+                self._guard(self._events.get(timeout=wait_s))
+            except queue.Empty:
+                continue
+
+    def _stop(self) -> None:
+        self._stopping = True
+
+    def _guard(self, handle: Callable[[], None]) -> None:
+        try:
+            handle()
+        except errors.SemmapError as error:
+            self.report(error.text)
+        except Exception as error:
+            log.exception("fault in %s", self.name)
+            self.report(f"{type(error).__name__}: {error}")
+
+    def _handle(self, request: bus.Request, handlers: Handlers) -> None:
+        try:
+            if request.verb not in handlers:
+                raise errors.UnknownVerb(
+                    f"unknown verb '{request.verb}'; there are: {', '.join(sorted(handlers))}"
+                )
+            kind, function = handlers[request.verb]
+            result = function(request.read(kind))
+        except Exception as error:
+            self._refuse(request, error)
+            return
+        if isinstance(result, Future):
+            result.add_done_callback(lambda future: self._answer(request, future))
+        else:
+            request.reply(result)
+
+    def _answer(self, request: bus.Request, future: Future[Any]) -> None:
+        error = future.exception()
+        if error is None:
+            request.reply(future.result())
+        else:
+            self._refuse(request, error)
+
+    def _refuse(self, request: bus.Request, error: BaseException) -> None:
+        if not isinstance(error, errors.SemmapError):
+            log.error("fault in %s", request.verb, exc_info=error)
+            self.report(f"{request.verb}: {type(error).__name__}: {error}")
+            error = errors.InternalError(
+                f"a fault in {self.name}, which goes on: {type(error).__name__}: {error}"
+            )
+        request.refuse(error)
+
+
+def _resolve(future: Future[Any], reply: Any) -> None:
+    if isinstance(reply, errors.SemmapError):
+        future.set_exception(reply)
+    else:
+        future.set_result(reply)
+
+
+def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
+    """The future of `function(result)`; errors pass through."""
+    following: Future[Any] = Future()
+
+    def on_done(done: Future[Any]) -> None:
+        try:
+            following.set_result(function(done.result()))
+        except Exception as error:
+            following.set_exception(error)
+
+    future.add_done_callback(on_done)
+    return following
+
+
+@contextmanager
+def open_node(name: str, network: bus.Network) -> Iterator[Node]:
+    """A node with an open session that stops on SIGTERM and SIGINT."""
+    with bus.open_session(network) as session:
+        node = Node(name, session)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: node.stop())
+        yield node

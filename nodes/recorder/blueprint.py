@@ -1,0 +1,71 @@
+"""How a viewer shows a recording: the scene large, beside it the commit, the log and the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import rerun.blueprint as rrb
+
+from schemas.entities import Pose, Vector
+
+_BACKGROUND = (24, 26, 30)
+_LOG_COLUMNS = rrb.TextLogColumns(text_log_columns=["body"])
+_GRID = (255, 255, 255, 30)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What the eye should see: a square of side `extent_m` around `centre_m`, map frame."""
+
+    centre_m: Vector = (0.0, 0.0, 0.0)
+    extent_m: float = 10.0
+
+
+def bounds_of(poses: Iterable[Pose]) -> Bounds:
+    """The bounds of what stands at `poses`; of ten metres around the origin if there is nothing."""
+    points = [pose.position_m for pose in poses]
+    if not points:
+        return Bounds()
+    (x0, x1), (y0, y1) = ((min(axis), max(axis)) for axis in list(zip(*points, strict=True))[:2])
+    return Bounds(((x0 + x1) / 2.0, (y0 + y1) / 2.0, 0.0), max(x1 - x0, y1 - y0, 4.0))
+
+
+def layout(bounds: Bounds) -> rrb.Blueprint:
+    """The blueprint, with the eye in the south-west, half way up, looking at `bounds`."""
+    x, y, z = bounds.centre_m
+    e = bounds.extent_m
+    eye = rrb.EyeControls3D(
+        kind=rrb.Eye3DKind.Orbital,
+        position=(x - 0.25 * e, y - 0.75 * e, z + 0.8 * e),
+        look_target=(x, y, z),
+        eye_up=(0.0, 0.0, 1.0),
+    )
+    scene = rrb.Spatial3DView(
+        origin="/map",
+        name="Scene",
+        background=_BACKGROUND,
+        line_grid=rrb.LineGrid3D(spacing=1.0, color=_GRID),
+        eye_controls=eye,
+    )
+    return rrb.Blueprint(
+        rrb.Horizontal(
+            scene,
+            rrb.Vertical(
+                rrb.TextDocumentView(origin="/commits", contents="/commits", name="Commit"),
+                rrb.TextLogView(origin="/commits/log", name="Log", columns=_LOG_COLUMNS),
+                rrb.GraphView(
+                    origin="/graph",
+                    name="Knowledge graph",
+                    force_link=rrb.archetypes.ForceLink(distance=40.0),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-60.0),
+                ),
+                row_shares=[3, 2, 4],
+            ),
+            column_shares=[2, 1],
+        ),
+        rrb.TimePanel(timeline="time", play_state="following", state="collapsed"),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.BlueprintPanel(state="hidden"),
+        auto_views=False,
+    )

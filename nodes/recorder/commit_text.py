@@ -1,0 +1,61 @@
+"""A commit in words: one line for the log, a page for the reader."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+from ontology import vocabulary as v
+from schemas.commits import Commit
+from schemas.entities import Entity
+from schemas.explanations import Triple
+
+_LINES = 40
+"""A page shows as many triples; the recording holds them all."""
+
+
+def headline(commit: Commit) -> str:
+    """What a commit did, in one line: `12  operator ann: add beer1 (+9 -0)`."""
+    who = f"{commit.source} {commit.agent}".strip()
+    why = commit.reason or _entities(commit)
+    return f"{commit.seq}  {who}: {why} (+{len(commit.inserted)} -{len(commit.retracted)})"
+
+
+def page(commit: Commit) -> str:
+    """The whole commit as Markdown: who, when, why, the entities it touched, the triples."""
+    when = datetime.fromtimestamp(commit.stamp_ns / 1e9, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+    who = f"**{commit.source}** {commit.agent}".strip()
+    sure = "" if commit.confidence is None else f" · confidence {commit.confidence:.2f}"
+    sections = [
+        f"# Commit {commit.seq}",
+        f"{who} · {when}{sure}",
+        commit.reason,
+        *(_bullet(entity) for entity in commit.changed[:_LINES]),
+        *(f"- **{gone.name}** left the map" for gone in commit.removed[:_LINES]),
+        _triples("Added", "+", commit.inserted),
+        _triples("Removed", "-", commit.retracted),
+        f"`{commit.id}`",
+    ]
+    return "\n\n".join(section for section in sections if section)
+
+
+def _entities(commit: Commit) -> str:
+    names = [entity.name for entity in commit.changed] + [gone.name for gone in commit.removed]
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return ", ".join(names[:3]) + more or "no entity"
+
+
+def _bullet(entity: Entity) -> str:
+    where = ""
+    if entity.pose is not None:
+        x, y, z = entity.pose.position_m
+        where = f" at ({x:.2f}, {y:.2f}, {z:.2f})"
+    return f"- **{entity.name}**, a {entity.class_}{where}"
+
+
+def _triples(title: str, sign: str, triples: tuple[Triple, ...]) -> str:
+    if not triples:
+        return ""
+    lines = [f"{sign} {v.spoken(triple)}" for triple in triples[:_LINES]]
+    if len(triples) > _LINES:
+        lines.append(f"  ... and {len(triples) - _LINES} more")
+    return "\n".join([f"**{title}** ({len(triples)})", "", "```", *lines, "```"])

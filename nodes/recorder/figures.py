@@ -1,0 +1,62 @@
+"""What is drawn for an entity, a body, or an entity with its body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from schemas.entities import Entity, Pose, Size, angle_rad, distance_m
+from schemas.scenes import Body
+
+Look = Literal["solid", "ghost", "believed", "furniture", "place"]
+"""`believed`: in the map, but the running simulator has no body for it. `furniture`: the world's own."""
+
+UNKNOWN_SIZE_M: Size = (0.2, 0.2, 0.2)
+STILL_M = 0.001
+STILL_RAD = 0.004
+
+
+@dataclass(frozen=True)
+class Figure:
+    """How something is drawn, apart from where. `size_m` is along its own axes, from the bottom up."""
+
+    label: str
+    class_: str
+    size_m: Size
+    look: Look
+
+    @property
+    def group(self) -> str:
+        """The branch of the recording that it belongs to."""
+        return {"place": "places", "furniture": "furniture"}.get(self.look, "bodies")
+
+
+def figure_of(entity: Entity | None, body: Body | None, *, simulated: bool) -> Figure | None:
+    """The figure of what the map calls `entity` and the scene `body`; `simulated`: a simulator runs."""
+    if entity is None:
+        return None if body is None else Figure(body.name, body.class_ or "", body.size_m, _look_of(body))
+    if entity.place:
+        label = entity.preferred_reference or entity.name
+        return Figure(label, entity.class_, entity.size_m or UNKNOWN_SIZE_M, "place")
+    if body is not None:
+        return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid")
+    look: Look = "believed" if simulated else "solid"
+    return Figure(entity.name, entity.class_, entity.size_m or UNKNOWN_SIZE_M, look)
+
+
+def _look_of(body: Body) -> Look:
+    if not body.entity:
+        return "furniture"
+    return "ghost" if body.ghost else "solid"
+
+
+def pose_of(entity: Entity | None, body: Body | None) -> Pose | None:
+    """Where it is: the scene knows better than the map."""
+    if body is not None:
+        return body.pose
+    return entity.pose if entity is not None else None
+
+
+def still(before: Pose, now: Pose) -> bool:
+    """Whether it has moved too little to be worth recording."""
+    return distance_m(before, now) < STILL_M and angle_rad(before, now) < STILL_RAD

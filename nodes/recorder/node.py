@@ -1,0 +1,183 @@
+"""The recorder on the wire: it follows commits, poses and the heartbeat of the knowledge base."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from typing import Any
+
+from nodes.loop import Node, open_node
+from nodes.recorder.blueprint import bounds_of
+from nodes.recorder.config import RecorderConfig
+from nodes.recorder.graph import graph_of
+from nodes.recorder.map_state import MapState, missed
+from nodes.recorder.recording import Recording, free_to_serve, open_recording
+from nodes.recorder.scene_state import SceneState
+from nodes.recorder.stage import Stage
+from schemas import keys
+from schemas.bridge import BRIDGE, SnapshotQuery, StarQuery
+from schemas.commits import Commit, Snapshot
+from schemas.health import Health
+from schemas.scenes import Poses, Scene, SceneQuery
+
+_SCENE_LOST_S = 10.0
+"""A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
+
+
+class Recorder:
+    """Binds the recording to the wire."""
+
+    def __init__(self, node: Node, recording: Recording, where: str) -> None:
+        self._node = node
+        self._recording = recording
+        self._where = where
+        self._stage = Stage(recording)
+        self._map = MapState()
+        self._scene = SceneState()
+        self._early: list[Commit] = []
+        self._has_map = False
+        self._fetching_map = False
+        self._fetching_scene = False
+        self._poses_at = 0.0
+        self._kb_started_ns = 0
+        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.POSES, self._on_poses)
+        node.follow(keys.HEALTH, self._on_health)
+        node.every(0.5, self._tick)
+
+    # The map
+
+    def _on_commit(self, commit: Commit) -> None:
+        """Record it at once, whatever is known of the map; the map follows in order."""
+        if commit.seq <= self._map.seq or any(commit.seq == early.seq for early in self._early):
+            return
+        self._at(commit.stamp_ns, commit.seq)
+        self._recording.commit(commit)
+        if self._has_map and self._map.take(commit):
+            self._show_commit(commit)
+        else:
+            self._early.append(commit)
+            self._has_map = False
+            self._fetch_map()
+
+    def _show_commit(self, commit: Commit) -> None:
+        touched = {entity.name for entity in commit.changed} | {gone.name for gone in commit.removed}
+        self._stage.show(sorted(touched), self._map.entities, self._scene.bodies, simulated=self._scene.known)
+        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
+        self._describe()
+
+    def _fetch_map(self) -> None:
+        """Ask for a snapshot and for the relations: at the start, and when a commit was missed."""
+        if self._fetching_map:
+            return
+        self._fetching_map = True
+        snapshots: list[Snapshot] = []
+
+        def on_snapshot(future: Future[Snapshot]) -> None:
+            if future.exception() is not None:
+                self._fetching_map = False
+                return
+            snapshots.append(future.result())
+            names = tuple(entity.name for entity in snapshots[0].entities)
+            self._ask_kb("star", StarQuery(names=names)).add_done_callback(on_stars)
+
+        def on_stars(future: Future[Any]) -> None:
+            self._fetching_map = False
+            if future.exception() is None:
+                self._begin(snapshots[0], future.result())
+
+        self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+
+    def _begin(self, snapshot: Snapshot, stars: Any) -> None:
+        first = self._map.seq < 0
+        lost = [] if first else missed(self._map.seq, snapshot.seq, self._early)
+        anew = snapshot.seq < self._map.seq
+        self._map.begin(snapshot, stars)
+        for commit in sorted(self._early, key=lambda commit: commit.seq):
+            self._map.take(commit)
+        self._early.clear()
+        self._has_map = True
+        self._at(time.time_ns(), self._map.seq)
+        if first or anew:
+            count = len(self._map.entities)
+            self._recording.note(f"{self._map.seq}  the recording goes on from here with {count} entities")
+        if lost:
+            numbers = ", ".join(map(str, lost))
+            self._recording.note(
+                f"{self._map.seq}  not heard: commit {numbers}; a snapshot fills the gap", warning=True
+            )
+        self._show_all()
+        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
+        if first:
+            self._recording.arrange(bounds_of(self._stage.poses))
+        self._describe()
+
+    def _on_health(self, health: Health) -> None:
+        """A new knowledge base may know another map, or have made commits that nobody heard."""
+        if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
+            self._kb_started_ns = health.started_ns
+            self._has_map = False
+            self._fetch_map()
+
+    # The scene
+
+    def _on_poses(self, poses: Poses) -> None:
+        self._poses_at = time.monotonic()
+        if not self._scene.matches(poses):
+            self._fetch_scene()
+            return
+        self._at(poses.stamp_ns)
+        for name, pose in self._scene.follow(poses):
+            self._stage.move(name, pose)
+
+    def _fetch_scene(self) -> None:
+        if self._fetching_scene:
+            return
+        self._fetching_scene = True
+
+        def on_scene(future: Future[Scene]) -> None:
+            self._fetching_scene = False
+            if future.exception() is None:
+                scene = future.result()
+                self._scene.take(scene)
+                self._at(scene.stamp_ns)
+                self._show_all()
+
+        self._node.ask_later(keys.SIM, "snapshot", SceneQuery(), Scene).add_done_callback(on_scene)
+
+    def _tick(self) -> None:
+        if not self._has_map:
+            self._fetch_map()
+        if self._scene.known and time.monotonic() - self._poses_at > _SCENE_LOST_S:
+            self._scene = SceneState()
+            self._at(time.time_ns())
+            self._show_all()
+
+    # Both
+
+    def _at(self, stamp_ns: int, seq: int | None = None) -> None:
+        """What is recorded from now on is of this time."""
+        self._recording.at(self._map.seq if seq is None else seq, stamp_ns, self._scene.sim_time_s)
+
+    def _show_all(self) -> None:
+        self._stage.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
+
+    def _describe(self) -> None:
+        self._node.ready(f"commit {self._map.seq}, {self._where}")
+
+    def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+
+
+def run(config: RecorderConfig) -> None:
+    """Record until stopped. Raises BadFile when the file cannot be written."""
+    serve = config.serve if config.serve is not None and free_to_serve(config.serve) else None
+    live = f"live at {serve}" if serve else "no live view"
+    if config.serve is not None and serve is None:
+        live = f"no live view: {config.serve} is taken"
+    with (
+        open_node("recorder", config.network) as node,
+        open_recording(config.path, serve) as recording,
+    ):
+        Recorder(node, recording, f"into {config.path}, {live}")
+        node.run()

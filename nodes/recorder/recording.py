@@ -1,0 +1,149 @@
+"""The recording: an .rrd file, and the same for viewers that connect while it grows."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from nodes.recorder import commit_text
+from nodes.recorder.blueprint import Bounds, layout
+from nodes.recorder.figures import Figure
+from nodes.recorder.geometry import shape_of
+from nodes.recorder.graph import Graph, nodes_and_edges
+from schemas import errors
+from schemas.commits import Commit
+from schemas.entities import Pose
+from schemas.explanations import Triple
+
+APPLICATION = "semmap"
+COMMITS = "commits"
+COMMIT_LOG = "commits/log"
+COMMIT_FIELDS = "semmap.Commit"
+"""The archetype that holds a commit's fields for programs; `replay.read_commits` reads them."""
+
+_LATENCY_S = 0.5
+"""What a kill can lose, and how far a live viewer lags."""
+_LIVE_MEMORY = "256MiB"
+_FLUSH_TIMEOUT_S = 2.0
+
+
+class Recording:
+    """What was drawn and said, when. Timelines: `commit` (sequence), `time` (wall), `sim_time`."""
+
+    def __init__(self, stream: rr.RecordingStream) -> None:
+        self._stream = stream
+        stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+
+    def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
+        """When what follows is: after commit `seq`, at this wall time and this simulated time."""
+        self._stream.reset_time()
+        self._stream.set_time("commit", sequence=seq)
+        self._stream.set_time("time", timestamp=stamp_ns / 1e9)
+        if sim_time_s is not None:
+            self._stream.set_time("sim_time", duration=sim_time_s)
+
+    def arrange(self, bounds: Bounds) -> None:
+        """Arrange the viewer so that it looks at these bounds."""
+        self._stream.send_blueprint(layout(bounds))
+
+    def draw(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Draw a figure where it stands."""
+        self._stream.log(["map", figure.group, name], *shape_of(figure), _transform(pose))
+
+    def move(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Put a figure somewhere else."""
+        self._stream.log(["map", figure.group, name], _transform(pose))
+
+    def erase(self, name: str, figure: Figure) -> None:
+        """Take a figure away."""
+        self._stream.log(["map", figure.group, name], rr.Clear(recursive=False))
+
+    def graph(self, graph: Graph) -> None:
+        """Draw the knowledge graph."""
+        self._stream.log("graph", *nodes_and_edges(graph))
+
+    def commit(self, commit: Commit) -> None:
+        """Record a commit: a page and a line to read, and its fields for programs."""
+        self._stream.log(
+            COMMITS,
+            rr.TextDocument(commit_text.page(commit), media_type=rr.MediaType.MARKDOWN),
+            rr.DynamicArchetype(COMMIT_FIELDS, components=_fields(commit)),
+        )
+        self._stream.log(COMMIT_LOG, rr.TextLog(commit_text.headline(commit), level=rr.TextLogLevel.INFO))
+
+    def note(self, text: str, *, warning: bool = False) -> None:
+        """Say something about the recording itself."""
+        level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
+        self._stream.log(COMMIT_LOG, rr.TextLog(text, level=level))
+
+
+def _transform(pose: Pose) -> rr.Transform3D:
+    w, x, y, z = pose.orientation_wxyz
+    return rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
+
+
+def _fields(commit: Commit) -> dict[str, NDArray[Any]]:
+    texts = {
+        "id": [commit.id],
+        "source": [commit.source],
+        "agent": [commit.agent],
+        "reason": [commit.reason],
+        "inserted": [_line(triple) for triple in commit.inserted],
+        "retracted": [_line(triple) for triple in commit.retracted],
+        "changed": [entity.name for entity in commit.changed],
+        "removed": [gone.name for gone in commit.removed],
+    }
+    numbers = {"seq": commit.seq, "stamp_ns": commit.stamp_ns}
+    return {key: np.array([number]) for key, number in numbers.items()} | {
+        key: np.array(values, dtype=np.str_) for key, values in texts.items()
+    }
+
+
+def _line(triple: Triple) -> str:
+    """A triple as a line of N-Triples."""
+    return " ".join((*triple, "."))
+
+
+def free_to_serve(address: str) -> bool:
+    """Whether `address` (`host:port`) can be listened on. Rerun itself only logs when it cannot."""
+    host, _, port = address.rpartition(":")
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, int(port)))
+        except OSError:
+            return False
+    return True
+
+
+@contextmanager
+def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
+    """A recording into `path`, also served to live viewers at `serve`; complete when closed.
+
+    Raises BadFile when the file cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch(exist_ok=False)
+    except OSError as error:
+        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+    batches = rr.ChunkBatcherConfig(flush_tick=_LATENCY_S)
+    stream = rr.RecordingStream(APPLICATION, batcher_config=batches)
+    stream.set_log_time_enabled(False)
+    sinks: list[rr.FileSink | rr.GrpcServerSink] = [rr.FileSink(path)]
+    if serve is not None:
+        host, _, port = serve.rpartition(":")
+        sinks.append(rr.GrpcServerSink(host, int(port), server_memory_limit=_LIVE_MEMORY))
+    stream.set_sinks(*sinks)
+    try:
+        yield Recording(stream)
+    finally:
+        stream.flush(timeout_sec=_FLUSH_TIMEOUT_S)
+        stream.disconnect()

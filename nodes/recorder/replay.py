@@ -1,0 +1,120 @@
+"""A recording after the fact: open it in the Rerun viewer, or read its commits back."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sysconfig
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rerun.chunk import RrdReader
+
+from nodes.recorder.recording import COMMIT_FIELDS, COMMITS
+from schemas import errors
+from schemas.explanations import Triple
+
+_SIGNATURE = b"RRF"
+
+
+@dataclass(frozen=True)
+class RecordedCommit:
+    """What a recording says of one commit. `changed` and `removed` are names of entities."""
+
+    seq: int
+    stamp_ns: int
+    id: str
+    source: str
+    agent: str
+    reason: str
+    inserted: tuple[Triple, ...]
+    retracted: tuple[Triple, ...]
+    changed: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+def replay(path: Path) -> None:
+    """Open a recording in a viewer of its own, on loopback, and wait until it is closed.
+
+    Raises BadFile when `path` is no recording, and Refused when the viewer cannot be opened.
+    """
+    require_recording(path)
+    viewer = Path(sysconfig.get_path("scripts"), "rerun")
+    command = [str(viewer), "--bind", "127.0.0.1", "--port", "auto", str(path)]
+    status = subprocess.run(command, env=viewer_environment()).returncode
+    if status not in (0, 130):
+        raise errors.Refused(
+            f"the viewer ended with status {status}; it needs a display and a graphics driver "
+            f"(in a browser instead: rerun --web-viewer --bind 127.0.0.1 {path})"
+        )
+
+
+def viewer_environment() -> dict[str, str]:
+    """The environment for a viewer: it sends no usage data where it believes to be in a CI job."""
+    return {**os.environ, "CI": "1"}
+
+
+def require_recording(path: Path) -> None:
+    """Raises BadFile, saying why, when `path` is not the file of a recording."""
+    try:
+        with path.open("rb") as file:
+            signature = file.read(len(_SIGNATURE))
+    except FileNotFoundError:
+        raise errors.BadFile(f"no such file: {path}") from None
+    except OSError as error:
+        raise errors.BadFile(f"cannot read {path}: {error.strerror}") from None
+    if signature != _SIGNATURE:
+        raise errors.BadFile(f"{path} is not a recording (.rrd)")
+
+
+def read_commits(path: Path) -> list[RecordedCommit]:
+    """All commits in a recording, by number; it may still be growing. Raises BadFile."""
+    require_recording(path)
+    return sorted(_commits(path), key=lambda commit: commit.seq)
+
+
+def _commits(path: Path) -> Iterator[RecordedCommit]:
+    with warnings.catch_warnings():
+        # A recording that is not closed, because it grows or its writer was killed, has no footer.
+        warnings.filterwarnings("ignore", message=".*no footer")
+        try:
+            for chunk in RrdReader(path).stream():
+                if chunk.entity_path == f"/{COMMITS}":
+                    yield from map(_commit_of, _rows(chunk.to_record_batch()))
+        except (RuntimeError, ValueError) as error:
+            raise errors.BadFile(f"cannot read {path}: {error}") from None
+
+
+def _rows(batch: Any) -> list[dict[str, Any]]:
+    prefix = f"{COMMIT_FIELDS}:"
+    names = [name for name in batch.schema.names if name.startswith(prefix)]
+    rows = batch.select(names).to_pylist()
+    return [{key.removeprefix(prefix): value for key, value in row.items()} for row in rows]
+
+
+def _commit_of(row: dict[str, Any]) -> RecordedCommit:
+    def several(field: str) -> list[str]:
+        # A field that is empty in every commit of a chunk has no column there.
+        return row.get(field) or []
+
+    return RecordedCommit(
+        seq=row["seq"][0],
+        stamp_ns=row["stamp_ns"][0],
+        id=row["id"][0],
+        source=row["source"][0],
+        agent=row["agent"][0],
+        reason=row["reason"][0],
+        inserted=tuple(map(_triple, several("inserted"))),
+        retracted=tuple(map(_triple, several("retracted"))),
+        changed=tuple(several("changed")),
+        removed=tuple(several("removed")),
+    )
+
+
+def _triple(line: str) -> Triple:
+    """The triple of a line of N-Triples; only the object may hold spaces."""
+    subject, predicate, object_ = line.removesuffix(" .").split(" ", 2)
+    return (subject, predicate, object_)

@@ -1,0 +1,115 @@
+"""What the simulator keeps about each body, and poses as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.models.parts import Vec3, rotation_matrix
+from schemas.entities import Pose
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(kw_only=True)
+class BodyRecord:
+    """One body of the scene; what moves is in MuJoCo's data, not here.
+
+    `origin_m` is the bottom centre in the frame of the MuJoCo body. `ordered` is the pose that the map
+    (or the world file) gave it. `masks` are contype and conaffinity of each geom while it is solid.
+    """
+
+    name: str
+    class_: str | None
+    model: str
+    size_m: Vec3
+    origin_m: Vec3
+    ordered: Pose
+    fixed: bool
+    entity: bool
+    masks: list[tuple[int, int]]
+    ghost: bool = False
+    commit: int = 0
+    shape_commit: int = 0
+
+    @property
+    def static(self) -> bool:
+        """Held where it is: no free joint."""
+        return self.fixed or self.ghost
+
+
+@dataclass(frozen=True)
+class BodyIndex:
+    """Where each body is in the arrays of one compiled model; N bodies in the order of `names`.
+
+    `qpos` and `dof` (N,) are the addresses of the free joint, -1 for a static body; `tree` (N,) is the
+    kinematic tree, -1 if static.
+    """
+
+    names: tuple[str, ...]
+    row: dict[str, int]
+    body: Ints
+    qpos: Ints
+    dof: Ints
+    tree: Ints
+    origin_m: Floats = field(repr=False)
+
+    @staticmethod
+    def of(model: mujoco.MjModel, records: dict[str, BodyRecord]) -> BodyIndex:
+        """Look every record's body up in `model`."""
+        names = tuple(records)
+        body = np.array(
+            [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names], dtype=np.int64
+        )
+        static = np.array([records[name].static for name in names], dtype=bool)
+        joint = np.where(static, -1, model.body_jntadr[body]) if names else np.empty(0, np.int64)
+        return BodyIndex(
+            names=names,
+            row={name: row for row, name in enumerate(names)},
+            body=body,
+            qpos=_at(model.jnt_qposadr, joint),
+            dof=_at(model.jnt_dofadr, joint),
+            tree=np.where(static, -1, model.body_treeid[body]) if names else joint,
+            origin_m=np.array([records[name].origin_m for name in names], dtype=float).reshape(-1, 3),
+        )
+
+    def poses(self, data: mujoco.MjData) -> Floats:
+        """(N, 7): bottom centre [m] and quaternion wxyz of each body, map frame."""
+        frames = np.concatenate([data.xpos[self.body], data.xquat[self.body]], axis=1)
+        free = self.qpos >= 0
+        frames[free] = data.qpos[self.qpos[free, None] + np.arange(7)]
+        frames[:, :3] += rotated(frames[:, 3:], self.origin_m)
+        return frames
+
+
+def _at(addresses: NDArray[np.int32], joint: Ints) -> Ints:
+    if not len(addresses):
+        return np.full(len(joint), -1, dtype=np.int64)
+    return np.where(joint >= 0, addresses[np.maximum(joint, 0)], -1).astype(np.int64)
+
+
+def rotated(quaternions: Floats, vectors: Floats) -> Floats:
+    """(N, 3) vectors, each rotated by its quaternion wxyz (N, 4)."""
+    w, axis = quaternions[:, :1], quaternions[:, 1:]
+    twice = 2.0 * np.cross(axis, vectors)
+    return np.asarray(vectors + w * twice + np.cross(axis, twice))
+
+
+def frame_of(pose: Pose, origin_m: Vec3) -> tuple[Floats, Floats]:
+    """Position (3,) and quaternion (4,) of the MuJoCo body whose bottom centre is at `pose`."""
+    quaternion = np.asarray(pose.orientation_wxyz, dtype=float)
+    quaternion = quaternion / np.linalg.norm(quaternion)
+    position = np.asarray(pose.position_m) - rotation_matrix(quaternion) @ np.asarray(origin_m)
+    return position, quaternion
+
+
+def pose_of(row: Floats) -> Pose:
+    """One row of `BodyIndex.poses` as a message."""
+    x, y, z, *quaternion = (float(value) for value in row)
+    return Pose(
+        position_m=(x, y, z), orientation_wxyz=(quaternion[0], quaternion[1], quaternion[2], quaternion[3])
+    )

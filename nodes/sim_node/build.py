@@ -1,0 +1,131 @@
+"""Bodies into and out of a MuJoCo specification."""
+
+from __future__ import annotations
+
+import mujoco
+
+from nodes.sim_node.bodies import BodyRecord, frame_of
+from nodes.sim_node.models.library import Model
+from nodes.sim_node.models.parts import Mesh, Part, Role, Shape, Vec3
+from schemas.entities import Pose
+
+_GEOM = {
+    Shape.BOX: mujoco.mjtGeom.mjGEOM_BOX,
+    Shape.ELLIPSOID: mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    Shape.CYLINDER: mujoco.mjtGeom.mjGEOM_CYLINDER,
+    Shape.CAPSULE: mujoco.mjtGeom.mjGEOM_CAPSULE,
+    Shape.MESH: mujoco.mjtGeom.mjGEOM_MESH,
+}
+_GROUP = {Role.BOTH: 0, Role.SEEN: 2, Role.FELT: 3}
+FELT_GROUP = _GROUP[Role.FELT]
+"""The geom group that no camera sees."""
+
+_WIDTH = {
+    int(mujoco.mjtJoint.mjJNT_FREE): (7, 6),
+    int(mujoco.mjtJoint.mjJNT_BALL): (4, 3),
+    int(mujoco.mjtJoint.mjJNT_SLIDE): (1, 1),
+    int(mujoco.mjtJoint.mjJNT_HINGE): (1, 1),
+}
+_FRICTION = (0.8, 0.01, 0.002)
+_HULL_VERTICES = 64
+_MEMORY_BYTES = 32 << 20
+_MEMORY_BYTES_A_BODY = 100 << 10
+
+
+def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) -> None:
+    """One body whose frame is its centre of mass; see `parts.inertial` for why."""
+    position, quaternion = frame_of(pose, record.origin_m)
+    body = spec.worldbody.add_body(name=record.name, pos=position, quat=quaternion)
+    if not record.static:
+        body.add_freejoint(name=record.name)
+    body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
+    body.mass, body.inertia = model.inertial.mass_kg, list(model.inertial.moments)
+    for part in model.parts:
+        if part.mesh is not None:
+            add_mesh(spec, part.mesh)
+        add_part(body, part, origin_m=record.origin_m, ghost=record.ghost)
+
+
+def add_mesh(spec: mujoco.MjSpec, mesh: Mesh) -> None:
+    """Make the mesh known to `spec`, once; it collides as its convex hull."""
+    if spec.mesh(mesh.key) is None:
+        spec.add_mesh(
+            name=mesh.key,
+            uservert=mesh.vertices.ravel(),
+            userface=mesh.faces.ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX,
+            maxhullvert=_HULL_VERTICES,
+        )
+
+
+def add_part(
+    body: mujoco.MjsBody, part: Part, *, origin_m: Vec3 = (0.0, 0.0, 0.0), ghost: bool = False
+) -> None:
+    """One geom; `origin_m` is where the model's bottom centre is in the body's frame."""
+    contype, conaffinity = (0, 0) if ghost else mask_of(part)
+    body.add_geom(
+        type=_GEOM[part.shape],
+        meshname=part.mesh.key if part.mesh is not None else None,
+        size=_geom_size(part),
+        pos=[centre + shift for centre, shift in zip(part.centre, origin_m, strict=True)],
+        quat=list(part.turn),
+        rgba=[*part.colour, 1.0],
+        group=_GROUP[part.role],
+        contype=contype,
+        conaffinity=conaffinity,
+        condim=4 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        friction=_FRICTION,
+    )
+
+
+def _geom_size(part: Part) -> list[float]:
+    a, b, c = part.half
+    return [a, c, 0.0] if part.shape in (Shape.CYLINDER, Shape.CAPSULE) else [a, b, c]
+
+
+def mask_of(part: Part) -> tuple[int, int]:
+    """Contype and conaffinity of a part."""
+    return (0, 0) if part.role is Role.SEEN else (1, 1)
+
+
+def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
+    """Make the body in `spec` stand at `pose`, solid or ghost, free or held, as the record says."""
+    body = spec.body(record.name)
+    position, quaternion = frame_of(pose, record.origin_m)
+    body.pos, body.quat = position, quaternion
+    body.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+    for geom, (contype, conaffinity) in zip(body.geoms, record.masks, strict=True):
+        geom.contype, geom.conaffinity = (0, 0) if record.ghost else (contype, conaffinity)
+    joints = body.joints
+    if record.static:
+        for joint in joints:
+            if joint.type == mujoco.mjtJoint.mjJNT_FREE:
+                spec.delete(joint)
+    elif not joints:
+        body.add_freejoint(name=record.name)
+
+
+def set_memory(spec: mujoco.MjSpec, bodies: int) -> None:
+    """Room for the contacts of so many bodies; untouched pages cost nothing."""
+    spec.memory = _MEMORY_BYTES + bodies * _MEMORY_BYTES_A_BODY
+
+
+def carry_state(
+    old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjModel, new_data: mujoco.MjData
+) -> None:
+    """Give a model built anew the time, and the state of every joint that both have, by name."""
+    new_data.time = old_data.time
+    joints = {old.joint(number).name: number for number in range(old.njnt)}
+    for number in range(new.njnt):
+        before = joints.get(new.joint(number).name)
+        if before is None or old.jnt_type[before] != new.jnt_type[number]:
+            continue
+        positions, speeds = _WIDTH[int(new.jnt_type[number])]
+        qpos, was_qpos = new.jnt_qposadr[number], old.jnt_qposadr[before]
+        dof, was_dof = new.jnt_dofadr[number], old.jnt_dofadr[before]
+        new_data.qpos[qpos : qpos + positions] = old_data.qpos[was_qpos : was_qpos + positions]
+        new_data.qvel[dof : dof + speeds] = old_data.qvel[was_dof : was_dof + speeds]
+    for field in ("act", "ctrl", "mocap_pos", "mocap_quat"):
+        if getattr(new_data, field).shape == getattr(old_data, field).shape:
+            getattr(new_data, field)[:] = getattr(old_data, field)
+    mujoco.mj_kinematics(new, new_data)

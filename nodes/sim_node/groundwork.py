@@ -1,0 +1,123 @@
+"""The world before any entity: a bare floor or a person's MJCF scene, and the bodies that are in it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from schemas.errors import BadFile
+
+_TIMESTEP_S = 0.002
+_CLASS_TEXT = "semmap:"
+_SKY = (0.78, 0.85, 0.92)
+
+
+def bare_floor() -> mujoco.MjSpec:
+    """An endless floor, and a camera that looks over it."""
+    spec = mujoco.MjSpec()
+    spec.modelname = "empty"
+    spec.option.timestep = _TIMESTEP_S
+    spec.worldbody.add_geom(
+        name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], rgba=[0.62, 0.60, 0.56, 1.0]
+    )
+    spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.35] * 3, [0.35] * 3
+    spec.worldbody.add_light(
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=[-0.3, 0.5, -1], diffuse=[0.5] * 3
+    )
+    spec.worldbody.add_camera(
+        name="overview", pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
+    )
+    return spec
+
+
+def read_mjcf(path: Path) -> mujoco.MjSpec:
+    """A scene from a file. Raises BadFile if it is missing or does not compile."""
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.copy().compile()
+    except (ValueError, OSError, mujoco.FatalError) as error:
+        raise BadFile(f"the world file {path} is no MJCF scene that compiles: {_one_line(error)}") from None
+    return spec
+
+
+def prepare(spec: mujoco.MjSpec) -> None:
+    """Set what the simulator relies on: bodies at rest sleep, one bad body does not reset the world."""
+    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    spec.visual.quality.shadowsize = 0  # shadows and MSAA cost 40 times the frame on a CPU
+    spec.visual.quality.offsamples = 0
+    for number, body in enumerate(spec.worldbody.bodies):
+        if not body.name and body.joints:
+            body.name = f"body_{number + 1}"
+    for number, joint in enumerate(spec.joints):
+        joint.name = joint.name or f"joint_{number + 1}"
+
+
+def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:
+    """The world's own bodies: every named one on the top level, and every one that can move."""
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    classes = {
+        text.name.removeprefix(_CLASS_TEXT): text.data
+        for text in spec.texts
+        if text.name.startswith(_CLASS_TEXT)
+    }
+    records = {}
+    for body in spec.worldbody.bodies:
+        if body.name:
+            records[body.name] = _record(
+                model, data, body, classes.get(body.name) or class_from_name(body.name)
+            )
+    return records
+
+
+def class_from_name(name: str) -> str | None:
+    """`chair_3` is a `chair`; a name that is all digits says nothing."""
+    return re.sub(r"[\W_]*\d*$", "", name) or None
+
+
+def _record(
+    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, class_: str | None
+) -> BodyRecord:
+    number = model.body(body.name).id
+    low, high = _extents(model, data, number)
+    middle = (low + high) / 2.0
+    origin = (float(middle[0]), float(middle[1]), float(low[2]))
+    bottom = data.xpos[number] + data.xmat[number].reshape(3, 3) @ np.asarray(origin)
+    joints = body.joints
+    return BodyRecord(
+        name=body.name,
+        class_=class_,
+        model="",
+        size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
+        origin_m=origin,
+        ordered=pose_of(np.concatenate([bottom, data.xquat[number]])),
+        fixed=not (joints and joints[0].type == mujoco.mjtJoint.mjJNT_FREE),
+        entity=False,
+        masks=[(geom.contype, geom.conaffinity) for geom in body.geoms],
+    )
+
+
+def _extents(model: mujoco.MjModel, data: mujoco.MjData, body: int) -> tuple[Floats, Floats]:
+    """Lowest and highest corner (3,) of all geoms of the body and its parts, in the body's frame."""
+    geoms = np.flatnonzero(model.body_rootid[model.geom_bodyid] == body)
+    if not len(geoms):
+        return np.full(3, -0.005), np.full(3, 0.005)
+    world_from_body = data.xmat[body].reshape(3, 3)
+    rotation = world_from_body.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
+    centre = (data.geom_xpos[geoms] - data.xpos[body]) @ world_from_body
+    aabb = model.geom_aabb[geoms]
+    centre = centre + np.einsum("nij,nj->ni", rotation, aabb[:, :3])
+    half = np.einsum("nij,nj->ni", np.abs(rotation), aabb[:, 3:])
+    return (centre - half).min(axis=0), np.maximum(
+        (centre + half).max(axis=0), (centre - half).min(axis=0) + 1e-3
+    )
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())

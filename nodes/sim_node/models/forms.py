@@ -1,0 +1,130 @@
+"""Forms that many models share: legs, hollow walls, turned profiles, panels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from nodes.sim_node.models.parts import (
+    Colour,
+    Part,
+    Parts,
+    Role,
+    Shape,
+    Vec3,
+    about,
+    box,
+    felt,
+    product,
+    rod,
+    seen,
+)
+
+WHITE: Colour = (0.93, 0.93, 0.91)
+LIGHT: Colour = (0.80, 0.80, 0.78)
+GREY: Colour = (0.55, 0.56, 0.58)
+DARK: Colour = (0.20, 0.20, 0.22)
+BLACK: Colour = (0.08, 0.08, 0.09)
+STEEL: Colour = (0.70, 0.72, 0.75)
+BRASS: Colour = (0.78, 0.62, 0.28)
+WOOD: Colour = (0.62, 0.44, 0.26)
+GLASSY: Colour = (0.66, 0.82, 0.88)
+SCREEN: Colour = (0.10, 0.14, 0.20)
+PAPER: Colour = (0.96, 0.94, 0.88)
+
+
+def shade(colour: Colour, factor: float) -> Colour:
+    """`colour` made darker (factor < 1) or lighter (> 1)."""
+    red, green, blue = (min(1.0, channel * factor) for channel in colour)
+    return (red, green, blue)
+
+
+def legs(x: float, y: float, height: float, thick: float, colour: Colour) -> Parts:
+    """Four square legs at the corners of a footprint x by y."""
+    a, b = (x - thick) / 2, (y - thick) / 2
+    return [
+        box((thick, thick, height), (sx * a, sy * b, height / 2), colour) for sx in (-1, 1) for sy in (-1, 1)
+    ]
+
+
+def slab(x: float, y: float, bottom: float, top: float, colour: Colour) -> Part:
+    """A box of footprint x by y between two heights."""
+    return box((x, y, top - bottom), (0.0, 0.0, (bottom + top) / 2), colour)
+
+
+def solid(x: float, y: float, bottom: float, top: float) -> Parts:
+    """An invisible box that collides in place of finer parts."""
+    return felt(slab(x, y, bottom, top, GREY))
+
+
+def front(x: float, y: float, z: float, centre: tuple[float, float], colour: Colour, *, deep: float) -> Parts:
+    """A panel of width y and height z, its outer face at depth x, its centre at (y, z), `deep` thick."""
+    return seen(box((deep, y, z), (x - deep / 2, centre[0], centre[1]), colour))
+
+
+def hollow_box(x: float, y: float, z: float, wall: float, colour: Colour) -> Parts:
+    """Floor and four walls, open at the top."""
+    a, b, h = (x - wall) / 2, (y - wall) / 2, z - wall
+    middle = wall + h / 2
+    return [
+        slab(x, y, 0.0, wall, colour),
+        box((wall, y, h), (a, 0.0, middle), colour),
+        box((wall, y, h), (-a, 0.0, middle), colour),
+        box((x - 2 * wall, wall, h), (0.0, b, middle), colour),
+        box((x - 2 * wall, wall, h), (0.0, -b, middle), colour),
+    ]
+
+
+def ring(
+    radii: tuple[float, float], bottom: float, top: float, wall: float, colour: Colour, *, count: int = 12
+) -> Parts:
+    """A round wall of flat staves from radius `radii[0]` at the bottom to `radii[1]` at the top (outside)."""
+    low, high = radii
+    tilt = math.atan2(high - low, top - bottom)
+    length = math.hypot(high - low, top - bottom) - wall * abs(math.sin(tilt))
+    parts = []
+    for index in range(count):
+        angle = 2 * math.pi * (index + 0.5) / count
+        apothem = (low + high) / 2 * math.cos(math.pi / count) - wall / 2
+        width = 2 * (max(low, high)) * math.sin(math.pi / count)
+        turn = product(about("z", angle), about("y", tilt))
+        centre: Vec3 = (apothem * math.cos(angle), apothem * math.sin(angle), (bottom + top) / 2)
+        parts.append(box((wall, width, length), centre, colour, turn))
+    return parts
+
+
+def turned(profile: Sequence[tuple[float, float]], colour: Colour, *, steps: int = 6) -> Parts:
+    """A solid of revolution: discs through the points (radius, height), linear between them; decoration."""
+    discs: Parts = []
+    for (r0, z0), (r1, z1) in pairwise(profile):
+        count = 1 if math.isclose(r0, r1) else steps
+        for index in range(count):
+            low, high = z0 + (z1 - z0) * index / count, z0 + (z1 - z0) * (index + 1) / count
+            radius = r0 + (r1 - r0) * (index + 0.5) / count
+            discs.append(
+                Part(
+                    Shape.CYLINDER,
+                    (radius, radius, (high - low) / 2),
+                    (0, 0, (low + high) / 2),
+                    colour,
+                    role=Role.SEEN,
+                )
+            )
+    return discs
+
+
+def column(radius: float, bottom: float, top: float, colour: Colour) -> Part:
+    """An upright cylinder between two heights."""
+    return rod(radius, top - bottom, (0.0, 0.0, (bottom + top) / 2), colour)
+
+
+def shifted(parts: Iterable[Part], *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Parts:
+    """The same parts elsewhere."""
+    return [
+        replace(
+            part, centre=(float(part.centre[0] + x), float(part.centre[1] + y), float(part.centre[2] + z))
+        )
+        for part in parts
+    ]

@@ -1,0 +1,90 @@
+"""From a model's name and a size to a checked model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from nodes.sim_node.models.forms import shifted
+from nodes.sim_node.models.parts import Inertial, Part, Vec3, bounds, box, inertial, quarter_turned
+from nodes.sim_node.models.table import MODELS, ModelKind
+
+FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
+"""The size of a box for a class without a model and an entity without a size."""
+
+SIZES_M = (0.001, 100.0)
+"""What a body may measure along any axis."""
+
+DENSITY = 150.0
+"""Of a thing that nothing is known of [kg/m^3 of its bounding box]: most are hollow."""
+
+_BOX_COLOUR = (0.72, 0.66, 0.58)
+
+
+class ModelError(ValueError):
+    """A body of this model and size cannot be made; the text says why."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m]."""
+
+    name: str
+    parts: tuple[Part, ...]
+    inertial: Inertial
+    size_m: Vec3
+
+
+@lru_cache(maxsize=1024)
+def build(name: str, size_m: Vec3 | None) -> Model:
+    """The model `name` scaled to `size_m`, or at its own size; a box when there is no such model.
+
+    A size that is long where the model is wide is met by turning the model a quarter. Mass grows with
+    volume. Raises ModelError for a size that no body can have.
+    """
+    check_size(size_m)
+    kind = MODELS.get(name)
+    if kind is None:
+        return _plain_box(size_m or FALLBACK_M)
+    x, y, z = size_m or kind.size_m
+    if turned := _is_turned(kind, (x, y, z)):
+        x, y = y, x
+    parts = kind.parts(x, y, z, kind.colour)
+    if turned:
+        parts = quarter_turned(parts)
+    standard = kind.size_m[0] * kind.size_m[1] * kind.size_m[2]
+    return assemble(name, parts, kind.mass_kg * x * y * z / standard)
+
+
+def check_size(size_m: Sequence[float] | None) -> None:
+    """Raise ModelError for a size that no body can have."""
+    low, high = SIZES_M
+    for extent in size_m or ():
+        if not low <= extent <= high:
+            raise ModelError(f"a body measures {low:g} to {high:g} m along each axis, not {extent:g} m")
+
+
+def _is_turned(kind: ModelKind, size_m: Vec3) -> bool:
+    own_x, own_y, _ = kind.size_m
+    x, y, _ = size_m
+    return (own_x - own_y) * (x - y) < 0.0 and max(own_x, own_y) > 1.3 * min(own_x, own_y)
+
+
+def _plain_box(size_m: Vec3) -> Model:
+    x, y, z = size_m
+    return assemble("box", [box(size_m, (0.0, 0.0, z / 2), _BOX_COLOUR)], DENSITY * x * y * z)
+
+
+def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
+    """Parts as a model, moved so that the origin is the bottom centre."""
+    low, high = bounds(parts)
+    parts = shifted(parts, x=-(low[0] + high[0]) / 2, y=-(low[1] + high[1]) / 2, z=-low[2])
+    low, high = bounds(parts)
+    mass_kg = min(max(mass_kg, 0.002), 5000.0)
+    return Model(
+        name=name,
+        parts=tuple(parts),
+        inertial=inertial(parts, mass_kg),
+        size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
+    )

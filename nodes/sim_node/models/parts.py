@@ -1,0 +1,222 @@
+"""Models as plain data: primitive parts in metres, the origin at the bottom centre, the front facing +x."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+Colour = tuple[float, float, float]
+
+UPRIGHT: Quat = (1.0, 0.0, 0.0, 0.0)
+
+
+class Shape(Enum):
+    """The primitives; what `half` means for each."""
+
+    BOX = "box"  # half extents
+    ELLIPSOID = "ellipsoid"  # semi-axes
+    CYLINDER = "cylinder"  # radius, radius, half height along its own z
+    CAPSULE = "capsule"  # radius, radius, half height of the straight part
+    MESH = "mesh"  # half extents of its bounding box, which is centred on the part
+
+
+class Role(Enum):
+    """What a part is there for."""
+
+    BOTH = "both"  # seen and felt
+    SEEN = "seen"  # decoration: collides with nothing
+    FELT = "felt"  # a simpler stand-in for what is seen
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles: `vertices` (N, 3) [m] around the middle of their bounding box, `faces` (M, 3)."""
+
+    key: str
+    vertices: Floats
+    faces: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One primitive or mesh of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz."""
+
+    shape: Shape
+    half: Vec3
+    centre: Vec3
+    colour: Colour
+    turn: Quat = UPRIGHT
+    role: Role = Role.BOTH
+    mesh: Mesh | None = None
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        a, b, c = self.half
+        match self.shape:
+            case Shape.BOX | Shape.MESH:
+                return 8.0 * a * b * c
+            case Shape.ELLIPSOID:
+                return 4.0 / 3.0 * math.pi * a * b * c
+            case Shape.CYLINDER:
+                return 2.0 * math.pi * a * a * c
+            case Shape.CAPSULE:
+                return math.pi * a * a * (2.0 * c + 4.0 / 3.0 * a)
+
+    def reach(self) -> Floats:
+        """Half extents of its axis-aligned bounding box in the model's axes: (3,) [m]."""
+        rotation = rotation_matrix(self.turn)
+        radial, half = np.abs(rotation), np.asarray(self.half)
+        match self.shape:
+            case Shape.MESH if self.mesh is not None:
+                return np.asarray(np.abs(self.mesh.vertices @ rotation.T).max(axis=0))
+            case Shape.BOX | Shape.MESH:
+                return np.asarray(radial @ half)
+            case Shape.ELLIPSOID:
+                return np.asarray(np.sqrt((rotation**2) @ half**2))
+            case Shape.CYLINDER:
+                return np.asarray(
+                    half[0] * np.sqrt(np.maximum(0.0, 1.0 - radial[:, 2] ** 2)) + half[2] * radial[:, 2]
+                )
+            case Shape.CAPSULE:
+                return np.asarray(half[0] + half[2] * radial[:, 2])
+
+
+Parts = list[Part]
+
+
+def box(size: Sequence[float], centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
+    """A box of full extents `size`."""
+    x, y, z = size
+    return Part(Shape.BOX, (x / 2, y / 2, z / 2), centre, colour, turn)
+
+
+def ball(size: Sequence[float], centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
+    """An ellipsoid of full extents `size`."""
+    x, y, z = size
+    return Part(Shape.ELLIPSOID, (x / 2, y / 2, z / 2), centre, colour, turn)
+
+
+def rod(radius: float, height: float, centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
+    """A cylinder along its z axis."""
+    return Part(Shape.CYLINDER, (radius, radius, height / 2), centre, colour, turn)
+
+
+def pill(radius: float, height: float, centre: Vec3, colour: Colour, turn: Quat = UPRIGHT) -> Part:
+    """A capsule along its z axis, `height` long from tip to tip."""
+    straight = max(height / 2 - radius, 1e-4)
+    return Part(Shape.CAPSULE, (radius, radius, straight), centre, colour, turn)
+
+
+def seen(parts: Part | Iterable[Part]) -> Parts:
+    """The same, as decoration."""
+    return _with_role(parts, Role.SEEN)
+
+
+def felt(parts: Part | Iterable[Part]) -> Parts:
+    """The same, as an invisible stand-in."""
+    return _with_role(parts, Role.FELT)
+
+
+def _with_role(parts: Part | Iterable[Part], role: Role) -> Parts:
+    return [replace(part, role=role) for part in ([parts] if isinstance(parts, Part) else parts)]
+
+
+def about(axis: str, angle_rad: float) -> Quat:
+    """The rotation by `angle_rad` about the axis x, y or z."""
+    vector = [math.sin(angle_rad / 2) if axis == name else 0.0 for name in "xyz"]
+    return (math.cos(angle_rad / 2), vector[0], vector[1], vector[2])
+
+
+ALONG_X: Quat = about("y", math.pi / 2)
+ALONG_Y: Quat = about("x", -math.pi / 2)
+
+
+def quarter_turned(parts: Iterable[Part]) -> Parts:
+    """The model turned by -90 degrees about z, so that its front faces -y."""
+    turn = about("z", -math.pi / 2)
+    return [
+        replace(
+            part,
+            centre=(part.centre[1], -part.centre[0], part.centre[2]),
+            turn=product(turn, part.turn),
+        )
+        for part in parts
+    ]
+
+
+def product(a: Quat, b: Quat) -> Quat:
+    """The rotation b followed by the rotation a."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def rotation_matrix(turn: Sequence[float]) -> Floats:
+    """(3, 3) rotation of a unit quaternion wxyz."""
+    w, x, y, z = turn
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def bounds(parts: Iterable[Part]) -> tuple[Floats, Floats]:
+    """Lowest and highest corner, each (3,) [m], of the box around all parts."""
+    pairs = [(np.asarray(part.centre), part.reach()) for part in parts]
+    low = np.min([centre - reach for centre, reach in pairs], axis=0)
+    high = np.max([centre + reach for centre, reach in pairs], axis=0)
+    return low, high
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass [kg], centre of mass (3,) [m] from the bottom centre, and moments of inertia [kg m^2] about it."""
+
+    mass_kg: float
+    centre_m: Vec3
+    moments: Vec3
+
+
+def inertial(parts: Iterable[Part], mass_kg: float) -> Inertial:
+    """Of the felt parts as solids of one density.
+
+    Products of inertia are left out: the models are nearly symmetrical, and a body whose frame is its
+    centre of mass with diagonal inertia is what MuJoCo compiles and steps fastest.
+    """
+    solid = [part for part in parts if part.role is not Role.SEEN]
+    volumes = np.array([part.volume for part in solid])
+    masses = mass_kg * volumes / volumes.sum()
+    centres = np.array([part.centre for part in solid])
+    centre = masses @ centres / mass_kg
+    moments = np.zeros(3)
+    for part, mass, offset in zip(solid, masses, centres - centre, strict=True):
+        x, y, z = part.reach()
+        own = mass / 3.0 * np.array([y * y + z * z, x * x + z * z, x * x + y * y])
+        moments += own + mass * (offset @ offset - offset**2)
+    return Inertial(mass_kg, _vec3(centre), _vec3(_realisable(moments)))
+
+
+def _realisable(moments: Floats) -> Floats:
+    """Moments raised until none is so small beside the others that contacts make it ring."""
+    return np.asarray(np.maximum(np.maximum(moments, 0.02 * moments.max()), 1e-7))
+
+
+def _vec3(values: Floats) -> Vec3:
+    return (float(values[0]), float(values[1]), float(values[2]))

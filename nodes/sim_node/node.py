@@ -1,0 +1,156 @@
+"""The simulator on the wire: `semmap/sim/<verb>` in, poses and camera pictures out."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from typing import Any, Literal, TypeVar
+
+from nodes import bus
+from nodes.loop import Node, open_node
+from nodes.sim_node.config import SimConfig
+from nodes.sim_node.models.files import Models
+from nodes.sim_node.vision.studio import Plane, Still, Studio
+from nodes.sim_node.vision.view import View, camera_view, overview
+from nodes.sim_node.world import World
+from schemas import codec, keys
+from schemas.commands import Done, Pause, Reset, StepOnce
+from schemas.scenes import (
+    BodiesMoved,
+    Delete,
+    Deleted,
+    MoveBodies,
+    Picture,
+    PictureQuery,
+    Scene,
+    SceneQuery,
+    Spawn,
+    Spawned,
+)
+
+Reply = TypeVar("Reply")
+
+_ADVANCE_S = 0.01
+_PUBLISH_S = 0.05
+_PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
+    "rgb8": "rgb",
+    "depth32f": "depth",
+    "segments16": "segments",
+}
+_LAG_S = 0.05
+"""Time that could not be simulated as fast as it passed is dropped beyond this."""
+
+
+class Simulator:
+    """Binds the world to the wire; the node's thread owns the world."""
+
+    def __init__(self, node: Node, config: SimConfig) -> None:
+        self._node = node
+        self._world = World(config.world, models=Models(config.models))
+        self._paused = False
+        self._clock_s = time.monotonic()
+        self._poses = bus.publisher(node.session, keys.POSES)
+        self._studio = Studio(config.cameras)
+        self._planes: dict[str, Any] = {}
+        node.serve(
+            keys.SIM,
+            {
+                "spawn": (Spawn, self._spawn),
+                "delete": (Delete, self._delete),
+                "move": (MoveBodies, self._move),
+                "snapshot": (SceneQuery, self._snapshot),
+                "pause": (Pause, self._pause),
+                "step": (StepOnce, self._step),
+                "reset": (Reset, self._reset),
+                "picture": (PictureQuery, self._picture),
+            },
+        )
+        node.every(_ADVANCE_S, self._advance)
+        node.every(_PUBLISH_S, self._publish)
+        if config.cameras.rate_hz > 0.0:
+            node.every(1.0 / config.cameras.rate_hz, self._film)
+        node.ready(self._summary())
+
+    def close(self) -> None:
+        """Let go of the studio's thread."""
+        self._studio.close()
+
+    def _spawn(self, message: Spawn) -> Spawned:
+        return self._told(self._world.spawn(message.bodies))
+
+    def _delete(self, message: Delete) -> Deleted:
+        return self._told(self._world.delete(message.names))
+
+    def _move(self, message: MoveBodies) -> BodiesMoved:
+        return self._told(self._world.move(message.placements))
+
+    def _snapshot(self, _: SceneQuery) -> Scene:
+        return self._world.scene()
+
+    def _pause(self, _: Pause) -> Done:
+        self._paused = not self._paused
+        self._clock_s = time.monotonic()
+        self._node.describe(self._summary())
+        return Done(text="time stands still" if self._paused else "time runs again")
+
+    def _step(self, message: StepOnce) -> Done:
+        self._world.step(message.seconds)
+        return self._told(Done(text=f"{message.seconds:g} s later; it is {self._world.data.time:.2f} s"))
+
+    def _reset(self, _: Reset) -> Done:
+        count = self._world.reset()
+        return self._told(Done(text=f"{count} bodies are back where they were ordered to be"))
+
+    def _picture(self, query: PictureQuery) -> Future[Picture]:
+        return self._studio.paint(self._still(), self._view(query))
+
+    def _still(self) -> Still:
+        world = self._world
+        return Still.of(world.model, world.data, world.body_names())
+
+    def _film(self) -> None:
+        self._studio.film(self._still, self._publish_plane)
+
+    def _publish_plane(self, plane: Plane) -> None:
+        frame, pixels = plane
+        key = keys.camera_key(frame.camera, _PLANES[frame.encoding])
+        if key not in self._planes:
+            self._planes[key] = bus.publisher(self._node.session, keys.CAMERA, key)
+        self._planes[key].put(pixels.tobytes(), attachment=codec.encode(frame))
+
+    def _view(self, query: PictureQuery) -> View:
+        world = self._world
+        if query.camera:
+            return camera_view(world.model, world.data, query.camera, query.width, query.height)
+        low, high = world.extent()
+        return overview(low, high, query.width, query.height)
+
+    def _told(self, reply: Reply) -> Reply:
+        """Publish at once what has changed, so that nobody waits for the next round."""
+        self._publish()
+        self._node.describe(self._summary())
+        return reply
+
+    def _advance(self) -> None:
+        now = time.monotonic()
+        if not self._paused:
+            self._world.step(min(now - self._clock_s, _LAG_S))
+        self._clock_s = now
+
+    def _publish(self) -> None:
+        poses = self._world.poses()
+        self._poses.put(codec.encode(poses), encoding=codec.encoding_of(poses))
+
+    def _summary(self) -> str:
+        state = ", paused" if self._paused else ""
+        return f"{len(self._world)} bodies in {self._world.name}{state}"
+
+
+def run(config: SimConfig) -> None:
+    """Serve until stopped."""
+    with open_node("sim_node", config.network) as node:
+        simulator = Simulator(node, config)
+        try:
+            node.run()
+        finally:
+            simulator.close()

@@ -1,0 +1,38 @@
+"""Which bodies rest."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.bodies import Floats
+
+STILL_M = 0.001
+STILL_RAD = 0.005
+STILL_S = 0.3
+"""A body rests when for this long it stayed within both tolerances."""
+
+ASLEEP_S = 0.1
+"""One that sleeps rests after this; no sooner, so that followers of the poses see that it moved."""
+
+
+class RestWatch:
+    """Watches N bodies: each is compared with the pose at which it last counted as having moved."""
+
+    def __init__(self, poses: Floats, time_s: float) -> None:
+        self._anchor = poses.copy()
+        self._since_s = np.full(len(poses), time_s)
+
+    def update(self, poses: Floats, time_s: float, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(N,) which bodies rest at `time_s`, given their poses (N, 7) and which of them sleep."""
+        step = np.linalg.norm(poses[:, :3] - self._anchor[:, :3], axis=1)
+        cosine = np.abs(np.sum(poses[:, 3:] * self._anchor[:, 3:], axis=1))
+        turn = 2.0 * np.arccos(np.minimum(1.0, cosine))
+        moved = (step > STILL_M) | (turn > STILL_RAD)
+        self._anchor[moved] = poses[moved]
+        self._since_s[moved] = time_s
+        return np.asarray(time_s - self._since_s >= np.where(asleep, ASLEEP_S, STILL_S))
+
+    def disturb(self, rows: list[int], time_s: float) -> None:
+        """These were taken in hand: they do not rest before they have been still anew."""
+        self._since_s[rows] = time_s

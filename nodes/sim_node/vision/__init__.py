@@ -1,0 +1,1 @@
+"""What cameras in the simulated world see."""

@@ -1,0 +1,93 @@
+"""A camera without graphics: one ray a pixel, flat colours, a lamp above and its shadows."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.bodies import Floats
+from nodes.sim_node.build import FELT_GROUP
+from nodes.sim_node.vision.view import View, pixel_rays
+
+_SKY_LOW, _SKY_HIGH = np.array([0.90, 0.93, 0.96]), np.array([0.60, 0.74, 0.88])
+_LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the middle of what is seen
+_AMBIENT, _HEAD, _LAMP, _SHADOW = 0.34, 0.22, 0.50, 0.55
+
+_VISIBLE = np.array([group != FELT_GROUP for group in range(6)], dtype=np.uint8)
+
+
+def raycast(
+    model: mujoco.MjModel, data: mujoco.MjData, view: View, *, shadows: bool = False
+) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]]:
+    """What the view sees: rgb (H, W, 3), depth (H, W) [m] along the optical axis, geom (H, W).
+
+    Where nothing is seen the depth is 0 and the geom -1.
+    """
+    shape = (view.height, view.width)
+    rays = pixel_rays(view)
+    lengths = np.linalg.norm(rays, axis=1)
+    rotation, eye = view.map_from_camera[:3, :3], view.map_from_camera[:3, 3]
+    directions = rays / lengths[:, None] @ rotation.T
+    geom, distance, normal = _cast(model, data, eye, directions)
+    hit = geom >= 0
+    points = eye + directions[hit] * distance[hit, None]
+    colour = _sky(directions)
+    if hit.any():
+        lamp = points.mean(axis=0) + _LIGHT_M
+        light = _light(directions[hit], normal[hit], lamp - points)
+        if shadows:
+            light *= np.where(_in_shadow(model, data, lamp, points), _SHADOW, 1.0)
+        colour[hit] = np.minimum(1.0, _colours(model)[geom[hit]] * light[:, None])
+    rgb = (np.sqrt(colour) * 255.0 + 0.5).astype(np.uint8)
+    depth = np.where(hit, distance / lengths, 0.0).astype(np.float32)
+    return rgb.reshape(*shape, 3), depth.reshape(shape), geom.reshape(shape)
+
+
+def _cast(
+    model: mujoco.MjModel, data: mujoco.MjData, origin: Floats, directions: Floats
+) -> tuple[NDArray[np.int32], Floats, Floats]:
+    count = len(directions)
+    geom, distance = np.full(count, -1, np.int32), np.full(count, -1.0)
+    normal = np.zeros(3 * count)
+    mujoco.mj_multiRay(
+        model,
+        data,
+        origin,
+        np.ascontiguousarray(directions).ravel(),
+        _VISIBLE,
+        True,
+        -1,
+        geom,
+        distance,
+        normal,
+        count,
+        mujoco.mjMAXVAL,
+    )
+    return geom, distance, normal.reshape(-1, 3)
+
+
+def _light(directions: Floats, normals: Floats, to_lamp: Floats) -> Floats:
+    facing = np.abs(np.einsum("ij,ij->i", directions, normals))
+    lamp = np.einsum("ij,ij->i", to_lamp, normals) / np.linalg.norm(to_lamp, axis=1)
+    return np.asarray(_AMBIENT + _HEAD * facing + _LAMP * np.maximum(0.0, lamp))
+
+
+def _in_shadow(model: mujoco.MjModel, data: mujoco.MjData, lamp: Floats, points: Floats) -> NDArray[np.bool_]:
+    ways = points - lamp
+    lengths = np.linalg.norm(ways, axis=1)
+    _, distance, _ = _cast(model, data, lamp, ways / lengths[:, None])
+    return np.asarray(distance < lengths - 0.005)
+
+
+def _colours(model: mujoco.MjModel) -> Floats:
+    """(ngeom, 3) linear colour of each geom: its material's, else its own."""
+    own = model.geom_rgba[:, :3].astype(float)
+    painted = model.geom_matid >= 0
+    own[painted] = model.mat_rgba[model.geom_matid[painted], :3]
+    return np.asarray(own**2)
+
+
+def _sky(directions: Floats) -> Floats:
+    height = np.clip(directions[:, 2:], 0.0, 1.0)
+    return np.asarray((_SKY_LOW + (_SKY_HIGH - _SKY_LOW) * height) ** 2)

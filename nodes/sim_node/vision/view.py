@@ -1,0 +1,90 @@
+"""Where a camera is and how it projects.
+
+The camera's own frame is the optical one: x to the right of the picture, y down, z into the scene. Pixel
+(u, v) of a point is `intrinsics @ point_camera` divided by its z, with the centre of the first pixel at 0.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from nodes.sim_node.bodies import Floats
+from schemas.errors import BadRequest
+
+_OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
+
+
+@dataclass(frozen=True)
+class View:
+    """A pinhole camera: `intrinsics` (3, 3) [pixel], `map_from_camera` (4, 4) [m]."""
+
+    width: int
+    height: int
+    intrinsics: Floats
+    map_from_camera: Floats
+
+    @property
+    def fovy_rad(self) -> float:
+        """Vertical angle of view."""
+        return float(2.0 * np.arctan(self.height / 2.0 / self.intrinsics[1, 1]))
+
+
+def camera_view(model: mujoco.MjModel, data: mujoco.MjData, camera: str, width: int, height: int) -> View:
+    """The view of a camera of the world file. Raises BadRequest if there is none of that name."""
+    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera)
+    if number < 0:
+        names = ", ".join(camera_names(model)) or "none"
+        raise BadRequest(f"the world has no camera '{camera}'; there are: {names}")
+    pose = np.eye(4)
+    pose[:3, :3] = data.cam_xmat[number].reshape(3, 3) @ _OPTICAL
+    pose[:3, 3] = data.cam_xpos[number]
+    return View(width, height, pinhole(width, height, float(np.radians(model.cam_fovy[number]))), pose)
+
+
+def camera_names(model: mujoco.MjModel) -> tuple[str, ...]:
+    """The cameras of the world."""
+    return tuple(model.camera(number).name for number in range(model.ncam))
+
+
+def look_at(eye_m: Floats, target_m: Floats, width: int, height: int, fovy_rad: float) -> View:
+    """A view from `eye_m` (3,) towards `target_m` (3,), the map's z axis up in the picture."""
+    forward = (target_m - eye_m) / np.linalg.norm(target_m - eye_m)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
+    pose[:3, 3] = eye_m
+    return View(width, height, pinhole(width, height, fovy_rad), pose)
+
+
+def overview(low_m: Floats, high_m: Floats, width: int, height: int) -> View:
+    """A view from above and in front (+x, -y) that just holds the box between two corners (3,)."""
+    fovy = float(np.radians(36.0))
+    middle = (low_m + high_m) / 2.0
+    back = np.array([0.50, -0.56, 0.66])
+    aimed = look_at(middle + back, middle, width, height, fovy)
+    corners = np.stack(np.meshgrid(*zip(low_m, high_m, strict=True)), axis=-1).reshape(-1, 3) - middle
+    x, y, z = (corners @ aimed.map_from_camera[:3, :3]).T
+    tangent = np.tan(fovy / 2.0)
+    distance = max(
+        float(np.max(np.abs(y) / tangent - z)), float(np.max(np.abs(x) / tangent * height / width - z))
+    )
+    return look_at(middle + 1.04 * distance * back / np.linalg.norm(back), middle, width, height, fovy)
+
+
+def pinhole(width: int, height: int, fovy_rad: float) -> Floats:
+    """(3, 3) intrinsics with square pixels and the principal point in the middle."""
+    focal = height / 2.0 / np.tan(fovy_rad / 2.0)
+    return np.array([[focal, 0.0, width / 2.0], [0.0, focal, height / 2.0], [0.0, 0.0, 1.0]])
+
+
+def pixel_rays(view: View) -> Floats:
+    """(H * W, 3): the point at depth 1 m that each pixel's middle sees, in the camera's frame."""
+    u, v = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
+    k = view.intrinsics
+    return np.stack([(u - k[0, 2]) / k[0, 0], (v - k[1, 2]) / k[1, 1], np.ones_like(u)], axis=-1).reshape(
+        -1, 3
+    )

@@ -1,0 +1,140 @@
+"""supervisord: its configuration, and talking to it over its unix socket."""
+
+from __future__ import annotations
+
+import configparser
+import hashlib
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import xmlrpc.client
+from pathlib import Path
+from typing import Any
+
+from supervisor.xmlrpc import SupervisorTransport
+
+from nodes.supervisor.settings import SETTINGS, Settings
+from schemas import codec, errors
+
+GROUP = "semmap"
+_STOP_WAIT_S = 3
+_WONT_MEND = "0,1,2"
+"""Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
+
+
+class Supervisor:
+    """The supervisord of one data folder."""
+
+    def __init__(self, data: Path) -> None:
+        self.data = data
+        self.logs = data / "logs"
+        self._settings_path = data / SETTINGS
+        self._conf_path = data / "supervisord.conf"
+
+    @property
+    def socket(self) -> Path:
+        """Its control socket: in the temporary folder, because paths of sockets must be short."""
+        digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
+        return Path(tempfile.gettempdir()) / f"semmap-{os.getuid()}-{digest}.sock"
+
+    def start(self, settings: Settings) -> subprocess.Popen[bytes]:
+        """Start it and, through it, the nodes."""
+        self.logs.mkdir(parents=True, exist_ok=True)
+        self._settings_path.write_bytes(codec.encode_json(settings))
+        self._conf_path.write_text(self._conf(settings))
+        command = [sys.executable, "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
+        with (self.logs / "supervisord.out").open("wb") as out:
+            return subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
+            )
+
+    def seed(self, settings: Settings) -> str:
+        """Make the journal; what was done, in words. Raises the reason why it could not be made."""
+        self.data.mkdir(parents=True, exist_ok=True)
+        self._settings_path.write_bytes(codec.encode_json(settings))
+        command = [sys.executable, "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
+        run = subprocess.run(command, capture_output=True, text=True)
+        if run.returncode != 0:
+            reason = (
+                run.stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
+            )
+            raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)
+        return run.stdout.strip()
+
+    def is_running(self) -> bool:
+        """Does it answer?"""
+        try:
+            self._rpc().supervisor.getPID()
+        except (OSError, xmlrpc.client.Error):
+            return False
+        return True
+
+    def processes(self) -> dict[str, dict[str, Any]]:
+        """State of each node's process, by node; empty when supervisord does not answer."""
+        try:
+            return {info["name"]: info for info in self._rpc().supervisor.getAllProcessInfo()}
+        except (OSError, xmlrpc.client.Error):
+            return {}
+
+    def restart(self, node: str) -> None:
+        """Kill a node that hangs, then start it anew: there are never two of one kind."""
+        rpc = self._rpc().supervisor
+        rpc.stopProcess(f"{GROUP}:{node}")
+        rpc.startProcess(f"{GROUP}:{node}")
+
+    def shut_down(self) -> None:
+        """Stop the nodes and supervisord itself. Raises NoAnswer when it does not run."""
+        try:
+            self._rpc().supervisor.shutdown()
+        except (OSError, xmlrpc.client.Error):
+            raise errors.NoAnswer(f"no system runs on the data in {self.data}") from None
+
+    def last_words(self, node: str) -> str:
+        """The last line that a node wrote to its log."""
+        path = self.log_of(node)
+        lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
+        return lines[-1].removeprefix(f"{node}: ") if lines else "it left no word"
+
+    def log_of(self, node: str) -> Path:
+        """The file that a node writes to."""
+        return self.logs / f"{node}.log"
+
+    def _rpc(self) -> Any:
+        transport = SupervisorTransport(serverurl=f"unix://{self.socket}")
+        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
+
+    def _conf(self, settings: Settings) -> str:
+        conf = configparser.RawConfigParser()
+        conf["unix_http_server"] = {"file": str(self.socket), "chmod": "0700"}
+        conf["supervisord"] = {
+            "logfile": str(self.logs / "supervisord.log"),
+            "pidfile": str(self.data / "supervisord.pid"),
+            "childlogdir": str(self.logs),
+            "identifier": GROUP,
+        }
+        conf["rpcinterface:supervisor"] = {
+            "supervisor.rpcinterface_factory": "supervisor.rpcinterface:make_main_rpcinterface"
+        }
+        conf[f"group:{GROUP}"] = {"programs": ",".join(settings.nodes)}
+        for priority, node in enumerate(settings.nodes, start=1):
+            words = [sys.executable, "-m", "nodes.supervisor.launch", node, str(self._settings_path)]
+            conf[f"program:{node}"] = {
+                "command": " ".join(f'"{word}"' for word in words).replace("%", "%%"),
+                "priority": str(priority),
+                "startsecs": "0",
+                "startretries": "10",
+                "autorestart": "unexpected",
+                "exitcodes": _WONT_MEND,
+                "stopwaitsecs": str(_STOP_WAIT_S),
+                "stopasgroup": "true",
+                "killasgroup": "true",
+                "redirect_stderr": "true",
+                "stdout_logfile": str(self.log_of(node)).replace("%", "%%"),
+                "stdout_logfile_maxbytes": "10MB",
+                "stdout_logfile_backups": "2",
+            }
+        text = io.StringIO()
+        conf.write(text)
+        return text.getvalue()

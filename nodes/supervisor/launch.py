@@ -1,0 +1,89 @@
+"""Runs one node in this process: `python -m nodes.supervisor.launch NODE SETTINGS`.
+
+`seed` in place of a node makes the journal and ends.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from nodes.supervisor.settings import Settings
+from schemas import codec, errors
+
+
+def run_node(name: str, settings: Settings) -> None:
+    """Run a node until it is stopped. Raises what keeps it from starting."""
+    if name not in _LAUNCHERS:
+        raise errors.BadRequest(f"there is no node '{name}'; there are: {', '.join(sorted(_LAUNCHERS))}")
+    _LAUNCHERS[name](settings)
+
+
+def seed(settings: Settings) -> None:
+    """Make the journal, or say that it is there, on stdout."""
+    from nodes.kb_node.seed import seed as seed_journal
+
+    abox = Path(settings.abox) if settings.abox is not None else None
+    print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
+
+
+def _kb_node(settings: Settings) -> None:
+    from nodes.kb_node.config import KbConfig
+    from nodes.kb_node.node import run
+
+    run(KbConfig(data=Path(settings.data), network=settings.network("kb_node")))
+
+
+def _coordinator(settings: Settings) -> None:
+    from nodes.coordinator.config import CoordinatorConfig, Thresholds
+    from nodes.coordinator.node import run
+
+    thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
+    run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator")))
+
+
+def _sim_node(settings: Settings) -> None:
+    from nodes.sim_node.config import SimConfig
+    from nodes.sim_node.node import run
+
+    run(SimConfig(world=Path(settings.world), network=settings.network("sim_node")))
+
+
+def _recorder(settings: Settings) -> None:
+    from nodes.recorder.config import RecorderConfig
+    from nodes.recorder.node import run
+
+    started = time.strftime("%Y-%m-%dT%H-%M-%S")
+    path = Path(settings.data) / "recordings" / f"{started}.rrd"
+    run(RecorderConfig(path=path, network=settings.network("recorder"), serve=settings.live_view))
+
+
+_LAUNCHERS: dict[str, Callable[[Settings], None]] = {
+    "kb_node": _kb_node,
+    "coordinator": _coordinator,
+    "sim_node": _sim_node,
+    "recorder": _recorder,
+}
+
+
+def main(argv: list[str]) -> int:
+    """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
+    name, settings_path = argv
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    settings: Settings = codec.decode(Path(settings_path).read_bytes(), Settings)
+    try:
+        if name == "seed":
+            seed(settings)
+        else:
+            run_node(name, settings)
+    except errors.SemmapError as error:
+        print(f"{name}: {error.text}", file=sys.stderr, flush=True)
+        return error.exit_status
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,65 @@
+"""What `semmap up` may be told. It is written to a file that each node's process reads."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+import platformdirs
+from msgspec import Meta, Struct
+
+from nodes.bus import DEFAULT_ENDPOINT, Network
+
+ANY_PORT = "tcp/127.0.0.1:0"
+SETTINGS = "settings.json"
+"""The file of the settings in the data folder."""
+JOURNAL = "journal.sqlite"
+"""The file of the journal there: where it is, there is a map to go on with."""
+
+
+def default_data() -> Path:
+    """Where the map is kept when nothing else is said."""
+    return platformdirs.user_data_path("semmap")
+
+
+class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All settings of a system. Paths are absolute."""
+
+    data: str
+    tbox: str
+    abox: str | None
+    """None is an empty map."""
+    world: str
+    truth: Literal["map", "scene"] = "map"
+    threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
+    angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
+    listen: str = DEFAULT_ENDPOINT
+    connect: tuple[str, ...] = ()
+    sim: bool = True
+    record: bool = True
+    fresh: bool = False
+    live_view: str | None = None
+    """Where the recorder streams to Rerun viewers, `host:port`."""
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """The nodes to run, in the order of starting."""
+        optional = {"sim_node": self.sim, "recorder": self.record}
+        return tuple(n for n in ("coordinator", "kb_node", "sim_node", "recorder") if optional.get(n, True))
+
+    @property
+    def angle_threshold_rad(self) -> float:
+        """The angle threshold in radians."""
+        return math.radians(self.angle_threshold_deg)
+
+    def network(self, node: str) -> Network:
+        """The coordinator listens where the world expects it; the others connect to it and mesh by gossip."""
+        if node == "coordinator":
+            return Network(mode="peer", listen=(self.listen,), connect=self.connect)
+        return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))
+
+    @property
+    def reachable(self) -> str:
+        """The endpoint at which programs of this machine reach the system."""
+        return self.listen.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")

@@ -1,0 +1,154 @@
+"""`semmap up`: seed, start, tell when each node is ready, watch, and stop everything on Ctrl-C."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import signal
+import socket
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from msgspec import structs
+
+from nodes import bus
+from nodes.supervisor.control import Supervisor
+from nodes.supervisor.settings import Settings
+from schemas import errors, keys
+from schemas.health import Health
+
+_START_TIMEOUT_S = 120.0
+_HANGS_AFTER_S = 30.0
+_STOP_TIMEOUT_S = 4.5
+_LIVE_PORT = 9876
+
+
+def up(settings: Settings, say: Callable[[str], None]) -> None:
+    """Run the system in the foreground until SIGINT or SIGTERM, or until it is told to go `down`.
+
+    Raises the reason when a node cannot start; nothing is left running then.
+    """
+    supervisor = Supervisor(Path(settings.data))
+    if supervisor.is_running():
+        raise errors.Refused(f"a system runs on {settings.data} already; stop it with: semmap down")
+    if settings.record:
+        settings = structs.replace(settings, live_view=_live_view())
+    say(f"map          {supervisor.seed(settings)}")
+    process = supervisor.start(settings)
+    try:
+        _Foreground(supervisor, settings, process, say).run()
+    finally:
+        _stop(process)
+        say("stopped")
+
+
+class _Foreground:
+    """Watches the processes and their heartbeats."""
+
+    def __init__(
+        self,
+        supervisor: Supervisor,
+        settings: Settings,
+        process: subprocess.Popen[bytes],
+        say: Callable[[str], None],
+    ) -> None:
+        self._supervisor = supervisor
+        self._settings = settings
+        self._process = process
+        self._say = say
+        self._beats: queue.SimpleQueue[Health] = queue.SimpleQueue()
+        self._pids: dict[str, int] = {}
+        self._heard: dict[str, float] = {}
+        self._stopping = False
+
+    def run(self) -> None:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, self._on_signal)
+        deadline = time.monotonic() + _START_TIMEOUT_S
+        greeted = False
+        with contextlib.ExitStack() as stack:
+            following = False
+            while not self._stopping and self._process.poll() is None:
+                self._require_alive()
+                if not following:
+                    following = self._follow(stack)
+                self._hear()
+                if not greeted and set(self._pids) == set(self._settings.nodes):
+                    greeted = True
+                    self._greet()
+                if not greeted and time.monotonic() > deadline:
+                    late = sorted(set(self._settings.nodes) - set(self._pids))
+                    raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
+                self._restart_what_hangs()
+
+    def _on_signal(self, *_: object) -> None:
+        self._stopping = True
+
+    def _follow(self, stack: contextlib.ExitStack) -> bool:
+        """Join the network as soon as the coordinator listens."""
+        try:
+            session = stack.enter_context(bus.open_session(bus.Network(connect=(self._settings.reachable,))))
+        except errors.NoAnswer:
+            return False
+        bus.follow(session, keys.HEALTH, lambda _, health: self._beats.put(health))
+        return True
+
+    def _hear(self) -> None:
+        with contextlib.suppress(queue.Empty):
+            health = self._beats.get(timeout=0.2)
+            self._heard[health.node] = time.monotonic()
+            if health.state == "ready" and self._pids.get(health.node) != health.pid:
+                again = " again" if health.node in self._pids else ""
+                self._pids[health.node] = health.pid
+                self._say(f"{health.node:<12} ready{again}  pid {health.pid:<7} {health.detail}")
+
+    def _require_alive(self) -> None:
+        """A node that ended with an error which no restart mends ends the start, with its last words."""
+        for node, info in self._supervisor.processes().items():
+            ended = info["statename"] in ("EXITED", "FATAL") and not self._stopping
+            if ended and self._process.poll() is None:
+                words = self._supervisor.last_words(node)
+                raise errors.Refused(f"{node} ended: {words} (log: {self._supervisor.log_of(node)})")
+
+    def _restart_what_hangs(self) -> None:
+        for node, at in self._heard.items():
+            if time.monotonic() - at > _HANGS_AFTER_S:
+                self._say(f"{node:<12} silent for {_HANGS_AFTER_S:g} s: restarting it")
+                self._heard[node] = time.monotonic()
+                self._supervisor.restart(node)
+
+    def _greet(self) -> None:
+        connect = (
+            ""
+            if self._settings.reachable == bus.DEFAULT_ENDPOINT
+            else f" --connect {self._settings.reachable}"
+        )
+        self._say("")
+        self._say(f"zenoh        {self._settings.reachable}")
+        self._say(f"data         {self._settings.data}")
+        if self._settings.record:
+            self._say(f"live view    rerun --connect rerun+http://{self._settings.live_view}/proxy")
+        self._say(f"try          semmap list{connect}")
+        self._say("stop         Ctrl-C")
+
+
+def _live_view() -> str:
+    """The port on which Rerun viewers look for a live recording, or another one when that is taken."""
+    for port in (_LIVE_PORT, 0):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return f"127.0.0.1:{probe.getsockname()[1]}"
+    raise AssertionError("port 0 can always be bound")
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """Stop supervisord and with it the nodes, within 5 seconds."""
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(_STOP_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()

@@ -1,0 +1,87 @@
+"""How an entity is said in triples: its star.
+
+    :chair1  a dm:Chair ; dm:hasPosition :chair1_coordinates ; dm:hasSize :chair1_size ;
+             dm:hasPreferredReference :chair1_preferred_reference ; ...
+
+New individuals are named after the entity, never after their text, which may hold anything.
+"""
+
+from __future__ import annotations
+
+from ontology import vocabulary as v
+from schemas.entities import IDENTITY, Pose, Size
+from schemas.explanations import Term, Triple
+
+POSE_PROPERTIES = frozenset((v.HAS_POSITION, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
+SHAPE_PROPERTIES = frozenset((v.RDF_TYPE, v.HAS_SIZE, *v.SIZE_XYZ))
+STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
+"""The edges from an entity to the individuals of its star."""
+
+
+def star(
+    name: str,
+    class_iri: Term,
+    *,
+    pose: Pose | None = None,
+    size_m: Size | None = None,
+    preferred: str | None = None,
+    alternatives: tuple[str, ...] = (),
+    suffix: str = "",
+) -> list[Triple]:
+    """All triples of a new entity; `suffix` ends the names of the individuals that describe it."""
+    entity = v.entity_iri(name)
+    triples: list[Triple] = [(entity, v.RDF_TYPE, class_iri)]
+    if pose is not None:
+        triples += position(entity, v.entity_iri(f"{name}_coordinates{suffix}"), pose)
+    if size_m is not None:
+        triples += size(entity, v.entity_iri(f"{name}_size{suffix}"), size_m)
+    if preferred is not None:
+        triples += preferred_reference(entity, v.entity_iri(f"{name}_preferred_reference{suffix}"), preferred)
+    for i, text in enumerate(alternatives, start=1):
+        triples += alternative_reference(
+            entity, v.entity_iri(f"{name}_alternative_reference_{i}{suffix}"), text
+        )
+    return triples
+
+
+def position(entity: Term, coordinates: Term, pose: Pose) -> list[Triple]:
+    """Position and, unless it is the identity, orientation."""
+    triples: list[Triple] = [(entity, v.HAS_POSITION, coordinates), (coordinates, v.RDF_TYPE, v.COORDINATES)]
+    triples += _numbers(coordinates, v.COORDINATE_XYZ, pose.position_m)
+    if pose.orientation_wxyz != IDENTITY:
+        triples += _numbers(coordinates, v.ORIENTATION_WXYZ, pose.orientation_wxyz)
+    return triples
+
+
+def size(entity: Term, node: Term, size_m: Size) -> list[Triple]:
+    """Extent along the entity's own axes."""
+    return [
+        (entity, v.HAS_SIZE, node),
+        (node, v.RDF_TYPE, v.THREE_DIM_SIZE),
+        *_numbers(node, v.SIZE_XYZ, size_m),
+    ]
+
+
+def preferred_reference(entity: Term, node: Term, text: str) -> list[Triple]:
+    """What people call it."""
+    return [
+        (entity, v.HAS_PREFERRED_REFERENCE, node),
+        (node, v.RDF_TYPE, v.PREFERRED_REFERENCE),
+        (node, v.LEXICAL_REFERENCE, v.literal(text)),
+    ]
+
+
+def alternative_reference(entity: Term, node: Term, text: str) -> list[Triple]:
+    """What people call it, too."""
+    return [
+        (entity, v.HAS_ALTERNATIVE_REFERENCE, node),
+        (node, v.RDF_TYPE, v.ALTERNATIVE_REFERENCE),
+        (node, v.LEXICAL_REFERENCE, v.literal(text)),
+    ]
+
+
+def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]) -> list[Triple]:
+    return [
+        (node, predicate, v.literal(repr(float(value)), v.XSD_FLOAT))
+        for predicate, value in zip(properties, values, strict=True)
+    ]

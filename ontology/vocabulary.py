@@ -1,0 +1,210 @@
+"""The IRIs that code speaks of, and RDF terms as text.
+
+A term is written as in N-Triples: `<iri>`, `_:label`, `"text"`, `"text"@en`, `"1.0"^^<datatype>`. Literals
+made here are canonical (the form that Oxigraph prints), so equal literals are equal strings.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from schemas.explanations import Term, Triple
+
+TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
+ABOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#"
+RDF: Final = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+RDFS: Final = "http://www.w3.org/2000/01/rdf-schema#"
+OWL: Final = "http://www.w3.org/2002/07/owl#"
+XSD: Final = "http://www.w3.org/2001/XMLSchema#"
+
+PREFIXES: Final = {"dm": TBOX, "": ABOX, "owl": OWL}
+"""The prefixes of what is written."""
+
+TBOX_ONTOLOGY: Final[Term] = f"<{TBOX.removesuffix('#')}>"
+ABOX_ONTOLOGY: Final[Term] = f"<{ABOX.removesuffix('#')}>"
+
+
+def iri(text: str) -> Term:
+    """The IRI term of a full IRI."""
+    return f"<{text}>"
+
+
+def dm(local: str) -> Term:
+    """The IRI term of a class, property or individual of the TBox: `dm("Chair")`."""
+    return f"<{TBOX}{local}>"
+
+
+def entity_iri(name: str) -> Term:
+    """The IRI term of the entity, place, position, size or reference with this name in the ABox."""
+    return f"<{ABOX}{name}>"
+
+
+def bare(term: Term) -> str:
+    """The IRI of an IRI term, without its brackets."""
+    return term[1:-1]
+
+
+def local_name(term: Term) -> str:
+    """What follows the last `#`, or else the last `/`, of an IRI term; any other term as it is."""
+    if not term.startswith("<"):
+        return term
+    text = term[1:-1]
+    return text.rpartition("#" if "#" in text else "/")[2]
+
+
+_ESCAPES: Final = {"\t": "\\t", "\b": "\\b", "\n": "\\n", "\r": "\\r", "\f": "\\f", '"': '\\"', "\\": "\\\\"}
+_UNESCAPES: Final = {escape[1]: char for char, escape in _ESCAPES.items()} | {"'": "'"}
+_TO_ESCAPE: Final = re.compile(r'[\x00-\x1f\x7f\ufffe\uffff"\\]')
+_ESCAPED: Final = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|U([0-9A-Fa-f]{8})|(.))", re.DOTALL)
+_LITERAL: Final = re.compile(r'"((?:[^"\\]|\\.)*)"(?:\^\^<([^>]*)>|@([A-Za-z0-9-]+))?', re.DOTALL)
+
+
+def literal(text: str, datatype: Term | None = None, lang: str | None = None) -> Term:
+    """The literal term of a text, with a datatype (an IRI term) or a language, or a plain string.
+
+    Raises:
+        ValueError: both a datatype and a language are given.
+    """
+    if datatype is not None and lang is not None:
+        raise ValueError("a literal has a datatype or a language, not both")
+    quoted = '"' + _TO_ESCAPE.sub(_escape, text) + '"'
+    if lang is not None:
+        return f"{quoted}@{lang.lower()}"
+    return quoted if datatype in (None, XSD_STRING) else f"{quoted}^^{datatype}"
+
+
+def lexical(term: Term) -> str:
+    """The text of a literal term, without its datatype or language.
+
+    Raises:
+        ValueError: the term is not a literal, or has an escape that N-Triples does not know.
+    """
+    return _parts(term)[0]
+
+
+def spoken(triple: Triple) -> str:
+    """A triple in local names and plain text, for people."""
+    return " ".join(lexical(term) if term.startswith('"') else local_name(term) for term in triple)
+
+
+def datatype_of(term: Term) -> Term:
+    """The datatype of a literal term as an IRI term.
+
+    Raises:
+        ValueError: the term is not a literal.
+    """
+    _, datatype, lang = _parts(term)
+    if lang is not None:
+        return RDF_LANG_STRING
+    return XSD_STRING if datatype is None else datatype
+
+
+def language_of(term: Term) -> str | None:
+    """The language of a literal term in lower case, or None.
+
+    Raises:
+        ValueError: the term is not a literal.
+    """
+    return _parts(term)[2]
+
+
+def _parts(term: Term) -> tuple[str, Term | None, str | None]:
+    match = _LITERAL.fullmatch(term)
+    if match is None:
+        raise ValueError(f"not a literal: {term}")
+    quoted, datatype, lang = match.groups()
+    text = _ESCAPED.sub(_unescape, quoted) if "\\" in quoted else quoted
+    return text, None if datatype is None else f"<{datatype}>", None if lang is None else lang.lower()
+
+
+def _escape(match: re.Match[str]) -> str:
+    char = match[0]
+    return _ESCAPES.get(char) or f"\\u{ord(char):04X}"
+
+
+def _unescape(match: re.Match[str]) -> str:
+    short, long, char = match.groups()
+    if char is None:
+        return chr(int(short or long, 16))
+    if char not in _UNESCAPES:
+        raise ValueError(f"unknown escape \\{char} in a literal")
+    return _UNESCAPES[char]
+
+
+# ---- The TBox ----
+
+ABSTRACT_THING: Final = dm("Abstract_Thing")
+PHYSICAL_THING: Final = dm("Physical_Thing")
+"""The spatial classes are this one and its subclasses."""
+LOCATION: Final = dm("Location")
+"""The places' classes are this one and its subclasses."""
+OBJECT: Final = dm("Object")
+PROPERTY: Final = dm("Property")
+
+COORDINATES: Final = dm("Coordinates")
+THREE_DIM_SIZE: Final = dm("3Three_Dim_Size")
+PREFERRED_REFERENCE: Final = dm("PreferredReference")
+ALTERNATIVE_REFERENCE: Final = dm("AlternativeReference")
+
+HAS_POSITION: Final = dm("hasPosition")
+HAS_SIZE: Final = dm("hasSize")
+HAS_PREFERRED_REFERENCE: Final = dm("hasPreferredReference")
+HAS_ALTERNATIVE_REFERENCE: Final = dm("hasAlternativeReference")
+LEXICAL_REFERENCE: Final = dm("lexicalReference")
+
+COORDINATE_XYZ: Final = (
+    dm("float_coordinates_x"),
+    dm("float_coordinates_y"),
+    dm("float_coordinates_z"),
+)
+ORIENTATION_WXYZ: Final = (
+    dm("float_orientation_w"),
+    dm("float_orientation_x"),
+    dm("float_orientation_y"),
+    dm("float_orientation_z"),
+)
+SIZE_XYZ: Final = (dm("float_size_x"), dm("float_size_y"), dm("float_size_z"))
+
+HAS_AFFORDANCE: Final = dm("hasAffordance")
+CONTAINING: Final = dm("containing")
+SUPPORTING: Final = dm("supporting")
+IS_LOCATED_IN: Final = dm("isLocatedIn")
+
+MODEL: Final = dm("model")
+"""Annotation of a class: the name or file of its body model."""
+FIXED: Final = dm("fixed")
+"""Annotation of a class: whether its bodies stay where they are put."""
+
+
+# ---- RDF, RDFS, OWL, XSD ----
+
+RDF_TYPE: Final = iri(f"{RDF}type")
+RDF_FIRST: Final = iri(f"{RDF}first")
+RDF_REST: Final = iri(f"{RDF}rest")
+RDF_NIL: Final = iri(f"{RDF}nil")
+RDF_LANG_STRING: Final = iri(f"{RDF}langString")
+
+RDFS_CLASS: Final = iri(f"{RDFS}Class")
+RDFS_LABEL: Final = iri(f"{RDFS}label")
+RDFS_COMMENT: Final = iri(f"{RDFS}comment")
+RDFS_SUB_CLASS_OF: Final = iri(f"{RDFS}subClassOf")
+RDFS_SUB_PROPERTY_OF: Final = iri(f"{RDFS}subPropertyOf")
+RDFS_DOMAIN: Final = iri(f"{RDFS}domain")
+RDFS_RANGE: Final = iri(f"{RDFS}range")
+
+OWL_CLASS: Final = iri(f"{OWL}Class")
+OWL_THING: Final = iri(f"{OWL}Thing")
+OWL_NOTHING: Final = iri(f"{OWL}Nothing")
+OWL_ONTOLOGY: Final = iri(f"{OWL}Ontology")
+OWL_IMPORTS: Final = iri(f"{OWL}imports")
+OWL_OBJECT_PROPERTY: Final = iri(f"{OWL}ObjectProperty")
+OWL_DATATYPE_PROPERTY: Final = iri(f"{OWL}DatatypeProperty")
+OWL_ANNOTATION_PROPERTY: Final = iri(f"{OWL}AnnotationProperty")
+OWL_NAMED_INDIVIDUAL: Final = iri(f"{OWL}NamedIndividual")
+OWL_SAME_AS: Final = iri(f"{OWL}sameAs")
+OWL_DIFFERENT_FROM: Final = iri(f"{OWL}differentFrom")
+
+XSD_STRING: Final = iri(f"{XSD}string")
+XSD_FLOAT: Final = iri(f"{XSD}float")
+XSD_BOOLEAN: Final = iri(f"{XSD}boolean")

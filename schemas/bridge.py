@@ -1,0 +1,59 @@
+"""What the coordinator asks of the knowledge base, besides `commit` (schemas/commits.py)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from msgspec import Struct
+
+from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
+from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.entities import ClassInfo, Entity, Source
+from schemas.explanations import Explanation
+
+
+class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All entities, with the number of the commit that they are true after."""
+
+
+class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The stars of these entities; UnknownName if one is not there."""
+
+    names: tuple[str, ...]
+
+
+class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Add an ABox in any RDF syntax in one commit; with `replace` instead of the present one."""
+
+    id: str
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    content: bytes
+    filename: str
+    replace: bool
+    skip_unknown: bool
+
+
+class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commit, and what was left out and why."""
+
+    commit: Commit | None
+    skipped: tuple[str, ...]
+
+
+BRIDGE: dict[str, tuple[type[Struct], Any]] = {
+    "commit": (Transaction, Commit | None),
+    "load": (LoadDocument, Loaded),
+    "snapshot": (SnapshotQuery, Snapshot),
+    "star": (StarQuery, tuple[Star, ...]),
+    "classes": (Classes, tuple[ClassInfo, ...]),
+    "list": (List, tuple[Entity, ...]),
+    "get": (Get, Entity),
+    "check": (Check, Checked),
+    "infer": (Infer, Inferred),
+    "explain": (Explain, Explanation),
+    "export": (Export, Document),
+}
+"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
+gives None."""

@@ -1,0 +1,93 @@
+"""MessagePack in and out, JSON for bare eyes, and text parameters of a selector."""
+
+from __future__ import annotations
+
+import re
+import types
+from collections.abc import Mapping
+from typing import Any, TypeVar, Union, get_args, get_origin
+
+import msgspec
+
+from schemas.errors import BadRequest
+from schemas.wording import sentence
+
+T = TypeVar("T")
+
+_encoder = msgspec.msgpack.Encoder()
+_decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
+
+
+def encode(message: Any) -> bytes:
+    """`message` as MessagePack. Raises BadRequest for text that cannot be written as UTF-8."""
+    try:
+        return _encoder.encode(message)
+    except UnicodeEncodeError as error:
+        raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
+
+
+def encode_json(message: Any) -> bytes:
+    """`message` as JSON, indented for people; bytes become base64."""
+    return msgspec.json.format(msgspec.json.encode(message), indent=2)
+
+
+def decode(payload: bytes, kind: type[T] | Any) -> T:
+    """The message in `payload`, MessagePack or a JSON object. Raises BadRequest naming the field at fault."""
+    try:
+        if looks_like_json(payload):
+            return msgspec.json.decode(payload, type=kind)
+        decoder = _decoders.get(kind)
+        if decoder is None:
+            decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
+        return decoder.decode(payload)  # type: ignore[no-any-return]
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+
+
+def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
+    """A message from selector parameters: vectors as `1,2,0`, lists of text as `a|b`.
+
+    Raises BadRequest naming the parameter at fault.
+    """
+    fields = {field.encode_name: field.type for field in msgspec.structs.fields(kind)}  # type: ignore[arg-type]
+    values = {key: _split(text, fields.get(key, str)) for key, text in parameters.items()}
+    return convert(values, kind, strict=False)
+
+
+def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
+    """Plain data as a message. Raises BadRequest."""
+    try:
+        return msgspec.convert(values, type=kind, strict=strict)
+    except msgspec.MsgspecError as error:
+        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+
+
+def looks_like_json(payload: bytes) -> bool:
+    """A JSON object begins with a brace, which no MessagePack map does."""
+    return payload.lstrip()[:1] == b"{"
+
+
+def encoding_of(message: Any) -> str:
+    """The Zenoh encoding that goes with `message`, schema included."""
+    return f"application/msgpack;semmap.{type(message).__name__}.v1"
+
+
+def _split(text: str, kind: Any) -> Any:
+    if kind is bool and not text:
+        return True  # a parameter without a value: `semmap/cmd/add?class=Chair;wait`
+    members = get_args(kind) if get_origin(kind) in (Union, types.UnionType) else (kind,)
+    for member in members:
+        if get_origin(member) is tuple:
+            inner = get_args(member)
+            return re.split(r"[|,]" if Ellipsis not in inner else r"[|]", text)
+    return text
+
+
+def as_json(payload: bytes) -> str:
+    """Any payload on one line for bare eyes: MessagePack or JSON as JSON, else its size."""
+    try:
+        if looks_like_json(payload):
+            return msgspec.json.format(payload, indent=-1).decode()
+        return msgspec.json.encode(msgspec.msgpack.decode(payload)).decode()
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return f"{len(payload)} bytes"

@@ -1,0 +1,142 @@
+"""What stands in the map: poses, sizes, names, references and where the knowledge came from."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct, field
+
+NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_.-]{0,127}$(?!\n)"
+"""A name is the local part of an IRI, a chunk of a key and the name of a body, so it is kept this plain.
+(Alone, `$` would let a line end pass.)"""
+
+REACH_M = 10_000.0
+"""Coordinates beyond this are taken for a mistake."""
+
+Name = Annotated[str, Meta(pattern=NAME_PATTERN)]
+Metres = Annotated[float, Meta(ge=-REACH_M, le=REACH_M)]
+Length = Annotated[float, Meta(gt=0.0, le=REACH_M)]
+Unit = Annotated[float, Meta(ge=-1.001, le=1.001)]
+Angle = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Text = Annotated[str, Meta(min_length=1, max_length=1000)]
+Probability = Annotated[float, Meta(ge=0.0, le=1.0)]
+
+Vector = tuple[Metres, Metres, Metres]
+Size = tuple[Length, Length, Length]
+"""Extent along the body's own x, y and z [m]."""
+Quaternion = tuple[Unit, Unit, Unit, Unit]
+"""Unit quaternion, `wxyz`."""
+
+Source = Literal["operator", "file", "scene", "perception"]
+"""Who says so. Only operators and files decide what a thing is; anybody may say where it is now."""
+
+IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
+_UNIT_TOLERANCE = 1e-3
+
+
+class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where a thing stands in the map frame (z up): its bottom centre [m] and its orientation.
+
+    Raises ValueError for a quaternion that is not of unit length (to one in a thousand).
+    """
+
+    position_m: Vector
+    orientation_wxyz: Quaternion = IDENTITY
+
+    def __post_init__(self) -> None:
+        norm = math.hypot(*self.orientation_wxyz)
+        if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
+            raise ValueError(f"the quaternion {self.orientation_wxyz} has length {norm:.4g}; it must be 1")
+
+    @property
+    def yaw_rad(self) -> float:
+        """Rotation about the map's z axis, in (-pi, pi]."""
+        w, x, y, z = self.orientation_wxyz
+        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def orientation_from_yaw(yaw_rad: float) -> Quaternion:
+    """The quaternion that turns by `yaw_rad` about z."""
+    return (math.cos(yaw_rad / 2.0), 0.0, 0.0, math.sin(yaw_rad / 2.0))
+
+
+def distance_m(a: Pose, b: Pose) -> float:
+    """Distance of two positions [m]."""
+    return math.dist(a.position_m, b.position_m)
+
+
+def angle_rad(a: Pose, b: Pose) -> float:
+    """The angle of the rotation from one orientation to the other, in [0, pi]."""
+    dot = abs(sum(p * q for p, q in zip(a.orientation_wxyz, b.orientation_wxyz, strict=True)))
+    return 2.0 * math.acos(min(1.0, dot))
+
+
+class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commit that last changed something, and who made it."""
+
+    commit: int
+    stamp_ns: int
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    confidence: Probability | None = None
+
+
+class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the simulator makes of an entity.
+
+    `present`: it stands there. `ghost`: seen but not colliding, because something else fills the place.
+    `pending`: not spawned yet. `failed`: cannot be made, `detail` says why. `missing`: the scene, which is
+    the truth here, does not have it. `none`: places have no bodies. `unknown`: no simulator runs.
+    """
+
+    status: Literal["present", "ghost", "pending", "failed", "missing", "none", "unknown"]
+    detail: str = ""
+    model: str = ""
+    """The model that the body was made from; for a pending one, the model that it will have."""
+
+
+class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One individual of the map that is somewhere: an object, a person, a wall, or a place.
+
+    Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.
+    `pose_provenance` and `shape_provenance` say what last changed its pose, and its class or size.
+    """
+
+    name: str
+    class_: str = field(name="class")
+    iri: str
+    types: tuple[str, ...]
+    pose: Pose | None = None
+    size_m: Size | None = None
+    preferred_reference: str | None = None
+    alternative_references: tuple[str, ...] = ()
+    place: bool = False
+    fixed: bool = False
+    model: str = ""
+    body: BodyState | None = None
+    provenance: Provenance
+    pose_provenance: Provenance
+    shape_provenance: Provenance
+
+
+class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One named class of the TBox, as commands need it."""
+
+    name: str
+    iri: str
+    parents: tuple[str, ...]
+    ancestors: tuple[str, ...]
+    labels: dict[str, str]
+    """Language tag (or "") to text."""
+    comment: str = ""
+    spatial: bool
+    """Its individuals are in space: they may be added."""
+    place: bool
+    fixed: bool
+    model: str
+    asserted: int = 0
+    """How many entities say they are of this class."""
+    inferred: int = 0
+    """How many are, by inference."""

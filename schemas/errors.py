@@ -1,0 +1,163 @@
+"""The error tree, and its form on the wire.
+
+SemmapError
+├── Refused        exit status 1: the request was understood and the map says no
+│   ├── Inconsistent, PreconditionFailed, UnknownName, NameTaken
+├── BadRequest     exit status 2: the request cannot be understood
+│   ├── UnknownClass, UnknownVerb, BadFile
+├── NoAnswer       exit status 3: nobody serves the key, or this client may not ask it
+└── InternalError  exit status 1: a fault of ours, told as one
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import ClassVar
+
+from msgspec import Struct
+from rapidfuzz import fuzz, process, utils
+
+from schemas.explanations import Explanation
+
+
+class SemmapError(Exception):
+    """Base of every error that crosses the wire. The text is one sentence saying what is possible."""
+
+    code: ClassVar[str] = "error"
+    exit_status: ClassVar[int] = 1
+
+    def __init__(self, text: str, *, explanation: Explanation | None = None) -> None:
+        super().__init__(text)
+        self.text = text
+        self.explanation = explanation
+
+
+class Refused(SemmapError):
+    """Understood, and not done."""
+
+    code = "refused"
+
+
+class Inconsistent(Refused):
+    """The change would make the map inconsistent; `explanation` says why."""
+
+    code = "inconsistent"
+
+
+class PreconditionFailed(Refused):
+    """The map is no longer as the sender believed it to be."""
+
+    code = "precondition-failed"
+
+
+class UnknownName(Refused):
+    """No entity has this name."""
+
+    code = "unknown-name"
+
+
+class NameTaken(Refused):
+    """Another individual has this name already."""
+
+    code = "name-taken"
+
+
+class BadRequest(SemmapError):
+    """The request cannot be understood: usage, a malformed value or message."""
+
+    code = "bad-request"
+    exit_status = 2
+
+
+class UnknownClass(BadRequest):
+    """The TBox has no such class, or it is not the class of a thing in space."""
+
+    code = "unknown-class"
+
+
+class UnknownVerb(BadRequest):
+    """There is no such command."""
+
+    code = "unknown-verb"
+
+
+class BadFile(BadRequest):
+    """A file is missing, unreadable or malformed."""
+
+    code = "bad-file"
+
+
+class NoAnswer(SemmapError):
+    """Nobody replied: the node is not running, or this client may not ask it."""
+
+    code = "no-answer"
+    exit_status = 3
+
+
+class InternalError(SemmapError):
+    """A fault in semmap itself; the node that met it has logged it and lives on."""
+
+    code = "internal"
+
+
+class ErrorMessage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What an error reply carries."""
+
+    code: str
+    text: str
+    explanation: Explanation | None = None
+
+
+_BY_CODE: dict[str, type[SemmapError]] = {
+    error.code: error
+    for error in (
+        SemmapError,
+        Refused,
+        Inconsistent,
+        PreconditionFailed,
+        UnknownName,
+        NameTaken,
+        BadRequest,
+        UnknownClass,
+        UnknownVerb,
+        BadFile,
+        NoAnswer,
+        InternalError,
+    )
+}
+
+
+def to_message(error: SemmapError) -> ErrorMessage:
+    """The wire form of `error`."""
+    return ErrorMessage(code=error.code, text=error.text, explanation=error.explanation)
+
+
+def from_message(message: ErrorMessage) -> SemmapError:
+    """The error that `message` stands for; a code from a newer version becomes a plain SemmapError."""
+    return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
+
+
+_FEW = 10
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
+    near = process.extract(
+        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+    )
+    names = [name for name, _, _ in near]
+    if not names:
+        return ""
+    return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
+
+
+def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
+    """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
+    known = list(known)
+    said = [f"'{name}' (of {_some(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
+    kind = "unknown class" if len(said) == 1 else "unknown classes"
+    return f"{kind} {', '.join(said)}; --skip-unknown leaves these out"
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:_FEW]) + (f" and {len(names) - _FEW} more" if len(names) > _FEW else "")

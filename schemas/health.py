@@ -1,0 +1,19 @@
+"""Heartbeats."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from msgspec import Struct
+
+
+class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Sent once a second by the thread that owns a node's state, so a hung node falls silent."""
+
+    node: str
+    pid: int
+    started_ns: int
+    stamp_ns: int
+    state: Literal["starting", "ready"]
+    detail: str = ""
+    last_error: str = ""

@@ -1,0 +1,66 @@
+"""Every key of the system, its message and its quality of service. No key is written anywhere else.
+
+A prefix for one robot (`robot1/semmap/...`) is Zenoh's own `namespace` setting.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+from schemas.commits import Commit
+from schemas.entities import Entity
+from schemas.health import Health
+from schemas.scenes import Poses
+
+ROOT = "semmap"
+
+# Queries: <prefix>/<verb>
+CMD = f"{ROOT}/cmd"
+BRIDGE = f"{ROOT}/bridge"
+SIM = f"{ROOT}/sim"
+
+NODES = ("kb_node", "coordinator", "sim_node", "recorder")
+"""The nodes that `semmap up` starts, in the order of starting."""
+
+
+class Topic(NamedTuple):
+    """A publication. `lossless` blocks rather than drops, and is recovered after a cut; else newest wins."""
+
+    key: str
+    message: Any
+    qos: Literal["lossless", "newest"]
+
+
+ACK = Topic(f"{ROOT}/ack", Any, "lossless")
+COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
+ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
+POSES = Topic(f"{SIM}/poses", Poses, "newest")
+CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
+HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
+
+TOPICS = (ACK, COMMIT, ENTITY, POSES, CAMERA, HEALTH)
+
+
+def entity_key(class_name: str, name: str) -> str:
+    """Where the state of one entity is published under one of its classes."""
+    return f"{ROOT}/jena/entity/{class_name}/{name}"
+
+
+def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:
+    """Where the raw planes of one camera are published; the attachment is a `CameraFrame`."""
+    return f"{SIM}/camera/{camera}/{plane}"
+
+
+def health_key(node: str) -> str:
+    """Where a node's heartbeat is published."""
+    return f"{ROOT}/health/{node}"
+
+
+def live_key(node: str, instance: str = "*") -> str:
+    """The liveliness token of one instance of a node; `**` does not match its `@` chunk."""
+    return f"{ROOT}/@live/{node}/{instance}"
+
+
+def last_chunk(key: str) -> str:
+    """The verb of a query's key, or the node of a heartbeat's."""
+    return key.rsplit("/", 1)[-1]

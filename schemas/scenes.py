@@ -1,0 +1,158 @@
+"""The simulated scene: bodies, their poses, and what one may ask of the simulator."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct, field
+
+from schemas.entities import Name, Pose, Size
+
+
+class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A body to be made for an entity, standing at `pose` as of commit `commit`.
+
+    `model` is a name of the model library or of a file; empty or unknown means a box of `size_m`.
+    `size_m` None means the model's own size.
+    """
+
+    name: Name
+    class_: str = field(name="class")
+    model: str = ""
+    pose: Pose
+    size_m: Size | None = None
+    fixed: bool = False
+    commit: int
+
+
+class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A body as it stands in the scene.
+
+    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed.
+    `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
+    world's own furniture. `size_m` is what it really measures.
+    """
+
+    name: str
+    class_: str | None = field(name="class")
+    model: str
+    pose: Pose
+    size_m: Size
+    fixed: bool
+    entity: bool
+    ghost: bool
+    resting: bool
+    commit: int
+    shape_commit: int
+
+
+class Spawn(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Make bodies, all in one go; each succeeds or fails by itself."""
+
+    bodies: tuple[BodyOrder, ...]
+
+
+class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What came of it: the bodies made, and a reason for each that could not be."""
+
+    bodies: tuple[Body, ...]
+    failed: dict[str, str]
+
+
+class Delete(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Take bodies away; one that is not there is no error."""
+
+    names: tuple[str, ...]
+
+
+class Deleted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The bodies that were there and are gone."""
+
+    names: tuple[str, ...]
+
+
+class Placement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Put one body at `pose`. With a `commit` it is the map's order, without one it is a hand."""
+
+    name: str
+    pose: Pose
+    commit: int | None = None
+
+
+class MoveBodies(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Put bodies elsewhere: kinematically, then released to physics."""
+
+    placements: tuple[Placement, ...]
+
+
+class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The bodies that were moved, and a reason for each that was not."""
+
+    names: tuple[str, ...]
+    failed: dict[str, str]
+
+
+class SceneQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Every body as it stands."""
+
+
+class PictureQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
+
+    camera: str = ""
+    width: Annotated[int, Meta(ge=16, le=4096)] = 960
+    height: Annotated[int, Meta(ge=16, le=4096)] = 640
+
+
+class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A PNG file."""
+
+    png: bytes
+
+
+class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What goes with each raw plane of a camera, as its attachment.
+
+    `encoding`: `rgb8` has (height, width, 3) bytes; `depth32f` (height, width) floats, metres along the
+    optical axis, 0 where nothing is seen; `segments16` (height, width) unsigned numbers, 0 for none of
+    the bodies and n for `names[n - 1]`. Numbers are little-endian, rows from the top. `intrinsics` (3, 3)
+    [pixel] and `map_from_camera` (4, 4) [m] are row by row; the camera's frame is the optical one, with x
+    to the right, y down, z into the scene, and the middle of the first pixel at (0.5, 0.5).
+    """
+
+    camera: str
+    encoding: Literal["rgb8", "depth32f", "segments16"]
+    width: int
+    height: int
+    stamp_ns: int
+    sim_time_s: float
+    intrinsics: tuple[float, ...]
+    map_from_camera: tuple[float, ...]
+    names: tuple[str, ...] = ()
+
+
+class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Every body. `run` differs after a restart.
+
+    `version` grows with each spawn and delete, and when a body becomes a ghost or ceases to be one.
+    """
+
+    run: str
+    version: int
+    stamp_ns: int
+    sim_time_s: float
+    world: str
+    bodies: tuple[Body, ...]
+
+
+class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where all bodies are now; `poses` has seven numbers a body: position [m], quaternion wxyz."""
+
+    run: str
+    version: int
+    stamp_ns: int
+    sim_time_s: float
+    names: tuple[str, ...]
+    poses: tuple[float, ...]
+    resting: tuple[bool, ...]
+    commits: tuple[int, ...]

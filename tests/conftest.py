@@ -1,0 +1,120 @@
+"""Whole systems for tests: spawned processes, real Zenoh peers on loopback, each on a port of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nodes.extern.cli import execute
+from nodes.extern.client import Client, connect
+
+_BIN = Path(sys.executable).parent
+_START_S = 90.0
+PATIENCE_S = 30.0
+
+
+def free_endpoint() -> str:
+    """A Zenoh endpoint on a port of loopback that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def until(condition: Callable[[], Any], what: str) -> Any:
+    """Wait for `condition()` to hold and return what it gave; fail after a while."""
+    deadline = time.monotonic() + PATIENCE_S
+    while time.monotonic() < deadline:
+        if result := condition():
+            return result
+        time.sleep(0.1)
+    return pytest.fail(f"waited {PATIENCE_S:g} s in vain: {what}")
+
+
+class System:
+    """A running `semmap up`."""
+
+    def __init__(self, data: Path, endpoint: str, process: subprocess.Popen[str]) -> None:
+        self.data = data
+        self.endpoint = endpoint
+        self.process = process
+
+    def cli(self, *words: str | Path, status: int = 0) -> str:
+        """What `semmap WORDS` prints; it must end with `status`, and with an error say one line."""
+        out, err = io.StringIO(), io.StringIO()
+        with (
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+            pytest.MonkeyPatch.context() as m,
+        ):
+            m.setenv("SEMMAP_CONNECT", self.endpoint)
+            ended = execute([*map(str, words)])
+        assert ended == status, (words, out.getvalue(), err.getvalue())
+        if status:
+            assert len(err.getvalue().strip().splitlines()) == 1, err.getvalue()
+            assert err.getvalue().startswith("semmap: ")
+        return out.getvalue() + err.getvalue()
+
+    @contextlib.contextmanager
+    def spawned(self, *words: str) -> Iterator[subprocess.Popen[str]]:
+        """`semmap WORDS` as a process of its own; ended with Ctrl-C."""
+        environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
+        command = [_BIN / "semmap", *words]
+        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+            try:
+                yield process
+            finally:
+                process.send_signal(signal.SIGINT)
+
+    def client(self) -> contextlib.AbstractContextManager[Client]:
+        """A client of this system."""
+        return connect(self.endpoint)
+
+    def pid(self, node: str) -> int:
+        """The process of a node."""
+        with self.client() as client:
+            return next(n.pid for n in client.status().nodes if n.node == node)
+
+    def stop(self) -> float:
+        """Press Ctrl-C; how long the end took [s]."""
+        start = time.monotonic()
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(timeout=30)
+        return time.monotonic() - start
+
+
+@contextlib.contextmanager
+def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iterator[System]:
+    """`semmap up` with these words, ready; stopped at the end."""
+    endpoint = endpoint or free_endpoint()
+    command = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *map(str, words)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    system = System(data, endpoint, process)
+    try:
+        _await_ready(process)
+        yield system
+    finally:
+        if process.poll() is None:
+            system.stop()
+        assert process.stdout is not None
+        process.stdout.close()
+
+
+def _await_ready(process: subprocess.Popen[str]) -> None:
+    assert process.stdout is not None
+    lines = []
+    for line in process.stdout:
+        lines.append(line)
+        if line.startswith("stop "):
+            return
+    pytest.fail("the system did not start:\n" + "".join(lines))

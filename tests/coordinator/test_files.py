@@ -1,0 +1,106 @@
+"""Reading scenes in JSON and HuRIC maps, and telling files apart."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files.content import kind_of
+from schemas.errors import BadFile
+from tests.data import data_folder
+
+SCENE = {"entities": [{"class": "Chair", "name": "chair9", "at": [1, 2, 0], "yaw": 1.5, "alt": ["seat"]}]}
+
+
+def as_bytes(scene: object) -> bytes:
+    return json.dumps(scene).encode()
+
+
+@pytest.mark.parametrize(
+    ("content", "kind"),
+    [
+        (b'<?xml version="1.0"?><huricExample id="1"/>', "huric"),
+        (b'<?xml version="1.0"?><rdf:RDF xmlns:rdf="..."/>', "abox"),
+        (b"@prefix : <http://x#> . :a a :B .", "abox"),
+        (b"<http://x#a> <http://x#b> <http://x#c> .", "abox"),
+        (b'\xef\xbb\xbf  {"entities": []}', "scene"),
+        (b'{"@context": {}, "@graph": []}', "abox"),
+        (b'[{"@id": "http://x#a"}]', "abox"),
+    ],
+)
+def test_files_are_told_apart_by_content(content, kind):
+    assert kind_of(content, "file") == kind
+
+
+@pytest.mark.parametrize("content", [b"", b"  \n", b"{", b'{"chairs": 3}', b"[1, 2]", b"[" * 100_000])
+def test_what_is_nothing_of_the_kind_is_refused(content):
+    with pytest.raises(BadFile):
+        kind_of(content, "file.json")
+
+
+def test_a_scene():
+    (chair,) = scene_file.read(as_bytes(SCENE), "scene.json")
+    assert (chair.class_, chair.name, chair.at, chair.yaw) == ("Chair", "chair9", (1.0, 2.0, 0.0), 1.5)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"at": [1, 2]}, "at"),
+        ({"at": [1, 2, "x"]}, "at"),
+        ({"at": [1e9, 0, 0]}, "at"),
+        ({"size": [1, -1, 1]}, "size"),
+        ({"name": "my chair"}, "name"),
+        ({"colour": "red"}, "colour"),
+        ({"ref": ""}, "ref"),
+    ],
+)
+def test_a_scene_with_a_fault_names_the_field(change, said):
+    scene = {"entities": [{**SCENE["entities"][0], **change}]}
+    with pytest.raises(BadFile, match=said):
+        scene_file.read(as_bytes(scene), "scene.json")
+
+
+def test_the_json_schema_in_the_repository_is_up_to_date():
+    path = Path(scene_file.__file__).parents[3] / "schemas" / "scene.schema.json"
+    assert path.read_text() == scene_file.json_schema()
+
+
+HURIC = b"""<huricExample id="1"><semanticMap><entities>
+<entity atom="jar_1" type="Jar"><attributes>
+<attribute name="contain_ability"><value>true</value></attribute>
+<attribute name="support_ability"><value>false</value></attribute>
+<attribute name="lexical_references"><value>jar</value><value>pot</value></attribute>
+</attributes><coordinate angle="0.5" x="11.0" y="6.0" z="0.0"/></entity>
+</entities></semanticMap></huricExample>"""
+
+
+def test_a_huric_map():
+    (jar,) = huric.read(HURIC, "a.hrc")
+    assert (jar.class_, jar.name, jar.at, jar.yaw) == ("Jar", "jar_1", (11.0, 6.0, 0.0), 0.5)
+    assert (jar.ref, jar.alt, jar.affords) == ("jar", ("pot",), ("containing",))
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (HURIC[:200], "no valid XML"),
+        (b"<huricExample/>", "no semantic map"),
+        (HURIC.replace(b'x="11.0"', b'x="NaN"'), "jar_1"),
+        (HURIC.replace(b'x="11.0"', b'x="eleven"'), "jar_1"),
+        (HURIC.replace(b'atom="jar_1"', b'atom="jar 1"'), "jar 1"),
+        (b'<!DOCTYPE x [<!ENTITY a "b">]>' + HURIC, "XML entities"),
+    ],
+)
+def test_a_huric_map_with_a_fault_is_refused(fault, said):
+    with pytest.raises(BadFile, match=said):
+        huric.read(fault, "a.hrc")
+
+
+def test_every_huric_map_of_the_corpus_can_be_read():
+    paths = sorted((data_folder() / "huric").rglob("*.hrc"))
+    assert paths
+    assert all(huric.read(path.read_bytes(), path.name) for path in paths)

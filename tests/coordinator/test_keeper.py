@@ -1,0 +1,187 @@
+"""The laws of the reconciler: it converges, in one pass when nothing moves, and never oscillates."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+from msgspec import structs
+
+from nodes.coordinator.config import Thresholds
+from nodes.coordinator.keeper import Actions, latest, reconcile
+from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+from schemas.scenes import Body
+
+THRESHOLDS = Thresholds(distance_m=0.05, angle_rad=0.0873)
+NAMES = ["chair1", "table1", "cup1", "kitchen1"]
+
+
+def provenance(commit: int, source: str = "operator") -> Provenance:
+    return Provenance(commit=commit, stamp_ns=commit, source=source)
+
+
+def entity(name: str, pose: Pose | None, *, posed=1, source="operator", shaped=1, place=False) -> Entity:
+    return Entity(
+        name=name,
+        class_="Chair",
+        iri=f"http://example.org/{name}",
+        types=("Chair",),
+        pose=pose,
+        place=place,
+        provenance=provenance(max(posed, shaped)),
+        pose_provenance=provenance(posed, source),
+        shape_provenance=provenance(shaped),
+    )
+
+
+def body(name: str, pose: Pose, *, commit=1, shape_commit=1, resting=True, of_entity=True) -> Body:
+    return Body(
+        name=name,
+        class_="Chair",
+        model="chair",
+        pose=pose,
+        size_m=(0.5, 0.5, 0.5),
+        fixed=False,
+        entity=of_entity,
+        ghost=False,
+        resting=resting,
+        commit=commit,
+        shape_commit=shape_commit,
+    )
+
+
+def at(x: float, y: float = 0.0, z: float = 0.0, yaw: float = 0.0) -> Pose:
+    return Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(yaw))
+
+
+def look(entities: list[Entity], bodies: list[Body], truth="map", failed=None) -> Actions:
+    return reconcile({e.name: e for e in entities}, {b.name: b for b in bodies}, truth, THRESHOLDS, failed)
+
+
+NOTHING = Actions()
+
+
+def test_agreement_needs_nothing():
+    assert look([entity("chair1", at(1))], [body("chair1", at(1.04))]) == NOTHING
+    assert look([entity("chair1", at(1))], [body("chair1", at(1.04))], "scene") == NOTHING
+
+
+def test_an_entity_without_a_body_gets_one_where_the_map_says():
+    (order,) = look([entity("chair1", at(1, 2), posed=7)], []).spawn
+    assert (order.name, order.pose, order.commit) == ("chair1", at(1, 2), 7)
+
+
+def test_places_and_things_without_a_position_get_no_body():
+    assert look([entity("kitchen1", at(1), place=True), entity("chair1", None)], []) == NOTHING
+
+
+def test_what_became_a_place_loses_its_body():
+    assert look([entity("chair1", at(1), place=True)], [body("chair1", at(1))]).delete == ("chair1",)
+
+
+def test_a_body_that_failed_is_not_tried_again_until_its_entity_changes():
+    assert look([entity("chair1", at(1), posed=3)], [], failed={"chair1": 3}) == NOTHING
+    assert look([entity("chair1", at(1), posed=4)], [], failed={"chair1": 3}).spawn
+
+
+def test_a_body_that_came_to_rest_elsewhere_moves_the_map():
+    (followed,) = look([entity("chair1", at(1))], [body("chair1", at(2))]).follow
+    assert followed.pose == at(2)
+
+
+def test_a_turned_body_moves_the_map():
+    assert look([entity("chair1", at(1))], [body("chair1", at(1, yaw=0.2))]).follow
+    assert look([entity("chair1", at(1))], [body("chair1", at(1, yaw=0.08))]) == NOTHING
+
+
+def test_a_body_in_motion_is_left_alone():
+    assert look([entity("chair1", at(1))], [body("chair1", at(2), resting=False)]) == NOTHING
+
+
+def test_an_order_of_the_map_moves_the_body_even_below_the_threshold_and_in_motion():
+    entities, bodies = [entity("chair1", at(1), posed=5)], [body("chair1", at(1.01), commit=4, resting=False)]
+    (placement,) = look(entities, bodies).place
+    assert (placement.pose, placement.commit) == (at(1), 5)
+
+
+def test_what_the_scene_told_the_map_is_not_ordered_back():
+    entities, bodies = [entity("chair1", at(1), posed=5, source="scene")], [body("chair1", at(2), commit=4)]
+    actions = look(entities, bodies)
+    assert actions.follow
+    assert not actions.place
+
+
+def test_a_new_shape_makes_a_new_body():
+    actions = look([entity("chair1", at(1), shaped=5)], [body("chair1", at(1), shape_commit=4)])
+    assert actions.delete == ("chair1",)
+    assert [order.name for order in actions.spawn] == ["chair1"]
+
+
+def test_orphans_go_and_the_worlds_own_furniture_stays():
+    bodies = [body("chair1", at(1)), body("sofa", at(2), of_entity=False)]
+    assert look([], bodies).delete == ("chair1",)
+
+
+def test_in_mode_scene_bodies_become_entities_and_entities_without_body_are_missing():
+    actions = look([entity("chair1", at(1))], [body("sofa", at(2), of_entity=False)], "scene")
+    assert [b.name for b in actions.adopt] == ["sofa"]
+    assert actions.missing == ("chair1",)
+    assert not actions.spawn
+    assert not actions.delete
+
+
+poses = st.builds(at, st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 1), st.floats(-3, 3))
+sources = st.sampled_from(["operator", "file", "scene", "perception"])
+entity_maps = st.dictionaries(
+    st.sampled_from(NAMES),
+    st.tuples(st.none() | poses, st.integers(1, 9), sources, st.integers(1, 9), st.booleans()),
+).map(lambda d: {n: entity(n, p, posed=c, source=s, shaped=h, place=pl) for n, (p, c, s, h, pl) in d.items()})
+scenes = st.dictionaries(
+    st.sampled_from([*NAMES, "sofa"]),
+    st.tuples(poses, st.integers(0, 9), st.integers(0, 9), st.booleans()),
+).map(lambda d: {n: body(n, p, commit=c, shape_commit=h, of_entity=e) for n, (p, c, h, e) in d.items()})
+
+
+def carry_out(entities: dict[str, Entity], bodies: dict[str, Body], actions: Actions):
+    """A world in which every order is obeyed and nothing moves by itself."""
+    entities, bodies = dict(entities), dict(bodies)
+    for name in actions.delete:
+        del bodies[name]
+    for order in actions.spawn:
+        assert order.name not in bodies
+        bodies[order.name] = body(order.name, order.pose, commit=order.commit, shape_commit=order.commit)
+    for placement in actions.place:
+        old = bodies[placement.name]
+        bodies[placement.name] = structs.replace(old, pose=placement.pose, commit=placement.commit)
+    newest = max([0, *map(latest, entities.values())]) + 1
+    for followed in actions.follow:
+        told = structs.replace(entities[followed.name], pose=followed.pose)
+        entities[followed.name] = structs.replace(told, pose_provenance=provenance(newest, "scene"))
+    for adopted in actions.adopt:
+        entities[adopted.name] = entity(adopted.name, adopted.pose, posed=newest, source="scene", shaped=0)
+    return entities, bodies
+
+
+@given(entity_maps, scenes, st.sampled_from(["map", "scene"]))
+def test_one_pass_brings_map_and_scene_together(entities, bodies, truth):
+    actions = reconcile(entities, bodies, truth, THRESHOLDS)
+    again = reconcile(*carry_out(entities, bodies, actions), truth, THRESHOLDS)
+    assert again == Actions(missing=again.missing)
+
+
+@given(entity_maps, scenes)
+def test_a_name_is_in_one_kind_of_order_only(entities, bodies):
+    actions = reconcile(entities, bodies, "map", THRESHOLDS)
+    orders = (
+        [o.name for o in actions.spawn],
+        [p.name for p in actions.place],
+        [p.name for p in actions.follow],
+    )
+    names = [name for kind in orders for name in kind]
+    assert len(names) == len(set(names))
+
+
+@given(entity_maps, scenes)
+def test_mode_map_never_changes_who_exists_in_the_map(entities, bodies):
+    actions = reconcile(entities, bodies, "map", THRESHOLDS)
+    assert not actions.adopt
+    assert not actions.missing

@@ -1,0 +1,186 @@
+import socket
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nodes import bus
+from nodes.loop import Node
+from nodes.sim_node.config import CameraConfig, SimConfig
+from nodes.sim_node.node import Simulator
+from schemas import codec, errors, keys
+from schemas.commands import Done, Pause, Reset, StepOnce
+from schemas.scenes import (
+    BodiesMoved,
+    CameraFrame,
+    Delete,
+    Deleted,
+    MoveBodies,
+    Picture,
+    PictureQuery,
+    Scene,
+    SceneQuery,
+    Spawn,
+    Spawned,
+)
+from tests.sim_node.orders import hand, order, pose
+
+
+def free_endpoint():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+@pytest.fixture(scope="module")
+def client():
+    endpoint = free_endpoint()
+    network = bus.Network(connect=(), listen=(endpoint,), mode="peer")
+    with bus.open_session(network) as session:
+        node = Node("sim_node", session)
+        cameras = CameraConfig(rate_hz=5.0, width=64, height=48, segments=True, graphics=False)
+        simulator = Simulator(node, SimConfig(network=network, cameras=cameras))
+        thread = threading.Thread(target=node.run)
+        thread.start()
+        try:
+            with bus.open_session(bus.Network(connect=(endpoint,))) as mine:
+                yield mine
+        finally:
+            node.stop()
+            thread.join()
+            simulator.close()
+
+
+REPLIES = {
+    "spawn": Spawned,
+    "delete": Deleted,
+    "move": BodiesMoved,
+    "snapshot": Scene,
+    "pause": Done,
+    "step": Done,
+    "reset": Done,
+    "picture": Picture,
+}
+
+
+def ask(client, verb, message):
+    return bus.ask(client, keys.SIM, verb, message, REPLIES[verb])
+
+
+@pytest.fixture
+def poses(client):
+    """The poses as they come in."""
+    seen = []
+    subscriber = bus.follow(client, keys.POSES, lambda key, message: seen.append(message))
+    yield seen
+    subscriber.undeclare()
+
+
+@pytest.fixture(autouse=True)
+def tidy(client):
+    yield
+    ask(client, "delete", Delete(names=tuple(b.name for b in ask(client, "snapshot", SceneQuery()).bodies)))
+
+
+def wait_for(condition, timeout_s=10.0):
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def test_spawn_is_seen_in_the_poses_and_gone_after_delete(client, poses):
+    spawned = ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0), commit=4),)))
+    assert [b.name for b in spawned.bodies] == ["cup1"]
+    wait_for(lambda: poses and poses[-1].names == ("cup1",) and poses[-1].resting == (True,))
+    assert poses[-1].commits == (4,)
+    assert ask(client, "snapshot", SceneQuery()).bodies[0].name == "cup1"
+    assert ask(client, "delete", Delete(names=("cup1", "cup9"))).names == ("cup1",)
+    wait_for(lambda: poses[-1].names == ())
+
+
+def test_a_hand_is_seen_to_move_before_it_rests(client, poses):
+    ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
+    wait_for(lambda: poses and poses[-1].resting == (True,))
+    moved = ask(client, "move", MoveBodies(placements=(hand("cup1", pose(2, 0)), hand("x", pose(0, 0)))))
+    assert moved.names == ("cup1",)
+    assert "x" in moved.failed
+    wait_for(lambda: poses[-1].resting == (True,) and poses[-1].poses[0] > 1.9)
+    there = [p.resting[0] for p in poses if p.names and p.poses[0] > 1.9]
+    assert not there[0]
+
+
+def test_poses_come_twenty_times_a_second(client, poses):
+    time.sleep(1.0)
+    assert 5 <= len(poses) <= 30  # a busy machine may be late, never early
+
+
+def test_paused_time_goes_on_step_by_step_only(client):
+    assert "still" in ask(client, "pause", Pause()).text
+    before = ask(client, "snapshot", SceneQuery()).sim_time_s
+    time.sleep(0.1)
+    ask(client, "step", StepOnce(seconds=0.5))
+    assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 0.5)
+    assert "runs" in ask(client, "pause", Pause()).text
+    time.sleep(0.2)
+    assert ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55
+
+
+def test_reset_says_how_many_went_back(client):
+    ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
+    ask(client, "move", MoveBodies(placements=(hand("cup1", pose(2, 0)),)))
+    assert ask(client, "reset", Reset()).text.startswith("1 bodies")
+    assert ask(client, "snapshot", SceneQuery()).bodies[0].pose.position_m[0] == pytest.approx(1.0)
+
+
+def test_a_picture_is_a_png(client):
+    ask(client, "spawn", Spawn(bodies=(order("chair1", "chair", pose(1, 0)),)))
+    picture = ask(client, "picture", PictureQuery(width=64, height=48))
+    assert picture.png.startswith(b"\x89PNG")
+    assert ask(client, "picture", PictureQuery(camera="overview", width=64, height=48)).png != picture.png
+    with pytest.raises(errors.BadRequest, match="overview"):
+        ask(client, "picture", PictureQuery(camera="nowhere"))
+
+
+def test_cameras_publish_raw_planes_with_what_they_need_to_be_understood(client):
+    ask(client, "spawn", Spawn(bodies=(order("chair1", "chair", pose(0, 0)),)))
+    planes = {}
+
+    def keep(sample):
+        frame = codec.decode(sample.attachment.to_bytes(), CameraFrame)
+        if "chair1" in frame.names or frame.encoding != "segments16":
+            planes[str(sample.key_expr)] = frame, sample.payload.to_bytes()
+
+    subscriber = client.declare_subscriber(keys.CAMERA.key, keep)
+    wait_for(lambda: len(planes) == 3)
+    subscriber.undeclare()
+    assert set(planes) == {f"semmap/sim/camera/overview/{plane}" for plane in ("rgb", "depth", "segments")}
+    frame, raw = planes["semmap/sim/camera/overview/depth"]
+    depth = np.frombuffer(raw, np.float32).reshape(frame.height, frame.width)
+    assert 3.0 < np.median(depth) < 15.0
+    assert (frame.camera, frame.encoding) == ("overview", "depth32f")
+    assert np.reshape(frame.intrinsics, (3, 3))[0, 2] == 32.0
+    assert np.reshape(frame.map_from_camera, (4, 4))[:3, 3] == pytest.approx([5, -5, 5])
+    frame, raw = planes["semmap/sim/camera/overview/segments"]
+    assert frame.names == ("chair1",)
+    assert set(np.frombuffer(raw, np.uint16)) == {0, 1}
+    frame, raw = planes["semmap/sim/camera/overview/rgb"]
+    assert len(raw) == 64 * 48 * 3
+
+
+def test_nonsense_is_refused_and_the_node_lives_on(client):
+    with pytest.raises(errors.BadRequest):
+        bus.ask(client, keys.SIM, "spawn", {"bodies": [{"name": "no name", "class": "Cup"}]}, Spawned)
+    with pytest.raises(errors.UnknownVerb):
+        bus.ask(client, keys.SIM, "explode", {}, Done)
+    assert ask(client, "snapshot", SceneQuery()).bodies == ()
+
+
+def test_a_missing_world_stops_the_start(tmp_path: Path):
+    with (
+        bus.open_session(bus.Network(connect=(), listen=(free_endpoint(),), mode="peer")) as session,
+        pytest.raises(errors.BadFile),
+    ):
+        Simulator(Node("sim_node", session), SimConfig(world=tmp_path / "none.xml"))

@@ -1,0 +1,244 @@
+import numpy as np
+import pytest
+
+from nodes.sim_node.world import World
+from schemas.entities import angle_rad, distance_m
+from schemas.errors import BadFile
+from schemas.scenes import Placement
+from tests.sim_node.orders import hand, order, pose
+
+
+def body(world, name):
+    return next(body for body in world.scene().bodies if body.name == name)
+
+
+def height(world, name):
+    return body(world, name).pose.position_m[2]
+
+
+def test_a_body_stands_where_it_was_ordered_and_comes_to_rest():
+    world = World()
+    spawned = world.spawn([order("chair1", "chair", pose(1, 2, yaw=0.5), commit=7)])
+    assert spawned.failed == {}
+    assert not spawned.bodies[0].resting
+    world.step(1.0)
+    chair = body(world, "chair1")
+    assert distance_m(chair.pose, pose(1, 2)) < 0.001
+    assert angle_rad(chair.pose, pose(1, 2, yaw=0.5)) < 0.001
+    assert (chair.resting, chair.commit, chair.shape_commit, chair.entity) == (True, 7, 7, True)
+    assert chair.size_m == pytest.approx((0.45, 0.45, 0.9))
+    assert world.asleep
+
+
+def test_other_bodies_keep_their_state_to_the_bit():
+    world = World()
+    world.spawn([order(f"can{i}", "can", pose(i, 0, 0.2)) for i in range(5)])
+    world.step(0.05)  # in mid-air
+    before = dict(zip(world.poses().names, np.reshape(world.poses().poses, (-1, 7)), strict=True))
+    speeds = world.data.qvel[:30].copy()
+    world.spawn([order("late", "cup", pose(0, 3))])
+    after = dict(zip(world.poses().names, np.reshape(world.poses().poses, (-1, 7)), strict=True))
+    assert all((before[name] == after[name]).all() for name in before)
+    assert (world.data.qvel[:30] == speeds).all()
+    world.delete(["can2"])
+    kept = dict(zip(world.poses().names, np.reshape(world.poses().poses, (-1, 7)), strict=True))
+    assert all((before[name] == kept[name]).all() for name in before if name != "can2")
+
+
+def test_sleepers_sleep_on_when_others_come():
+    world = World()
+    world.spawn([order("table1", "table", pose(0, 0)), order("cup1", "cup", pose(0, 0, 0.75))])
+    world.step(2.0)
+    before = world.poses().poses
+    world.spawn([order("far", "can", pose(5, 5))])
+    world.step(0.01)
+    assert world.poses().poses[: len(before)] == before
+
+
+def test_many_deleted_at_once_leave_the_rest_as_it_was():
+    world = World()
+    world.spawn([order(f"can{i}", "can", pose(i * 0.2, 0, 0.3)) for i in range(40)])
+    world.spawn([order("wall1", "wall", pose(0, 5), size_m=(4, 0.1, 2), fixed=True)])
+    world.step(0.1)
+    before = {b.name: b for b in world.scene().bodies}
+    gone = [f"can{i}" for i in range(0, 40, 2)]
+    assert set(world.delete([*gone, "nobody"]).names) == set(gone)
+    after = {b.name: b for b in world.scene().bodies}
+    assert after == {name: value for name, value in before.items() if name not in gone}
+    world.step(1.0)
+    assert all(b.resting for b in world.scene().bodies)
+
+
+def test_what_cannot_be_made_is_told_and_the_rest_is_made():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0))])
+    spawned = world.spawn(
+        [
+            order("cup1", "cup", pose(1, 0)),
+            order("huge", "cup", pose(2, 0), size_m=(1000.0, 1.0, 1.0)),
+            order("thin", "cup", pose(2, 0), size_m=(1e-5, 1.0, 1.0)),
+            order("far", "cup", pose(9000, 0)),
+            order("twice", "cup", pose(3, 0)),
+            order("twice", "cup", pose(4, 0)),
+            order("strange", "no_such_model", pose(5, 0)),
+        ]
+    )
+    assert [b.name for b in spawned.bodies] == ["twice", "strange"]
+    assert set(spawned.failed) == {"cup1", "huge", "thin", "far", "twice"}
+    assert "already" in spawned.failed["cup1"]
+    assert "1000 m" in spawned.failed["huge"]
+    assert spawned.bodies[1].model == "box"
+    assert spawned.bodies[1].size_m == pytest.approx((0.3, 0.3, 0.3))
+    world.step(0.5)
+    assert all(b.resting for b in world.scene().bodies)
+
+
+def test_a_hand_lets_go_and_things_fall():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0), commit=3)])
+    world.step(1.0)
+    moved = world.move(
+        [hand("cup1", pose(2, 0, 0.5)), hand("nobody", pose(0, 0)), hand("cup1", pose(1, 0, 0.4))]
+    )
+    assert moved.names == ("cup1",)
+    assert "no body named nobody" in moved.failed["nobody"]
+    assert not body(world, "cup1").resting
+    world.step(1.0)
+    cup = body(world, "cup1")
+    assert cup.resting
+    assert cup.commit == 3
+    assert cup.pose.position_m == pytest.approx((1, 0, 0), abs=0.01)
+
+
+def test_an_ordered_move_carries_its_commit():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0), commit=3)])
+    world.move([Placement(name="cup1", pose=pose(1, 1), commit=9)])
+    assert world.poses().commits == (9,)
+    assert body(world, "cup1").shape_commit == 3
+
+
+def test_what_stood_on_a_thing_falls_when_it_goes():
+    world = World()
+    world.spawn(
+        [
+            order("table1", "table", pose(0, 0)),
+            order("cup1", "cup", pose(0, 0.3, 0.75)),
+            order("table2", "table", pose(5, 0)),
+            order("cup2", "cup", pose(5, 0.3, 0.75)),
+        ]
+    )
+    world.step(1.0)
+    assert height(world, "cup1") == pytest.approx(0.75, abs=0.002)
+    world.move([hand("table1", pose(0, 3))])
+    world.delete(["table2"])
+    world.step(1.5)
+    assert height(world, "cup1") < 0.1
+    assert height(world, "cup2") < 0.1
+
+
+def test_fixed_bodies_hang_and_move_only_by_hand():
+    world = World()
+    world.spawn([order("shelf1", "shelf", pose(0, 0, 1.5), size_m=(0.3, 0.8, 0.2), fixed=True)])
+    world.spawn([order("cup1", "cup", pose(0, 0, 1.75))])
+    world.step(1.0)
+    assert body(world, "shelf1").pose == pose(0, 0, 1.5)
+    assert height(world, "cup1") == pytest.approx(1.7, abs=0.003)
+    world.move([hand("shelf1", pose(0, 3, 1.0))])
+    assert body(world, "shelf1").pose == pose(0, 3, 1.0)
+    world.step(1.5)
+    assert height(world, "cup1") < 0.1
+
+
+def test_poses_and_scene_agree_and_versions_grow():
+    world = World()
+    first = world.poses()
+    assert (first.names, first.poses, first.version) == ((), (), 0)
+    world.spawn([order("cup1", "cup", pose(0, 0)), order("can1", "can", pose(1, 0))])
+    world.step(0.5)
+    poses, scene = world.poses(), world.scene()
+    assert poses.version == scene.version == 1
+    assert poses.run == scene.run != World().run
+    for row, there in zip(np.reshape(poses.poses, (-1, 7)), scene.bodies, strict=True):
+        assert tuple(row) == (*there.pose.position_m, *there.pose.orientation_wxyz)
+    assert poses.sim_time_s == pytest.approx(0.5)
+    world.delete(["cup1"])
+    assert world.scene().version == 2
+
+
+def test_reset_brings_everything_back_to_the_map():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0)), order("table1", "table", pose(2, 0))])
+    world.move([hand("cup1", pose(2, 0, 1.0)), Placement(name="table1", pose=pose(2, 1), commit=2)])
+    world.step(1.0)
+    world.reset()
+    world.step(0.5)
+    assert distance_m(body(world, "cup1").pose, pose(0, 0)) < 0.002
+    assert distance_m(body(world, "table1").pose, pose(2, 1)) < 0.002
+
+
+def test_sleeping_time_costs_nothing_and_passes():
+    world = World()
+    world.spawn([order("cup1", "cup", pose(0, 0))])
+    world.step(1.0)
+    world.step(36_000.0)  # would take minutes if it were computed
+    assert world.poses().sim_time_s == pytest.approx(36_001.0)
+
+
+SCENE = """
+<mujoco>
+  <custom><text name="semmap:mug1" data="Cup"/></custom>
+  <worldbody>
+    <geom name="ground" type="plane" size="0 0 1"/>
+    <geom name="partition" type="box" pos="0 9 1" size="3 0.1 1"/>
+    <body name="table_2" pos="0 0 0.35"><geom type="box" size="0.5 0.5 0.35"/></body>
+    <body name="mug1" pos="0 0 0.8"><freejoint/><geom type="cylinder" size="0.04 0.05"/></body>
+    <body pos="2 0 0.1"><freejoint/><geom type="sphere" size="0.1"/></body>
+    <body name="door" pos="4 0 0">
+      <body pos="0 0 1"><joint type="hinge" axis="0 0 1"/><geom type="box" size="0.4 0.02 1"/></body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.fixture
+def own_world(tmp_path):
+    path = tmp_path / "room.xml"
+    path.write_text(SCENE)
+    return World(path)
+
+
+def test_the_bodies_of_a_persons_world_are_in_the_scene(own_world):
+    bodies = {b.name: b for b in own_world.scene().bodies}
+    assert {name: b.class_ for name, b in bodies.items()} == {
+        "table_2": "table",
+        "mug1": "Cup",
+        "body_3": "body",
+        "door": "door",
+    }
+    assert [bodies[name].fixed for name in ("table_2", "mug1", "door")] == [True, False, True]
+    assert not any(b.entity or b.commit for b in bodies.values())
+    assert bodies["mug1"].size_m == pytest.approx((0.08, 0.08, 0.1))
+    assert bodies["mug1"].pose.position_m == pytest.approx((0, 0, 0.75))
+    own_world.step(1.0)
+    assert height(own_world, "mug1") == pytest.approx(0.7, abs=0.002)
+
+
+def test_entities_live_among_the_worlds_own(own_world):
+    spawned = own_world.spawn([order("mug1", "cup", pose(1, 1)), order("can1", "can", pose(0, 0.2, 0))])
+    assert set(spawned.failed) == {"mug1"}
+    own_world.step(1.0)
+    assert height(own_world, "can1") == pytest.approx(0.7, abs=0.003)  # lifted out of the table
+    assert set(own_world.delete(["mug1", "can1"]).names) == {"mug1", "can1"}
+    own_world.step(0.1)
+    assert [b.name for b in own_world.scene().bodies] == ["table_2", "body_3", "door"]
+
+
+def test_a_world_that_does_not_compile_is_refused(tmp_path):
+    with pytest.raises(BadFile, match="no MJCF scene"):
+        World(tmp_path / "missing.xml")
+    broken = tmp_path / "broken.xml"
+    broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
+    with pytest.raises(BadFile, match="no MJCF scene that compiles"):
+        World(broken)

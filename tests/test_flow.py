@@ -1,0 +1,214 @@
+"""The ten test cases of the system that semmap replaces, end to end: spawned processes, real Zenoh peers."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from nodes.extern.client import connect
+from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from schemas import errors
+from tests.conftest import free_endpoint, running, until
+
+NODES = ("coordinator", "kb_node", "sim_node", "recorder")
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """The shipped flat, initialised from a non-empty TBox and ABox, with all nodes."""
+    data = tmp_path_factory.mktemp("flat")
+    with running(data, "--tbox", HOUSEHOLD_TTL, "--abox", FLAT_TTL) as system:
+        with system.client() as client:
+            until(lambda: client.status().in_agreement, "map and scene agree")
+        yield system
+
+
+@pytest.fixture
+def client(flat):
+    with flat.client() as client:
+        yield client
+
+
+def body_of(client, name):
+    return client.get(name).body
+
+
+def test_1_initialise_from_a_non_empty_tbox_and_abox(flat, client):
+    status = client.status()
+    assert status.entities >= 40
+    assert {n.node: n.state for n in status.nodes} == dict.fromkeys(NODES, "ready")
+    assert len(client.classes()) >= 170
+
+
+def test_2_collect_the_instances_and_render_them(client):
+    entities = client.list()
+    assert {e.body.status for e in entities if e.place} == {"none"}
+    assert {e.body.status for e in entities if not e.place} == {"present"}
+    assert client.status().bodies >= sum(not e.place for e in entities)
+
+
+def test_3_list_the_properties_of_active_entities(flat, client):
+    fridge = client.get("fridge1")
+    assert fridge.class_ == "Fridge"
+    assert {"Appliance", "Device", "Object", "Physical_Thing"} <= set(fridge.types)
+    assert fridge.pose is not None
+    assert fridge.size_m is not None
+    assert fridge.preferred_reference == "fridge"
+    assert fridge.provenance.source == "file"
+    shown = flat.cli("get", "fridge1")
+    assert "fridge" in shown
+    assert "Appliance" in shown
+
+
+def test_4_drag_an_object_and_see_the_abox_follow(client):
+    client.add("Box", "box_to_drag", at=(2.0, 1.2, 0.0), size=(0.2, 0.2, 0.2), wait=True)
+    client.move("box_to_drag", (2.0, 2.4, 0.3))
+
+    def followed():
+        pose = client.get("box_to_drag").pose
+        return pose if pose.position_m[1] > 2.0 else None
+
+    x, y, z = until(followed, "the map follows the hand").position_m
+    assert (x, y, z) == pytest.approx((2.0, 2.4, 0.0), abs=0.06)
+    assert client.get("box_to_drag").pose_provenance.source == "scene"
+
+
+def test_5_enumerate_the_instances_from_outside(flat):
+    assert json.loads(flat.cli("list", "--format", "json", "--class", "Room"))
+    selector = "semmap/cmd/list?class=Room;format=json"
+    words = ["--mode", "client", "--connect", flat.endpoint, "get", "-s", selector, "--decoder", "text"]
+    run = subprocess.run([Path(sys.executable).parent / "zenoh", *words], capture_output=True, text=True)
+    assert "kitchen1" in run.stdout
+
+
+def test_6_check_consistency(client, flat):
+    assert client.check().consistent
+    with pytest.raises(errors.Inconsistent) as refusal:
+        client.load(_nonsense(flat.data))
+    assert refusal.value.explanation is not None
+    assert "fridge1" in refusal.value.text
+    assert "Kitchen" not in client.get("fridge1").types
+    assert client.check().consistent
+
+
+def test_7_delete(client):
+    client.add("Cup", "cup_to_go", at=(2.0, 1.2, 0.0), ref="a cup", wait=True)
+    client.remove("cup_to_go")
+    with pytest.raises(errors.UnknownName):
+        client.get("cup_to_go")
+    until(lambda: client.status().in_agreement, "the body goes, too")
+    assert b"cup_to_go" not in client.export("ntriples").content
+
+
+def test_8_insert_the_default_instance(client):
+    (name,) = client.add("Chair", default=True, wait=True).names
+    chair = client.get(name)
+    assert chair.preferred_reference == "chair"
+    assert chair.body.status == "present"
+    client.remove(name)
+
+
+def test_9_insert_with_type_position_and_reference(client):
+    reply = client.add(
+        "Beer", "beer_inserted", at=(2.0, 2.0, 0.0), yaw=0.5, ref="cold beer", alt=("lager",), wait=True
+    )
+    assert "body: present" in reply.text
+    beer = client.get("beer_inserted")
+    assert beer.pose.position_m[:2] == pytest.approx((2.0, 2.0), abs=0.05)
+    assert beer.pose.yaw_rad == pytest.approx(0.5, abs=0.1)
+    assert (beer.preferred_reference, beer.alternative_references) == ("cold beer", ("lager",))
+    assert "Drinkable" in beer.types
+    client.remove("beer_inserted")
+
+
+@pytest.mark.parametrize("ending", ["owl", "ttl", "nt", "jsonld"])
+def test_10_export_to_a_named_file_that_loads_back_equal(flat, client, tmp_path, ending):
+    file = tmp_path / f"map.{ending}"
+    flat.cli("export", file)
+    reply = client.load(file, replace=True)
+    assert reply.commit is None, reply.text
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_kill_and_restart_any_one_node(flat, client, node):
+    before = {e.name: e.pose for e in client.list()}
+    pid = flat.pid(node)
+    os.kill(pid, signal.SIGKILL)
+
+    def back():
+        try:
+            status = client.status()
+        except errors.NoAnswer:
+            return False
+        states = {n.node: (n.state, n.pid) for n in status.nodes}
+        restarted = states.get(node, ("", pid))[1] != pid
+        return restarted and status.in_agreement and {s for s, _ in states.values()} == {"ready"}
+
+    until(back, f"{node} is back and map and scene agree")
+    assert {e.name: e.pose for e in client.list()} == before
+
+
+def _nonsense(folder: Path) -> Path:
+    file = folder / "nonsense.ttl"
+    fridge, kitchen = "semantic_mapping_1#fridge1", "semantic_mapping_domain_model#Kitchen"
+    base = "http://www.semanticweb.org/ontologies/2016/1/"
+    file.write_text(f"<{base}{fridge}> a <{base}{kitchen}> .")
+    return file
+
+
+def test_ctrl_c_ends_everything_within_five_seconds_and_the_map_survives(tmp_path):
+    words = ("--abox", "none", "--no-record")
+    with running(tmp_path, *words) as system:
+        with system.client() as client:
+            client.add("Table", "table1", at=(1.0, 1.0, 0.0), wait=True)
+            pids = [n.pid for n in client.status().nodes]
+        assert system.stop() < 5.0
+        assert system.process.returncode == 0
+    assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
+    with running(tmp_path, *words) as system, system.client() as client:
+        assert [e.name for e in client.list()] == ["table1"]
+
+
+def test_two_systems_on_one_machine_do_not_meet(tmp_path):
+    words = ("--abox", "none", "--no-record", "--no-sim")
+    with running(tmp_path / "a", *words) as a, running(tmp_path / "b", *words) as b:
+        with a.client() as client:
+            client.add("Table", "table_a")
+        with b.client() as client:
+            assert client.list() == ()
+        assert "table_a" in a.cli("list")
+
+
+def test_nobody_there_is_no_answer_and_never_an_empty_list():
+    with pytest.raises(errors.NoAnswer), connect(free_endpoint()):
+        pass
+
+
+SCENE = """<mujoco><custom><text name="semmap:mug" data="Cup"/></custom>
+<worldbody><geom type="plane" size="5 5 .1"/><light pos="0 0 3"/>
+<body name="chair_3" pos="1 1 .25"><freejoint/><geom type="box" size=".2 .2 .25" mass="5"/></body>
+<body name="mug" pos="2 1 .05"><freejoint/><geom type="cylinder" size=".04 .05" mass=".2"/></body>
+<body name="gizmo_1" pos="-1 1 .05"><freejoint/><geom type="box" size=".05 .05 .05" mass=".2"/></body>
+</worldbody></mujoco>"""
+
+
+def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
+    world = tmp_path / "world.xml"
+    world.write_text(SCENE)
+    words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
+    with running(tmp_path / "data", *words) as system, system.client() as client:
+        until(lambda: {e.name for e in client.list()} == {"chair_3", "mug"}, "bodies become entities")
+        assert {e.class_ for e in client.list()} == {"Chair", "Cup"}
+        assert client.get("mug").provenance.source == "scene"
+        assert any("gizmo_1" in problem for problem in client.status().problems)
+        client.move("mug", (2.0, -1.0, 0.1))
+        until(lambda: client.get("mug").pose.position_m[1] < 0, "the map follows the mug")
+        time.sleep(0.5)
+        assert client.status().in_agreement
