@@ -7,7 +7,7 @@ values make, and which nodes are the same. The agenda is a queue of new edges an
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from itertools import combinations
+from itertools import combinations, count
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
@@ -60,6 +60,7 @@ class ABox:
         """The nodes whose kind changed since `settle`, with the kind they had."""
         self.rest_on_edge: dict[int, list[Reason]] = {}
         self.rest_on_node: dict[int, list[Reason]] = {}
+        self._order = count()
         self.spellings: dict[datatypes.Value, list[int]] = {}
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
@@ -377,7 +378,7 @@ class ABox:
         if self.is_literal(subject) or self.find(subject, (predicate, False), object_) != NONE:
             return
         edge = self.store.add(subject, predicate, object_, DERIVED)
-        self.reasons[edge] = self._remember(Reason(claims, edge=edge))
+        self.reasons[edge] = self._remember(Reason(next(self._order), claims, edge=edge))
         self.fresh.append(edge)
 
     def _meet(self, literal: int) -> None:
@@ -403,7 +404,7 @@ class ABox:
         newcomers = list(theirs.members)
         mine.members += newcomers
         mine.links += theirs.links
-        mine.links.append(self._remember(Reason(claims, link=(one, other))))
+        mine.links.append(self._remember(Reason(next(self._order), claims, link=(one, other))))
         for member in mine.members:
             self.equals[member] = mine
         self._widen(one, self.store.kind[one].mask | self.store.kind[other].mask)

@@ -116,21 +116,21 @@ class Retraction:
     # What stays
 
     def _is_borne_out(self, node: int) -> bool:
-        """Whether assertions about a node and its neighbours make all of its kind."""
-        abox, store = self._abox, self._store
+        """Whether assertions about a node and its neighbours make all of its kind.
+
+        Nodes that are the same do not count: what made them the same may rest on this node's kind.
+        """
+        close, store = self._abox.kinds.close, self._store
         wanted = store.kind[node].mask
-        found = 0
-        members = abox.members(node)
-        for member in members:
-            found |= store.kind[member].base.mask
-        if abox.kinds.close(found) == wanted:
+        found = store.kind[node].base.mask
+        if found == wanted:
             return True
-        for member in members:
-            for edge in (*store.out.all(member), *store.into.all(member)):
-                found |= self._share(edge, member)
+        for side in (store.out, store.into):
+            for edge in side.all(node):
+                found |= self._share(edge, node)
                 if found == wanted:
                     return True
-        return abox.kinds.close(found) == wanted
+        return close(found) == wanted
 
     def _share(self, edge: int, node: int) -> int:
         """What an edge alone says of a node, if the edge is asserted or comes with an asserted class."""

@@ -6,16 +6,19 @@ The result need not be minimal: `proof.prove` shrinks it. Facts of the schema ar
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from math import inf
+from typing import TypeVar
 
 from nodes.kb_node.reasoner.abox import ABox
 from nodes.kb_node.reasoner.kinds import bits
-from nodes.kb_node.reasoner.reasons import Claim, Edge, Member, Same
+from nodes.kb_node.reasoner.reasons import Claim, Edge, Member, Reason, Same
 from nodes.kb_node.reasoner.schema import ANY, Role
 from nodes.kb_node.reasoner.schema_support import Found, SchemaSupport, union
-from nodes.kb_node.reasoner.store import ASSERTED, VALUE
+from nodes.kb_node.reasoner.store import ASSERTED, DERIVED
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri
 from schemas.explanations import Term, Triple
 
+_T = TypeVar("_T")
 _DEEPEST = 200
 """Rules one upon the other; no proof in a home comes near."""
 
@@ -23,8 +26,10 @@ _DEEPEST = 200
 class Support:
     """Backward search in an ABox as it stands."""
 
-    def __init__(self, abox: ABox, told_by: SchemaSupport) -> None:
+    def __init__(self, abox: ABox, told_by: SchemaSupport, before: float = inf) -> None:
+        """Search an ABox; `before` leaves out what was concluded later than a reason of that number."""
         self._abox = abox
+        self._before = before
         self._schema = abox.schema
         self._told_by = told_by
         self._failed: dict[tuple[int, int], int] = {}
@@ -43,7 +48,7 @@ class Support:
         if p == TYPE:
             return self._claim(Member(_known(subject), _known(schema.find_class(o))))
         if p == SAME_AS:
-            return self._same(_known(subject), _known(object_))
+            return _known(self._same(_known(subject), _known(object_)))
         return self.of_edge(_known(subject), _known(schema.find_property(p)), o)
 
     def of_edge(self, subject: int, predicate: int, object_: Term) -> Found:
@@ -54,8 +59,8 @@ class Support:
             if abox.is_term(there, object_):
                 implied = role if abox.store.subject[edge] == here else (predicate, True)
                 node = abox.store.find(object_)
-                ends = self._same(subject, here) | ({} if node is None else self._same(there, node))
-                return self._edge(edge, implied) | ends
+                same = self._same(subject, here), {} if node is None else self._same(there, node)
+                return union(self._edge(edge, implied), *(ends for ends in same if ends))
         raise AssertionError(f"no edge to {object_}")
 
     def of(self, claims: Iterable[Claim]) -> Found:
@@ -66,7 +71,7 @@ class Support:
         if isinstance(claim, Edge):
             return self._edge(claim.edge, claim.role)
         if isinstance(claim, Same):
-            return self._same(claim.one, claim.other)
+            return self._same(claim.one, claim.other) or {}
         for depth in range(_DEEPEST):
             found = self._member(claim.node, claim.cls, depth)
             if found is not None:
@@ -96,29 +101,43 @@ class Support:
             found = self._told_by.facts((*roles.get(role, ()), *roles.get(turned, ())))
         if store.source[edge] == ASSERTED:
             return found | {(store.terms[s], self._schema.axioms[p].term, store.terms[o]): None}
-        if store.source[edge] != VALUE:
-            result = self._schema.axioms[p]
-            return found | self.of(abox.reasons[edge].claims) | self._told_by.chains(result)
-        for cls, value in self._schema.values.items():
-            if value == (p, store.terms[o]) and store.kind[s].mask >> cls & 1:
-                return found | self._claim(Member(s, cls)) | self._told_by.restriction(cls)
+        if store.source[edge] == DERIVED:
+            reason = abox.reasons[edge]
+            return (
+                found | self._earlier(reason).of(reason.claims) | self._told_by.chains(self._schema.axioms[p])
+            )
+        found_before = [cls for cls in self._givers(edge) if (s, cls) in self._found]
+        for cls in found_before or self._givers(edge):
+            return found | self._claim(Member(s, cls)) | self._told_by.restriction(cls)
         raise AssertionError(f"nothing gives {store.terms[s]} its {self._schema.axioms[p].term}")
 
-    def _same(self, one: int, other: int) -> Found:
-        """The links on the way from one node to the other."""
+    def _givers(self, edge: int) -> Iterator[int]:
+        """The classes of a subject that its edge may come with."""
+        store = self._abox.store
+        mask = store.kind[store.subject[edge]].mask
+        value = (store.predicate[edge], store.terms[store.object[edge]])
+        return (cls for cls, known in self._schema.values.items() if known == value and mask >> cls & 1)
+
+    def _earlier(self, reason: Reason) -> Support:
+        """A search among what was there when a conclusion was drawn, so that no proof rests on itself."""
+        return Support(self._abox, self._told_by, reason.order)
+
+    def _same(self, one: int, other: int) -> Found | None:
+        """The links on the way from one node to the other; None when there is none yet."""
         if one == other or (equals := self._abox.equals.get(one)) is None:
             return {}
+        links = [link for link in equals.links if link.order < self._before]
         trail: dict[int, Found] = {one: {}}
         pending = [one]
-        while other not in trail:
+        while pending and other not in trail:
             here = pending.pop(0)
-            for link in equals.links:
+            for link in links:
                 if link.link and here in link.link:
                     there = link.link[1] if link.link[0] == here else link.link[0]
                     if there not in trail:
-                        trail[there] = trail[here] | self.of_clash(link.claims)
+                        trail[there] = trail[here] | self._earlier(link).of_clash(link.claims)
                         pending.append(there)
-        return trail[other]
+        return trail.get(other)
 
     # Classes
 
@@ -144,8 +163,9 @@ class Support:
         for member in self._abox.members(node):
             for given in store.kind[member].given:
                 if schema.supers[given] >> cls & 1:
-                    told = self._told(member, given) | self._told_by.below(given, cls)
-                    return told | self._same(node, member)
+                    same = self._same(node, member)
+                    if same is not None:
+                        return self._told(member, given) | self._told_by.below(given, cls) | same
         return None
 
     def _told(self, node: int, given: int) -> Found:
@@ -167,20 +187,19 @@ class Support:
         for member in self._abox.members(node):
             same = self._same(node, member)
             for edge in (*store.out.all(member), *store.into.all(member)):
-                if store.source[edge] == VALUE and not self._may_use(edge, depth):
+                if same is None or not self._may_use(edge, depth):
                     continue
                 for way in self._by_edge(edge, member, cls, depth):
                     yield same | way
 
     def _may_use(self, edge: int, depth: int) -> bool:
-        """Whether the class that an edge comes with is found less deep, so that no proof rests on itself."""
+        """Whether an edge is there without the conclusion that is looked for."""
         store = self._abox.store
-        s, value = store.subject[edge], (store.predicate[edge], store.terms[store.object[edge]])
-        return any(
-            store.kind[s].mask >> cls & 1 and self._member(s, cls, depth) is not None
-            for cls, known in self._schema.values.items()
-            if known == value
-        )
+        if store.source[edge] == ASSERTED:
+            return True
+        if store.source[edge] == DERIVED:
+            return self._abox.reasons[edge].order < self._before
+        return any(self._member(store.subject[edge], cls, depth) is not None for cls in self._givers(edge))
 
     def _by_edge(self, edge: int, node: int, cls: int, depth: int) -> Iterator[Found]:
         """What domains, ranges and restrictions say of one end of an edge."""
@@ -224,6 +243,6 @@ class Support:
             )
 
 
-def _known(number: int | None) -> int:
-    assert number is not None
-    return number
+def _known(value: _T | None) -> _T:
+    assert value is not None
+    return value

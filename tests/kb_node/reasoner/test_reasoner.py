@@ -10,6 +10,7 @@ from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.compiled import CompiledEngine
 from nodes.kb_node.reasoner.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, is_literal
+from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import (
     CLASSES,
     DATA_PROPERTIES,
@@ -112,26 +113,6 @@ def check_same(reasoner, asserted):
         }
 
 
-def check_explanation(explanation, asserted):
-    """Valid: its support is asserted and suffices. Minimal: no less does. Its steps lead there."""
-    goal, support = explanation.conclusion, list(explanation.support)
-    assert set(support) <= set(asserted)
-
-    def reached(some):
-        closure = Closure(some)
-        return closure.clash is not None if goal is None else closure.clash is None and closure.holds(goal)
-
-    assert reached(support)
-    for left_out in support:
-        assert not reached([fact for fact in support if fact != left_out])
-    known = set(support)
-    for step in explanation.steps:
-        assert set(step.premises) <= known
-        known.add(step.conclusion)
-    assert goal in known or not explanation.steps
-    assert explanation.text.endswith(".")
-
-
 @settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(CHANGES)
 def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
@@ -149,6 +130,6 @@ def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
         else:
             with pytest.raises(Inconsistent) as refusal:
                 reasoner.apply(delete=delete, insert=insert)
-            check_explanation(refusal.value.explanation, after)
+            proofs.check(refusal.value.explanation, after)
         assert isinstance(reasoner._engine, CompiledEngine)
         check_same(reasoner, asserted)
