@@ -178,6 +178,8 @@ class Journal:
             if "locked" in str(error):
                 raise InUse(f"another knowledge base is using {self.path}") from None
             raise errors.Refused(f"{self.path} cannot be read: {error}") from None
+        except sqlite3.ProgrammingError:
+            raise
         except sqlite3.DatabaseError as error:
             raise errors.Refused(f"{self.path} is damaged: {error}; {_ANEW}") from None
 
