@@ -10,20 +10,20 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 import msgspec
 
 from schemas.errors import BadRequest
+from schemas.wording import sentence
 
 T = TypeVar("T")
 
 _encoder = msgspec.msgpack.Encoder()
 _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 
-_NAMED: dict[str, str] = {
-    r"\^\[A-Za-z_\].*": "is no valid name: letters, digits, '_', '.' and '-', not beginning with a digit",
-}
-
 
 def encode(message: Any) -> bytes:
-    """`message` as MessagePack."""
-    return _encoder.encode(message)
+    """`message` as MessagePack. Raises BadRequest for text that cannot be written as UTF-8."""
+    try:
+        return _encoder.encode(message)
+    except UnicodeEncodeError as error:
+        raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
 
 
 def encode_json(message: Any) -> bytes:
@@ -41,7 +41,7 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
         return decoder.decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise BadRequest(f"malformed message: {_sentence(error)}") from None
+        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
@@ -59,7 +59,7 @@ def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
     try:
         return msgspec.convert(values, type=kind, strict=strict)
     except msgspec.MsgspecError as error:
-        raise BadRequest(f"malformed message: {_sentence(error)}") from None
+        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
 
 
 def looks_like_json(payload: bytes) -> bool:
@@ -73,23 +73,14 @@ def encoding_of(message: Any) -> str:
 
 
 def _split(text: str, kind: Any) -> Any:
+    if kind is bool and not text:
+        return True  # a parameter without a value: `semmap/cmd/add?class=Chair;wait`
     members = get_args(kind) if get_origin(kind) in (Union, types.UnionType) else (kind,)
     for member in members:
         if get_origin(member) is tuple:
             inner = get_args(member)
             return re.split(r"[|,]" if Ellipsis not in inner else r"[|]", text)
     return text
-
-
-def _sentence(error: Exception) -> str:
-    """Msgspec's words, in ours where they would not be understood."""
-    text = str(error)
-    for pattern, words in _NAMED.items():
-        if match := re.search(rf"Expected `str` matching regex '{pattern}'(?: - at `\$\.?(.*)`)?", text):
-            return f"'{match.group(1) or 'name'}' {words}"
-    if match := re.fullmatch(r"(.*) - at `\$\.?(.*)`", text):
-        return f"{match.group(2)}: {match.group(1).lower()}"
-    return text[0].lower() + text[1:] if text else type(error).__name__
 
 
 def as_json(payload: bytes) -> str:

@@ -7,8 +7,9 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
 
-NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_.-]{0,127}$"
-"""A name is the local part of an IRI, a chunk of a key and the name of a body, so it is kept this plain."""
+NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_.-]{0,127}$(?!\n)"
+"""A name is the local part of an IRI, a chunk of a key and the name of a body, so it is kept this plain.
+(Alone, `$` would let a line end pass.)"""
 
 REACH_M = 10_000.0
 """Coordinates beyond this are taken for a mistake."""
@@ -45,7 +46,7 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def __post_init__(self) -> None:
         norm = math.hypot(*self.orientation_wxyz)
-        if abs(norm - 1.0) > _UNIT_TOLERANCE:
+        if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
             raise ValueError(f"the quaternion {self.orientation_wxyz} has length {norm:.4g}; it must be 1")
 
     @property

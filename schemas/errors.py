@@ -137,6 +137,9 @@ def from_message(message: ErrorMessage) -> SemmapError:
     return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
 
 
+_FEW = 10
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
     near = process.extract(
@@ -151,5 +154,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
     """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
     known = list(known)
-    said = [f"'{name}' (of {', '.join(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
-    return f"unknown class {', '.join(said)}; --skip-unknown leaves these out"
+    said = [f"'{name}' (of {_some(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
+    kind = "unknown class" if len(said) == 1 else "unknown classes"
+    return f"{kind} {', '.join(said)}; --skip-unknown leaves these out"
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:_FEW]) + (f" and {len(names) - _FEW} more" if len(names) > _FEW else "")

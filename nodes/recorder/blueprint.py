@@ -10,6 +10,7 @@ import rerun.blueprint as rrb
 from schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)
+_LOG_COLUMNS = rrb.TextLogColumns(text_log_columns=["body"])
 _GRID = (255, 255, 255, 30)
 
 
@@ -36,7 +37,7 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
     e = bounds.extent_m
     eye = rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,
-        position=(x - 0.35 * e, y - 0.95 * e, z + 0.95 * e),
+        position=(x - 0.25 * e, y - 0.75 * e, z + 0.8 * e),
         look_target=(x, y, z),
         eye_up=(0.0, 0.0, 1.0),
     )
@@ -52,8 +53,13 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
             scene,
             rrb.Vertical(
                 rrb.TextDocumentView(origin="/commits", contents="/commits", name="Commit"),
-                rrb.TextLogView(origin="/commits/log", name="Log"),
-                rrb.GraphView(origin="/graph", name="Knowledge graph"),
+                rrb.TextLogView(origin="/commits/log", name="Log", columns=_LOG_COLUMNS),
+                rrb.GraphView(
+                    origin="/graph",
+                    name="Knowledge graph",
+                    force_link=rrb.archetypes.ForceLink(distance=40.0),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-60.0),
+                ),
                 row_shares=[3, 2, 4],
             ),
             column_shares=[2, 1],

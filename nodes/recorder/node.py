@@ -9,6 +9,7 @@ from typing import Any
 from nodes.loop import Node, open_node
 from nodes.recorder.blueprint import bounds_of
 from nodes.recorder.config import RecorderConfig
+from nodes.recorder.graph import graph_of
 from nodes.recorder.map_state import MapState, missed
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
@@ -62,7 +63,7 @@ class Recorder:
     def _show_commit(self, commit: Commit) -> None:
         touched = {entity.name for entity in commit.changed} | {gone.name for gone in commit.removed}
         self._stage.show(sorted(touched), self._map.entities, self._scene.bodies, simulated=self._scene.known)
-        self._stage.show_graph(self._map)
+        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
         self._describe()
 
     def _fetch_map(self) -> None:
@@ -106,7 +107,7 @@ class Recorder:
                 f"{self._map.seq}  not heard: commit {numbers}; a snapshot fills the gap", warning=True
             )
         self._show_all()
-        self._stage.show_graph(self._map)
+        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
         if first:
             self._recording.arrange(bounds_of(self._stage.poses))
         self._describe()
@@ -175,8 +176,8 @@ def run(config: RecorderConfig) -> None:
     if config.serve is not None and serve is None:
         live = f"no live view: {config.serve} is taken"
     with (
-        open_recording(config.path, serve) as recording,
         open_node("recorder", config.network) as node,
+        open_recording(config.path, serve) as recording,
     ):
         Recorder(node, recording, f"into {config.path}, {live}")
         node.run()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,7 @@ from nodes.recorder import commit_text
 from nodes.recorder.blueprint import Bounds, layout
 from nodes.recorder.figures import Figure
 from nodes.recorder.geometry import shape_of
-from nodes.recorder.map_state import Relation
-from nodes.recorder.palette import colour_of
+from nodes.recorder.graph import Graph, nodes_and_edges
 from schemas import errors
 from schemas.commits import Commit
 from schemas.entities import Pose
@@ -54,29 +53,21 @@ class Recording:
         """Arrange the viewer so that it looks at these bounds."""
         self._stream.send_blueprint(layout(bounds))
 
-    def shape(self, name: str, figure: Figure) -> None:
-        """Draw a figure; it stands where `pose` last put it."""
-        self._stream.log(["map", figure.group, name], shape_of(figure))
+    def draw(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Draw a figure where it stands."""
+        self._stream.log(["map", figure.group, name], *shape_of(figure), _transform(pose))
 
-    def pose(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Put a figure somewhere."""
-        w, x, y, z = pose.orientation_wxyz
-        transform = rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
-        self._stream.log(["map", figure.group, name], transform)
+    def move(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Put a figure somewhere else."""
+        self._stream.log(["map", figure.group, name], _transform(pose))
 
     def erase(self, name: str, figure: Figure) -> None:
         """Take a figure away."""
         self._stream.log(["map", figure.group, name], rr.Clear(recursive=False))
 
-    def node(self, name: str, class_: str, relations: Sequence[Relation]) -> None:
-        """Draw an entity in the knowledge graph, with its relations to others."""
-        nodes = rr.GraphNodes([name], labels=[name], colors=[colour_of(class_)], radii=[6.0])
-        edges = rr.GraphEdges([(name, other) for _, other in relations], graph_type="directed")
-        self._stream.log(["graph", name], nodes, edges)
-
-    def forget_node(self, name: str) -> None:
-        """Take an entity out of the knowledge graph."""
-        self._stream.log(["graph", name], rr.Clear(recursive=False))
+    def graph(self, graph: Graph) -> None:
+        """Draw the knowledge graph."""
+        self._stream.log("graph", *nodes_and_edges(graph))
 
     def commit(self, commit: Commit) -> None:
         """Record a commit: a page and a line to read, and its fields for programs."""
@@ -89,8 +80,13 @@ class Recording:
 
     def note(self, text: str, *, warning: bool = False) -> None:
         """Say something about the recording itself."""
-        level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.DEBUG
+        level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
         self._stream.log(COMMIT_LOG, rr.TextLog(text, level=level))
+
+
+def _transform(pose: Pose) -> rr.Transform3D:
+    w, x, y, z = pose.orientation_wxyz
+    return rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
 
 
 def _fields(commit: Commit) -> dict[str, NDArray[Any]]:

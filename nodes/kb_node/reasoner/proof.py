@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.reasoner.closure import Closure, Reason
+from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.sentences import sentence
 from schemas.explanations import Explanation, Step, Triple
 
@@ -20,42 +20,20 @@ def prove(triples: Iterable[Triple], goal: Triple | None) -> Explanation:
     closure = Closure(triples)
     if not _reached(closure, goal):
         raise ValueError(f"{goal} does not follow")
-    support = _leaves(closure, goal)
+    support = closure.leaves(goal)
     for triple in support:
         fewer = Closure(other for other in support if other != triple)
         if _reached(fewer, goal):
-            support = _leaves(fewer, goal)
+            support = fewer.leaves(goal)
             closure = fewer
     closure = Closure(support)
     steps = _steps(closure, goal)
-    asserted = tuple(_leaves(closure, goal))
+    asserted = tuple(closure.leaves(goal))
     return Explanation(conclusion=goal, support=asserted, steps=steps, text=sentence(goal, asserted, steps))
 
 
 def _reached(closure: Closure, goal: Triple | None) -> bool:
     return closure.clash is not None if goal is None else closure.clash is None and closure.holds(goal)
-
-
-def _reason(closure: Closure, goal: Triple | None) -> Reason | None:
-    return closure.clash if goal is None else closure.facts.get(goal)
-
-
-def _leaves(closure: Closure, goal: Triple | None) -> list[Triple]:
-    """The asserted triples below a conclusion, in the order of the proof."""
-    seen: dict[Triple | None, None] = {}
-    leaves: list[Triple] = []
-    pending = [goal]
-    while pending:
-        fact = pending.pop()
-        if fact in seen:
-            continue
-        seen[fact] = None
-        reason = _reason(closure, fact)
-        if reason is not None:
-            pending += reversed(reason.premises)
-        elif fact in closure.facts and fact is not None:
-            leaves.append(fact)
-    return leaves
 
 
 def _steps(closure: Closure, goal: Triple | None) -> tuple[Step, ...]:
@@ -66,7 +44,7 @@ def _steps(closure: Closure, goal: Triple | None) -> tuple[Step, ...]:
         fact, premises_done = pending.pop()
         if fact in done and not premises_done:
             continue
-        reason = _reason(closure, fact)
+        reason = closure.reason(fact)
         if reason is None:
             done.add(fact)
         elif premises_done:

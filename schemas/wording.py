@@ -1,0 +1,130 @@
+"""What msgspec finds wrong with a message, in words that say what is possible."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from msgspec import DecodeError, ValidationError, inspect
+
+from schemas.entities import NAME_PATTERN
+from schemas.errors import did_you_mean
+
+_AT = re.compile(r"(.*) - at `(?:key` in `)?\$(.*)`", re.DOTALL)
+_UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
+_MISSING = re.compile(r"Object missing required field `(.*)`")
+_NUMBERS = (inspect.FloatType, inspect.IntType)
+
+
+def sentence(error: Exception, kind: Any) -> str:
+    """Why something is no message of type `kind`: `at: the 1st must be a number from -10000 to 10000`."""
+    if isinstance(error, ValidationError):
+        return _of_value(str(error), kind)
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    if isinstance(error, UnicodeError):
+        return "it has a text that is not UTF-8"
+    if isinstance(error, DecodeError) and "truncated" in str(error):
+        return "it ends too early"
+    return f"it is no valid MessagePack or JSON: {str(error).partition(': ')[2] or error}"
+
+
+def _of_value(text: str, kind: Any) -> str:
+    match = _AT.fullmatch(text)
+    fault, path = match.groups() if match else (text, "")
+    steps: list[str | int] = [
+        int(index) if index else name
+        for name, index in re.findall(r"\.([^.\[]+)|\[(\d+|\.\.\.)\]", _indexed(path))
+    ]
+    info = _type_at(inspect.type_info(kind), steps)
+    within = "".join(f"{_place(step)}: " for step in steps)
+    if unknown := _UNKNOWN.fullmatch(fault):
+        return f"{within}there is no field '{unknown[1]}'{_instead(unknown[1], info)}"
+    if missing := _MISSING.fullmatch(fault):
+        return f"{within}{missing[1]} is missing"
+    if fault.startswith(("Expected", "Invalid", "Number out of range")):
+        return f"{within.removesuffix(': ') or 'it'} must be {_describe(info)}"
+    return within + fault[:1].lower() + fault[1:]
+
+
+def _indexed(path: str) -> str:
+    """Places in a mapping have no index."""
+    return path.replace("[...]", "[0]")
+
+
+def _place(step: str | int) -> str:
+    """`at`, or `the 1st`."""
+    if isinstance(step, str):
+        return step
+    nth = step + 1
+    return (
+        f"the {nth}{'th' if nth % 100 in (11, 12, 13) else {1: 'st', 2: 'nd', 3: 'rd'}.get(nth % 10, 'th')}"
+    )
+
+
+def _type_at(info: inspect.Type, steps: Sequence[str | int]) -> inspect.Type | None:
+    """The type of what stands at `steps` in a message; None where that cannot be told."""
+    found: inspect.Type | None = _bare(info)
+    for step in steps:
+        found = _bare(_inside(found, step))
+    return found
+
+
+def _inside(info: inspect.Type | None, step: str | int) -> inspect.Type | None:
+    if isinstance(info, inspect.StructType):
+        if step == info.tag_field:
+            return inspect.LiteralType((info.tag,))
+        return next((f.type for f in info.fields if f.encode_name == step), None)
+    if isinstance(info, inspect.TupleType) and isinstance(step, int):
+        return info.item_types[step] if step < len(info.item_types) else None
+    if isinstance(info, inspect.VarTupleType):
+        return info.item_type
+    return info.value_type if isinstance(info, inspect.DictType) else None
+
+
+def _bare(info: inspect.Type | None) -> inspect.Type | None:
+    """Without `| None` and annotations."""
+    if isinstance(info, inspect.Metadata):
+        return _bare(info.type)
+    if isinstance(info, inspect.UnionType):
+        members = [t for t in info.types if not isinstance(t, inspect.NoneType)]
+        return _bare(members[0]) if len(members) == 1 else None
+    return info
+
+
+def _instead(word: str, info: inspect.Type | None) -> str:
+    names = [f.encode_name for f in info.fields] if isinstance(info, inspect.StructType) else []
+    return did_you_mean(word, names) or (f"; there are: {', '.join(names)}" if names else "")
+
+
+def _describe(info: inspect.Type | None) -> str:
+    """What a value of this type may be."""
+    match info:
+        case inspect.FloatType() | inspect.IntType():
+            return ("a number" if isinstance(info, inspect.FloatType) else "a whole number") + _bounds(info)
+        case inspect.StrType(pattern=pattern) if pattern == NAME_PATTERN:
+            return "a valid name: letters, digits, '_', '.' and '-', at most 128, not beginning with a digit"
+        case inspect.StrType(min_length=least, max_length=most):
+            return f"a text{f' of {least} to {most} characters' if least and most else ''}"
+        case inspect.BoolType():
+            return "true or false"
+        case inspect.BytesType():
+            return "bytes (base64 in text)"
+        case inspect.LiteralType(values=values):
+            return f"{'one of ' if len(values) > 1 else ''}{', '.join(map(str, values))}"
+        case inspect.TupleType(item_types=types):
+            return f"{len(types)} {'numbers' if isinstance(_bare(types[0]), _NUMBERS) else 'values'}"
+        case inspect.VarTupleType():
+            return "a list"
+        case inspect.StructType() | inspect.DictType():
+            return "an object with named fields"
+    return "something else"
+
+
+def _bounds(info: inspect.FloatType | inspect.IntType) -> str:
+    low = f"from {info.ge:g}" if info.ge is not None else f"above {info.gt:g}" if info.gt is not None else ""
+    high = f"to {info.le:g}" if info.le is not None else f"below {info.lt:g}" if info.lt is not None else ""
+    if low.startswith("above") and high:
+        high = f"and up {high}" if info.le is not None else f"and {high}"
+    return "".join(f" {bound}" for bound in (low, high) if bound)

@@ -1,0 +1,39 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from schemas.entities import Pose, angle_rad, distance_m, orientation_from_yaw
+
+YAWS = st.floats(-math.pi + 1e-6, math.pi)
+
+
+@given(YAWS)
+def test_yaw_survives_the_quaternion(yaw):
+    pose = Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(yaw))
+    assert pose.yaw_rad == pytest.approx(yaw, abs=1e-9)
+
+
+@given(YAWS, YAWS)
+def test_the_angle_between_two_yaws_is_the_shorter_way(first, second):
+    a, b = (
+        Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(y)) for y in (first, second)
+    )
+    turn = abs(first - second) % (2 * math.pi)
+    assert angle_rad(a, b) == pytest.approx(min(turn, 2 * math.pi - turn), abs=1e-6)
+
+
+def test_opposite_quaternions_are_one_orientation():
+    a = Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
+    b = Pose(position_m=(3.0, 4.0, 0.0), orientation_wxyz=(-0.6, 0.0, 0.0, -0.8))
+    assert angle_rad(a, b) == 0.0
+    assert distance_m(a, b) == 5.0
+
+
+@pytest.mark.parametrize(
+    "quaternion", [(0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (math.nan, 0.0, 0.0, 0.0)]
+)
+def test_a_quaternion_must_be_of_unit_length(quaternion):
+    with pytest.raises(ValueError, match="it must be 1"):
+        Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=quaternion)

@@ -1,0 +1,78 @@
+import pytest
+
+from schemas import errors
+from schemas.explanations import Explanation
+
+ALL = [
+    error
+    for error in vars(errors).values()
+    if isinstance(error, type) and issubclass(error, errors.SemmapError)
+]
+EXPLANATION = Explanation(conclusion=None, support=(("<a>", "<b>", "<c>"),), steps=(), text="because")
+
+
+@pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
+def test_an_error_crosses_the_wire_as_itself(kind):
+    arrived = errors.from_message(errors.to_message(kind("no", explanation=EXPLANATION)))
+    assert type(arrived) is kind
+    assert (arrived.text, str(arrived), arrived.explanation) == ("no", "no", EXPLANATION)
+
+
+def test_every_error_has_a_code_of_its_own():
+    assert len({kind.code for kind in ALL}) == len(ALL)
+
+
+def test_a_code_of_a_newer_version_is_still_an_error():
+    arrived = errors.from_message(errors.ErrorMessage(code="from-tomorrow", text="no"))
+    assert type(arrived) is errors.SemmapError
+    assert arrived.exit_status == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "status"),
+    [
+        (errors.Inconsistent, 1),
+        (errors.PreconditionFailed, 1),
+        (errors.UnknownName, 1),
+        (errors.NameTaken, 1),
+        (errors.UnknownClass, 2),
+        (errors.UnknownVerb, 2),
+        (errors.BadFile, 2),
+        (errors.NoAnswer, 3),
+        (errors.InternalError, 1),
+    ],
+)
+def test_exit_status(kind, status):
+    assert kind.exit_status == status
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("Chiar", "; did you mean Chair?"),
+        ("chair", "; did you mean Chair?"),
+        ("chair_1", "; did you mean Chair?"),
+        ("Cub", "; did you mean Cup?"),
+        ("Xylophone", ""),
+        ("", ""),
+        ("***", ""),
+    ],
+)
+def test_the_nearest_names_are_offered(word, hint):
+    assert errors.did_you_mean(word, ["Chair", "Cup", "Refrigerator"]) == hint
+
+
+def test_at_most_three_names_are_offered():
+    assert errors.did_you_mean("chair", [f"chair{i}" for i in range(9)]).count("chair") == 3
+    assert errors.did_you_mean("chair", []) == ""
+
+
+def test_unknown_classes_are_told_with_their_nearest_and_their_individuals():
+    text = errors.unknown_classes({"Chiar": ["c1"], "Xylophone": ["x1", "x2"]}, ["Chair", "Table"])
+    assert text == (
+        "unknown classes 'Chiar' (of c1; did you mean Chair?), 'Xylophone' (of x1, x2);"
+        " --skip-unknown leaves these out"
+    )
+    many = errors.unknown_classes({"Chiar": [f"c{i}" for i in range(1000)]}, ["Table"])
+    assert many.startswith("unknown class 'Chiar' (of c0, ")
+    assert "c9 and 990 more" in many
