@@ -1,4 +1,4 @@
-"""MuJoCo's own window on the world: look around, and take things with the mouse (double click, then Ctrl-drag)."""
+"""MuJoCo's own window on the world: look around; double click and Ctrl-drag take things with the mouse."""
 
 from __future__ import annotations
 

@@ -24,6 +24,7 @@ def test_the_mouse_pulls_a_body_and_lets_it_go():
         window.refresh()
         world.spawn([order("chair1", "chair", pose(0, 0))])  # a new model while the window is open
         world.step(0.5)
+        window.refresh()
         mouse = window._viewer.perturb
         mouse.select, mouse.active = world.model.body("chair1").id, 1
         mouse.refpos = mouse.refselpos = [0.5, 0.5, 1.0]
