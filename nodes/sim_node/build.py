@@ -73,7 +73,7 @@ def add_part(
         group=_GROUP[part.role],
         contype=contype,
         conaffinity=conaffinity,
-        condim=4 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        condim=3 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
         friction=_FRICTION,
     )
 

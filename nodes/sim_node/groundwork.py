@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from pathlib import Path
 
@@ -10,6 +11,9 @@ import numpy as np
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from schemas.errors import BadFile
+
+# else MuJoCo writes a file into the working directory
+mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
 _CLASS_TEXT = "semmap:"
