@@ -18,7 +18,7 @@ $(UV):
 	.tools/bin/pip install --quiet --disable-pip-version-check uv==$(UV_VERSION)
 
 .venv/.ready: uv.lock pyproject.toml | $(UV)
-	$(UV) sync --locked --python python3
+	$(UV) sync --locked --compile-bytecode --python python3
 	@touch $@
 
 demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png

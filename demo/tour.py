@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -83,9 +84,7 @@ class Tour:
         return next(int(n["pid"]) for n in status["nodes"] if n["node"] == node)
 
     def _show(self, words: list[str], status: int, holds: str) -> str:
-        print(
-            "$ " + " ".join(f'"{word}"' if " " in word or "?" in word else word for word in words), flush=True
-        )
+        print(f"$ {shlex.join(words)}", flush=True)
         command = [_BIN / words[0], *words[1:]]
         run = subprocess.run(command, env=self._environment, capture_output=True, text=True, cwd=HERE.parent)
         output = run.stdout + run.stderr

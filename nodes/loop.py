@@ -100,8 +100,8 @@ class Node:
         if self._state != "ready":
             self._state = "ready"
             self._token = self.session.liveliness().declare_token(keys.live_key(self.name, str(os.getpid())))
+            log.info("ready: %s", detail)
         self.describe(detail)
-        log.info("ready: %s", detail)
 
     def describe(self, detail: str) -> None:
         """What the heartbeat says of the node's state, from now on."""

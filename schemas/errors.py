@@ -11,7 +11,7 @@ SemmapError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
 from msgspec import Struct
@@ -151,10 +151,13 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
 
 
-def unknown_classes(names: Iterable[str], known: Iterable[str], whose: Iterable[str]) -> str:
-    """One sentence on all the unknown classes of a file, whose they are, and how to go on without them."""
-    known, whose = list(known), list(whose)
-    said = [f"'{name}'{did_you_mean(name, known).replace('; ', ' (').replace('?', '?)')}" for name in names]
-    few = ", ".join(whose[:_FEW]) + (f" and {len(whose) - _FEW} more" if len(whose) > _FEW else "")
+def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
+    """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
+    known = list(known)
+    said = [f"'{name}' (of {_some(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
     kind = "unknown class" if len(said) == 1 else "unknown classes"
-    return f"{kind} {', '.join(said)}: {few}; --skip-unknown leaves these out"
+    return f"{kind} {', '.join(said)}; --skip-unknown leaves these out"
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:_FEW]) + (f" and {len(names) - _FEW} more" if len(names) > _FEW else "")

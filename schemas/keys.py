@@ -35,14 +35,20 @@ ACK = Topic(f"{ROOT}/ack", Any, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
+CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, ENTITY, POSES, HEALTH)
+TOPICS = (ACK, COMMIT, ENTITY, POSES, CAMERA, HEALTH)
 
 
 def entity_key(class_name: str, name: str) -> str:
     """Where the state of one entity is published under one of its classes."""
     return f"{ROOT}/jena/entity/{class_name}/{name}"
+
+
+def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:
+    """Where the raw planes of one camera are published; the attachment is a `CameraFrame`."""
+    return f"{SIM}/camera/{camera}/{plane}"
 
 
 def health_key(node: str) -> str:

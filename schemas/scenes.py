@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
 
@@ -108,6 +108,27 @@ class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A PNG file."""
 
     png: bytes
+
+
+class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What goes with each raw plane of a camera, as its attachment.
+
+    `encoding`: `rgb8` has (height, width, 3) bytes; `depth32f` (height, width) floats, metres along the
+    optical axis, 0 where nothing is seen; `segments16` (height, width) unsigned numbers, 0 for none of
+    the bodies and n for `names[n - 1]`. Numbers are little-endian, rows from the top. `intrinsics` (3, 3)
+    [pixel] and `map_from_camera` (4, 4) [m] are row by row; the camera's frame is the optical one, with x
+    to the right, y down, z into the scene, and the middle of the first pixel at (0.5, 0.5).
+    """
+
+    camera: str
+    encoding: Literal["rgb8", "depth32f", "segments16"]
+    width: int
+    height: int
+    stamp_ns: int
+    sim_time_s: float
+    intrinsics: tuple[float, ...]
+    map_from_camera: tuple[float, ...]
+    names: tuple[str, ...] = ()
 
 
 class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

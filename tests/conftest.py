@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import signal
 import socket
@@ -15,6 +16,7 @@ from typing import Any
 
 import pytest
 
+from nodes.extern.cli import execute
 from nodes.extern.client import Client, connect
 
 _BIN = Path(sys.executable).parent
@@ -49,14 +51,30 @@ class System:
 
     def cli(self, *words: str | Path, status: int = 0) -> str:
         """What `semmap WORDS` prints; it must end with `status`, and with an error say one line."""
-        environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
-        command = [_BIN / "semmap", *map(str, words)]
-        run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
-        assert run.returncode == status, (words, run.stdout, run.stderr)
+        out, err = io.StringIO(), io.StringIO()
+        with (
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+            pytest.MonkeyPatch.context() as m,
+        ):
+            m.setenv("SEMMAP_CONNECT", self.endpoint)
+            ended = execute([*map(str, words)])
+        assert ended == status, (words, out.getvalue(), err.getvalue())
         if status:
-            assert len(run.stderr.strip().splitlines()) == 1, run.stderr
-            assert run.stderr.startswith("semmap: ")
-        return run.stdout + run.stderr
+            assert len(err.getvalue().strip().splitlines()) == 1, err.getvalue()
+            assert err.getvalue().startswith("semmap: ")
+        return out.getvalue() + err.getvalue()
+
+    @contextlib.contextmanager
+    def spawned(self, *words: str) -> Iterator[subprocess.Popen[str]]:
+        """`semmap WORDS` as a process of its own; ended with Ctrl-C."""
+        environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
+        command = [_BIN / "semmap", *words]
+        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+            try:
+                yield process
+            finally:
+                process.send_signal(signal.SIGINT)
 
     def client(self) -> contextlib.AbstractContextManager[Client]:
         """A client of this system."""

@@ -148,8 +148,8 @@ def test_kill_and_restart_any_one_node(flat, client, node):
         except errors.NoAnswer:
             return False
         states = {n.node: (n.state, n.pid) for n in status.nodes}
-        restarted = states.get(node, ("", pid))[1] != pid
-        return restarted and status.in_agreement and {s for s, _ in states.values()} == {"ready"}
+        everybody = set(states) == set(NODES) and {s for s, _ in states.values()} == {"ready"}
+        return everybody and states[node][1] != pid and status.in_agreement
 
     until(back, f"{node} is back and map and scene agree")
     assert {e.name: e.pose for e in client.list()} == before

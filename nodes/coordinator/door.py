@@ -181,20 +181,20 @@ class Door:
     ) -> tuple[list[tuple[Described, ClassInfo]], tuple[str, ...], tuple[str, ...]]:
         """Those of a known class, a word on each of the others, and how class names were read."""
         known: list[tuple[Described, ClassInfo]] = []
-        unknown: dict[str, str] = {}
+        unknown: dict[str, list[str]] = {}
         notes: dict[str, None] = {}
         for i, item in enumerate(described, start=1):
             try:
                 found = self.classes.spatial(item.class_)
             except errors.UnknownClass:
-                unknown[f"{item.name or f'entity {i}'} (unknown class '{item.class_}')"] = item.class_
+                unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
                 continue
             known.append((item, found))
             notes.update(dict.fromkeys(self.classes.note(item.class_, found)))
         if unknown and not skip_unknown:
-            names = dict.fromkeys(unknown.values())
-            raise errors.UnknownClass(errors.unknown_classes(names, self.classes.by_name, unknown))
-        return known, tuple(unknown), tuple(notes)
+            raise errors.UnknownClass(errors.unknown_classes(unknown, self.classes.by_name))
+        skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
+        return known, skipped, tuple(notes)
 
     def _remove(self, command: Command, reason: str, leaving: list[Entity]) -> Changed:
         names = tuple(entity.name for entity in leaving)

@@ -367,7 +367,10 @@ def _execute_message(client: Client, message: bytes) -> int:
     except errors.SemmapError as error:
         _complain(error.text)
         return error.exit_status
-    print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
+    if isinstance(reply, commands.Changed):
+        _say(show.changed(reply))
+    else:
+        print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0
 
 

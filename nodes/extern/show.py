@@ -76,6 +76,8 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
 def status_table(status: SystemStatus) -> Table:
     """One row a node."""
     table = _table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
+    for column in table.columns[5:]:
+        column.no_wrap, column.overflow = False, "fold"
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
         table.add_row(
@@ -139,8 +141,13 @@ def _table(*columns: str) -> Table:
 def _pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
     if pose is None:
         return ("-", "-", "-", "-")
-    x, y, z = (f"{value:.3f}" for value in pose.position_m)
-    return (x, y, z, f"{math.degrees(pose.yaw_rad):.0f}")
+    x, y, z = (_plain(value, 3) for value in pose.position_m)
+    return (x, y, z, _plain(math.degrees(pose.yaw_rad), 0))
+
+
+def _plain(value: float, digits: int) -> str:
+    """Rounded, and never minus zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def _size(e: Entity) -> str:

@@ -26,10 +26,12 @@ def sort_out(
     known = declared.union(classes.names)
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not _is_built_in(o)]
     unknown = sorted((s, o) for s, o in types if o not in known)
-    words = [f"{v.local_name(s)} (unknown class '{v.local_name(o)}')" for s, o in unknown]
+    users: dict[str, list[str]] = {}
+    for s, c in unknown:
+        users.setdefault(v.local_name(c), []).append(v.local_name(s))
     if unknown and not skip_unknown:
-        names = sorted({v.local_name(o) for _, o in unknown})
-        raise errors.UnknownClass(errors.unknown_classes(names, classes.names.values(), words))
+        raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
+    words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
     doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
     return _without(gone, [t for t in triples if t not in doubtful]), words

@@ -56,7 +56,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         data.mkdir(parents=True, exist_ok=True)
         _require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
-        size = _make(new, tbox_triples, transaction)
+        size = _make(new, tbox_triples, reasoner, transaction)
         set_aside(data)
         new.rename(path)
         _sync(data)
@@ -67,13 +67,13 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     return f"{size} entities from {source}"
 
 
-def _make(path: Path, tbox: list[Triple], transaction: Transaction) -> int:
+def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
     """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
     _remove(path)
     try:
         journal = Journal.create(path, rdf_files.serialise(tbox, "ntriples"))
         try:
-            semantic_map = SemanticMap(journal, tbox)
+            semantic_map = SemanticMap(journal, tbox, reasoner=reasoner)
             semantic_map.commit(transaction)
             semantic_map.checkpoint()
         finally:

@@ -25,12 +25,20 @@ class SemanticMap:
     """The ABox with its TBox: checked, explained, durable. Owned by one thread."""
 
     def __init__(
-        self, journal: Journal, tbox: Iterable[Triple], *, progress: Callable[[], None] = lambda: None
+        self,
+        journal: Journal,
+        tbox: Iterable[Triple],
+        *,
+        reasoner: Reasoner | None = None,
+        progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """Rebuild the map from `journal`. Raises Refused when the journal is damaged."""
+        """Rebuild the map from `journal`; `reasoner` is one that holds the TBox and no more, if there is one.
+
+        Raises Refused when the journal is damaged.
+        """
         self._journal = journal
         self.tbox = frozenset(tbox)
-        self.reasoner = Reasoner(self.tbox)
+        self.reasoner = reasoner or Reasoner(self.tbox)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self.seq = 0

@@ -57,8 +57,6 @@ def pose_of(entity: Entity | None, body: Body | None) -> Pose | None:
     return entity.pose if entity is not None else None
 
 
-def still(before: Pose | None, now: Pose) -> bool:
+def still(before: Pose, now: Pose) -> bool:
     """Whether it has moved too little to be worth recording."""
-    if before is None:
-        return False
     return distance_m(before, now) < STILL_M and angle_rad(before, now) < STILL_RAD

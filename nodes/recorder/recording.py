@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import socket
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,7 @@ from nodes.recorder import commit_text
 from nodes.recorder.blueprint import Bounds, layout
 from nodes.recorder.figures import Figure
 from nodes.recorder.geometry import shape_of
-from nodes.recorder.map_state import Relation
-from nodes.recorder.palette import colour_of
+from nodes.recorder.graph import Graph, nodes_and_edges
 from schemas import errors
 from schemas.commits import Commit
 from schemas.entities import Pose
@@ -32,14 +32,15 @@ COMMIT_FIELDS = "semmap.Commit"
 _LATENCY_S = 0.5
 """What a kill can lose, and how far a live viewer lags."""
 _LIVE_MEMORY = "256MiB"
-_FLUSH_TIMEOUT_S = 2.0
 
 
 class Recording:
     """What was drawn and said, when. Timelines: `commit` (sequence), `time` (wall), `sim_time`."""
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
+        self.path = path
         self._stream = stream
+        stream.send_blueprint(layout(Bounds()))
         stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
     def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
@@ -54,29 +55,21 @@ class Recording:
         """Arrange the viewer so that it looks at these bounds."""
         self._stream.send_blueprint(layout(bounds))
 
-    def shape(self, name: str, figure: Figure) -> None:
-        """Draw a figure; it stands where `pose` last put it."""
-        self._stream.log(["map", figure.group, name], shape_of(figure))
+    def draw(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Draw a figure where it stands."""
+        self._stream.log(["map", figure.group, name], *shape_of(figure), _transform(pose))
 
-    def pose(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Put a figure somewhere."""
-        w, x, y, z = pose.orientation_wxyz
-        transform = rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
-        self._stream.log(["map", figure.group, name], transform)
+    def move(self, name: str, figure: Figure, pose: Pose) -> None:
+        """Put a figure somewhere else."""
+        self._stream.log(["map", figure.group, name], _transform(pose))
 
     def erase(self, name: str, figure: Figure) -> None:
         """Take a figure away."""
         self._stream.log(["map", figure.group, name], rr.Clear(recursive=False))
 
-    def node(self, name: str, class_: str, relations: Sequence[Relation]) -> None:
-        """Draw an entity in the knowledge graph, with its relations to others."""
-        nodes = rr.GraphNodes([name], labels=[name], colors=[colour_of(class_)], radii=[6.0])
-        edges = rr.GraphEdges([(name, other) for _, other in relations], graph_type="directed")
-        self._stream.log(["graph", name], nodes, edges)
-
-    def forget_node(self, name: str) -> None:
-        """Take an entity out of the knowledge graph."""
-        self._stream.log(["graph", name], rr.Clear(recursive=False))
+    def graph(self, graph: Graph) -> None:
+        """Draw the knowledge graph."""
+        self._stream.log("graph", *nodes_and_edges(graph))
 
     def commit(self, commit: Commit) -> None:
         """Record a commit: a page and a line to read, and its fields for programs."""
@@ -89,8 +82,13 @@ class Recording:
 
     def note(self, text: str, *, warning: bool = False) -> None:
         """Say something about the recording itself."""
-        level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.DEBUG
+        level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
         self._stream.log(COMMIT_LOG, rr.TextLog(text, level=level))
+
+
+def _transform(pose: Pose) -> rr.Transform3D:
+    w, x, y, z = pose.orientation_wxyz
+    return rr.Transform3D(translation=pose.position_m, quaternion=rr.Quaternion(xyzw=(x, y, z, w)))
 
 
 def _fields(commit: Commit) -> dict[str, NDArray[Any]]:
@@ -127,17 +125,30 @@ def free_to_serve(address: str) -> bool:
     return True
 
 
+def create(path: Path) -> Path:
+    """Make an empty file at `path` or, never to write over another, at that name with a number.
+
+    Raises BadFile.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for number in itertools.count(1):
+            candidate = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
+            if not candidate.exists():
+                break
+        candidate.touch(exist_ok=False)
+    except OSError as error:
+        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+    return candidate
+
+
 @contextmanager
 def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
     """A recording into `path`, also served to live viewers at `serve`; complete when closed.
 
     Raises BadFile when the file cannot be written.
     """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch(exist_ok=False)
-    except OSError as error:
-        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+    path = create(path)
     batches = rr.ChunkBatcherConfig(flush_tick=_LATENCY_S)
     stream = rr.RecordingStream(APPLICATION, batcher_config=batches)
     stream.set_log_time_enabled(False)
@@ -147,7 +158,6 @@ def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
         sinks.append(rr.GrpcServerSink(host, int(port), server_memory_limit=_LIVE_MEMORY))
     stream.set_sinks(*sinks)
     try:
-        yield Recording(stream)
+        yield Recording(path, stream)
     finally:
-        stream.flush(timeout_sec=_FLUSH_TIMEOUT_S)
         stream.disconnect()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
+import sysconfig
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -42,10 +42,14 @@ def replay(path: Path) -> None:
     Raises BadFile when `path` is no recording, and Refused when the viewer cannot be opened.
     """
     require_recording(path)
-    command = [sys.executable, "-m", "rerun_cli", "--bind", "127.0.0.1", "--port", "auto", str(path)]
+    viewer = Path(sysconfig.get_path("scripts"), "rerun")
+    command = [str(viewer), "--bind", "127.0.0.1", "--port", "auto", str(path)]
     status = subprocess.run(command, env=viewer_environment()).returncode
     if status not in (0, 130):
-        raise errors.Refused(f"the viewer ended with status {status}; it needs a display and a GPU driver")
+        raise errors.Refused(
+            f"the viewer ended with status {status}; it needs a display and a graphics driver "
+            f"(in a browser instead: rerun --web-viewer --bind 127.0.0.1 {path})"
+        )
 
 
 def viewer_environment() -> dict[str, str]:

@@ -6,7 +6,7 @@ import mujoco
 
 from nodes.sim_node.bodies import BodyRecord, frame_of
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.models.parts import Part, Role, Shape
+from nodes.sim_node.models.parts import Mesh, Part, Role, Shape, Vec3
 from schemas.entities import Pose
 
 _GEOM = {
@@ -14,6 +14,7 @@ _GEOM = {
     Shape.ELLIPSOID: mujoco.mjtGeom.mjGEOM_ELLIPSOID,
     Shape.CYLINDER: mujoco.mjtGeom.mjGEOM_CYLINDER,
     Shape.CAPSULE: mujoco.mjtGeom.mjGEOM_CAPSULE,
+    Shape.MESH: mujoco.mjtGeom.mjGEOM_MESH,
 }
 _GROUP = {Role.BOTH: 0, Role.SEEN: 2, Role.FELT: 3}
 FELT_GROUP = _GROUP[Role.FELT]
@@ -25,7 +26,8 @@ _WIDTH = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): (1, 1),
     int(mujoco.mjtJoint.mjJNT_HINGE): (1, 1),
 }
-_FRICTION = (0.8, 0.01, 0.001)
+_FRICTION = (0.8, 0.01, 0.002)
+_HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
 
@@ -38,20 +40,42 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
         body.add_freejoint(name=record.name)
     body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
     body.mass, body.inertia = model.inertial.mass_kg, list(model.inertial.moments)
-    for part, (contype, conaffinity) in zip(model.parts, record.masks, strict=True):
-        solid = 0 if record.ghost else 1
-        body.add_geom(
-            type=_GEOM[part.shape],
-            size=_geom_size(part),
-            pos=[centre + shift for centre, shift in zip(part.centre, record.origin_m, strict=True)],
-            quat=list(part.turn),
-            rgba=[*part.colour, 1.0],
-            group=_GROUP[part.role],
-            contype=contype * solid,
-            conaffinity=conaffinity * solid,
-            condim=4,
-            friction=_FRICTION,
+    for part in model.parts:
+        if part.mesh is not None:
+            add_mesh(spec, part.mesh)
+        add_part(body, part, origin_m=record.origin_m, ghost=record.ghost)
+
+
+def add_mesh(spec: mujoco.MjSpec, mesh: Mesh) -> None:
+    """Make the mesh known to `spec`, once; it collides as its convex hull."""
+    if spec.mesh(mesh.key) is None:
+        spec.add_mesh(
+            name=mesh.key,
+            uservert=mesh.vertices.ravel(),
+            userface=mesh.faces.ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX,
+            maxhullvert=_HULL_VERTICES,
         )
+
+
+def add_part(
+    body: mujoco.MjsBody, part: Part, *, origin_m: Vec3 = (0.0, 0.0, 0.0), ghost: bool = False
+) -> None:
+    """One geom; `origin_m` is where the model's bottom centre is in the body's frame."""
+    contype, conaffinity = (0, 0) if ghost else mask_of(part)
+    body.add_geom(
+        type=_GEOM[part.shape],
+        meshname=part.mesh.key if part.mesh is not None else None,
+        size=_geom_size(part),
+        pos=[centre + shift for centre, shift in zip(part.centre, origin_m, strict=True)],
+        quat=list(part.turn),
+        rgba=[*part.colour, 1.0],
+        group=_GROUP[part.role],
+        contype=contype,
+        conaffinity=conaffinity,
+        condim=4 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        friction=_FRICTION,
+    )
 
 
 def _geom_size(part: Part) -> list[float]:

@@ -9,8 +9,24 @@ from nodes.bus import Network
 
 
 @dataclass(frozen=True)
+class CameraConfig:
+    """How the cameras of the world publish; a rate of 0 means they do not."""
+
+    rate_hz: float = 0.0
+    width: int = 640
+    height: int = 480
+    noise: bool = False
+    segments: bool = False
+    graphics: bool = True
+    """OpenGL where it is to be had; False casts rays."""
+
+
+@dataclass(frozen=True)
 class SimConfig:
-    """`world` is an MJCF scene, None a bare floor."""
+    """`world` is an MJCF scene, None a bare floor; `models` a folder of model files (see `models.files`)."""
 
     world: Path | None = None
+    models: Path | None = None
+    window: bool = False
+    cameras: CameraConfig = field(default_factory=CameraConfig)
     network: Network = field(default_factory=Network)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import copy
 import time
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from concurrent.futures import Future
+from typing import Any, Literal, TypeVar
 
 from nodes import bus
 from nodes.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
-from nodes.sim_node.vision.camera import picture_png
+from nodes.sim_node.models.files import Models
+from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.world import World
 from schemas import codec, keys
@@ -32,6 +32,11 @@ Reply = TypeVar("Reply")
 
 _ADVANCE_S = 0.01
 _PUBLISH_S = 0.05
+_PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
+    "rgb8": "rgb",
+    "depth32f": "depth",
+    "segments16": "segments",
+}
 _LAG_S = 0.05
 """Time that could not be simulated as fast as it passed is dropped beyond this."""
 
@@ -41,11 +46,12 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = World(config.world)
+        self._world = World(config.world, models=Models(config.models))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._painter = ThreadPoolExecutor(max_workers=1, thread_name_prefix="painter")
+        self._studio = Studio(config.cameras)
+        self._planes: dict[str, Any] = {}
         node.serve(
             keys.SIM,
             {
@@ -61,11 +67,13 @@ class Simulator:
         )
         node.every(_ADVANCE_S, self._advance)
         node.every(_PUBLISH_S, self._publish)
+        if config.cameras.rate_hz > 0.0:
+            node.every(1.0 / config.cameras.rate_hz, self._film)
         node.ready(self._summary())
 
     def close(self) -> None:
-        """Let go of the painter's thread."""
-        self._painter.shutdown(wait=False, cancel_futures=True)
+        """Let go of the studio's thread."""
+        self._studio.close()
 
     def _spawn(self, message: Spawn) -> Spawned:
         return self._told(self._world.spawn(message.bodies))
@@ -94,10 +102,21 @@ class Simulator:
         return self._told(Done(text=f"{count} bodies are back where they were ordered to be"))
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
-        """Painted on a thread of its own, from a copy: rays take seconds."""
-        world, view = self._world, self._view(query)
-        model, data = copy.copy(world.model), copy.copy(world.data)
-        return self._painter.submit(lambda: Picture(png=picture_png(model, data, view)))
+        return self._studio.paint(self._still(), self._view(query))
+
+    def _still(self) -> Still:
+        world = self._world
+        return Still.of(world.model, world.data, world.body_names())
+
+    def _film(self) -> None:
+        self._studio.film(self._still, self._publish_plane)
+
+    def _publish_plane(self, plane: Plane) -> None:
+        frame, pixels = plane
+        key = keys.camera_key(frame.camera, _PLANES[frame.encoding])
+        if key not in self._planes:
+            self._planes[key] = bus.publisher(self._node.session, keys.CAMERA, key)
+        self._planes[key].put(pixels.tobytes(), attachment=codec.encode(frame))
 
     def _view(self, query: PictureQuery) -> View:
         world = self._world

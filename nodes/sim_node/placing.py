@@ -51,6 +51,7 @@ class Stage:
         self._model, self._data, self._index = model, data, index
         self._records = [records[name] for name in index.names]
         self.standing = np.array([not record.ghost for record in self._records], dtype=bool)
+        self._bottoms = index.poses(data)[:, :3]
         rows = np.full(model.nbody, _GROUND)
         rows[index.body] = np.arange(len(index.names))
         self._owner = rows[model.body_rootid][model.geom_bodyid]  # a part belongs to its whole
@@ -105,6 +106,7 @@ class Stage:
         self._data.geom_xpos[self._felt[here], 2] += rise_m
         for corner in (self._low[here], self._high[here]):
             corner[:, 2] += rise_m
+        self._bottoms[row, 2] += rise_m
         self.body_low[row, 2] += rise_m
         self.body_high[row, 2] += rise_m
 
@@ -161,9 +163,8 @@ class Stage:
         """Supports at the very spot of the body: who says so of a cup and a table means *on* it."""
         if self._records[row].fixed:
             return []
-        base = (self.body_low + self.body_high) / 2.0
-        apart = np.abs(base[:, :2] - base[row, :2]).max(axis=1)
-        level = np.abs(self.body_low[:, 2] - self.body_low[row, 2])
+        apart = np.abs(self._bottoms - self._bottoms[row])[:, :2].max(axis=1)
+        level = np.abs(self._bottoms - self._bottoms[row])[:, 2]
         tall = self.body_high[:, 2] - self.body_low[:, 2] > LOW_M
         same = (apart < SAME_SPOT_M) & (level < SAME_SPOT_M) & tall & self.standing
         return [
@@ -240,13 +241,15 @@ def _yields(stage: Stage, other: int, newcomer: int) -> bool:
 
 
 def _lift(stage: Stage, row: int, onto: list[int]) -> float | None:
-    """Raise the body onto the lowest surface where it is free, a surface of `onto` if any is named.
+    """Raise the body onto the lowest surface where it is free, from the first of `onto` up if any is named.
 
     Answers by how much [m], or None if there is no such surface.
     """
     start = float(stage.body_low[row, 2])
+    reached = not onto
     for top, owner in stage.surfaces(row):
-        if onto and owner not in onto:
+        reached = reached or owner in onto
+        if not reached:
             continue
         stage.raise_(row, top + CLEARANCE_M - float(stage.body_low[row, 2]))
         if not stage.hits(row, CLEARANCE_M / 2):

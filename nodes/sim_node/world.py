@@ -192,7 +192,7 @@ class World:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""
         names = np.full(self.model.nbody, "", dtype=object)
         names[self._index.body] = self._index.names
-        return [str(name) for name in names[self.model.body_rootid[self.model.geom_bodyid]]]
+        return names[self.model.body_rootid[self.model.geom_bodyid]].tolist()  # type: ignore[no-any-return]
 
     # how it is done
 

@@ -58,7 +58,7 @@ def _recorder(settings: Settings) -> None:
 
     started = time.strftime("%Y-%m-%dT%H-%M-%S")
     path = Path(settings.data) / "recordings" / f"{started}.rrd"
-    run(RecorderConfig(path=path, network=settings.network("recorder")))
+    run(RecorderConfig(path=path, network=settings.network("recorder"), serve=settings.live_view))
 
 
 _LAUNCHERS: dict[str, Callable[[Settings], None]] = {

@@ -39,6 +39,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sim: bool = True
     record: bool = True
     fresh: bool = False
+    live_view: str | None = None
+    """Where the recorder streams to Rerun viewers, `host:port`."""
 
     @property
     def nodes(self) -> tuple[str, ...]:

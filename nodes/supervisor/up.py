@@ -5,10 +5,13 @@ from __future__ import annotations
 import contextlib
 import queue
 import signal
+import socket
 import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
+
+from msgspec import structs
 
 from nodes import bus
 from nodes.supervisor.control import Supervisor
@@ -19,6 +22,7 @@ from schemas.health import Health
 _START_TIMEOUT_S = 120.0
 _HANGS_AFTER_S = 30.0
 _STOP_TIMEOUT_S = 4.5
+_LIVE_PORT = 9876
 
 
 def up(settings: Settings, say: Callable[[str], None]) -> None:
@@ -29,7 +33,9 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     supervisor = Supervisor(Path(settings.data))
     if supervisor.is_running():
         raise errors.Refused(f"a system runs on {settings.data} already; stop it with: semmap down")
-    say(f"map        {supervisor.seed(settings)}")
+    if settings.record:
+        settings = structs.replace(settings, live_view=_live_view())
+    say(f"map          {supervisor.seed(settings)}")
     process = supervisor.start(settings)
     try:
         _Foreground(supervisor, settings, process, say).run()
@@ -123,9 +129,18 @@ class _Foreground:
         self._say(f"zenoh        {self._settings.reachable}")
         self._say(f"data         {self._settings.data}")
         if self._settings.record:
-            self._say("live view    rerun --connect rerun+http://127.0.0.1:9876/proxy")
+            self._say(f"live view    rerun --connect rerun+http://{self._settings.live_view}/proxy")
         self._say(f"try          semmap list{connect}")
         self._say("stop         Ctrl-C")
+
+
+def _live_view() -> str:
+    """The port on which Rerun viewers look for a live recording, or another one when that is taken."""
+    for port in (_LIVE_PORT, 0):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return f"127.0.0.1:{probe.getsockname()[1]}"
+    raise AssertionError("port 0 can always be bound")
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

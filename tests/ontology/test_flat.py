@@ -83,7 +83,7 @@ def walls() -> list[Block]:
     return [
         Block(
             model.geom(i).name,
-            model.geom_pos[i] - [0, 0, model.geom_size[i][2]],
+            model.geom_pos[i] - np.array([0, 0, model.geom_size[i][2]]),
             0.0,
             2 * model.geom_size[i],
         )
@@ -198,7 +198,9 @@ def test_things_are_within_the_place_they_are_said_to_be_in(flat: Graph, blocks:
 
 
 def test_the_floor_where_new_things_go_is_free(blocks: dict[str, Block]) -> None:
-    disc = [Block("disc", np.array([2.0, 2.0, 0.0]), a, np.array([1.4, 1.4, 2.0])) for a in np.arange(0, 1.6, 0.1)]
+    disc = [
+        Block("disc", np.array([2.0, 2.0, 0.0]), a, np.array([1.4, 1.4, 2.0])) for a in np.arange(0, 1.6, 0.1)
+    ]
     assert [b.name for b in blocks.values() if any(d.overlaps(b) for d in disc)] == []
 
 
@@ -206,7 +208,9 @@ def test_each_door_fills_a_gap(blocks: dict[str, Block]) -> None:
     doors = [b for name, b in blocks.items() if name.startswith("door")]
     assert len(doors) == 7
     for door in doors:
-        above = Block("lintel", door.bottom + [0, 0, door.size[2]], door.yaw, np.array([0.06, 0.8, 0.1]))
+        above = Block(
+            "lintel", door.bottom + np.array([0, 0, door.size[2]]), door.yaw, np.array([0.06, 0.8, 0.1])
+        )
         assert any(above.overlaps(w) and "over" in w.name for w in walls()), door.name
 
 

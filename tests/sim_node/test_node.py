@@ -3,16 +3,18 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from nodes import bus
 from nodes.loop import Node
-from nodes.sim_node.config import SimConfig
+from nodes.sim_node.config import CameraConfig, SimConfig
 from nodes.sim_node.node import Simulator
-from schemas import errors, keys
+from schemas import codec, errors, keys
 from schemas.commands import Done, Pause, Reset, StepOnce
 from schemas.scenes import (
     BodiesMoved,
+    CameraFrame,
     Delete,
     Deleted,
     MoveBodies,
@@ -38,7 +40,8 @@ def client():
     network = bus.Network(connect=(), listen=(endpoint,), mode="peer")
     with bus.open_session(network) as session:
         node = Node("sim_node", session)
-        simulator = Simulator(node, SimConfig(network=network))
+        cameras = CameraConfig(rate_hz=5.0, width=64, height=48, segments=True, graphics=False)
+        simulator = Simulator(node, SimConfig(network=network, cameras=cameras))
         thread = threading.Thread(target=node.run)
         thread.start()
         try:
@@ -139,6 +142,32 @@ def test_a_picture_is_a_png(client):
     assert ask(client, "picture", PictureQuery(camera="overview", width=64, height=48)).png != picture.png
     with pytest.raises(errors.BadRequest, match="overview"):
         ask(client, "picture", PictureQuery(camera="nowhere"))
+
+
+def test_cameras_publish_raw_planes_with_what_they_need_to_be_understood(client):
+    ask(client, "spawn", Spawn(bodies=(order("chair1", "chair", pose(0, 0)),)))
+    planes = {}
+
+    def keep(sample):
+        frame = codec.decode(sample.attachment.to_bytes(), CameraFrame)
+        if "chair1" in frame.names or frame.encoding != "segments16":
+            planes[str(sample.key_expr)] = frame, sample.payload.to_bytes()
+
+    subscriber = client.declare_subscriber(keys.CAMERA.key, keep)
+    wait_for(lambda: len(planes) == 3)
+    subscriber.undeclare()
+    assert set(planes) == {f"semmap/sim/camera/overview/{plane}" for plane in ("rgb", "depth", "segments")}
+    frame, raw = planes["semmap/sim/camera/overview/depth"]
+    depth = np.frombuffer(raw, np.float32).reshape(frame.height, frame.width)
+    assert 3.0 < np.median(depth) < 15.0
+    assert (frame.camera, frame.encoding) == ("overview", "depth32f")
+    assert np.reshape(frame.intrinsics, (3, 3))[0, 2] == 32.0
+    assert np.reshape(frame.map_from_camera, (4, 4))[:3, 3] == pytest.approx([5, -5, 5])
+    frame, raw = planes["semmap/sim/camera/overview/segments"]
+    assert frame.names == ("chair1",)
+    assert set(np.frombuffer(raw, np.uint16)) == {0, 1}
+    frame, raw = planes["semmap/sim/camera/overview/rgb"]
+    assert len(raw) == 64 * 48 * 3
 
 
 def test_nonsense_is_refused_and_the_node_lives_on(client):

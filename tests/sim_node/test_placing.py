@@ -23,6 +23,13 @@ def test_a_cup_said_to_be_where_the_table_is_stands_on_it():
     assert bodies(world)["table1"].pose.position_m == pytest.approx((1, 1, 0), abs=0.002)
 
 
+def test_a_whole_tower_may_be_said_to_be_at_one_spot():
+    world = spawned(*(order(name, name, pose(1, 1)) for name in ("cup", "tray", "table", "book")))
+    world.step(0.5)
+    heights = {name: body.pose.position_m[2] for name, body in bodies(world).items()}
+    assert heights["table"] < 0.01 < 0.74 < heights["tray"] < heights["book"] < heights["cup"]
+
+
 def test_a_table_that_comes_later_lifts_the_cup():
     world = spawned(order("cup1", "cup", pose(1, 1)))
     world.spawn([order("cabinet1", "", pose(1, 1.1), size_m=(0.8, 0.8, 0.7))])

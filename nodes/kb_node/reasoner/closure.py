@@ -9,16 +9,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from itertools import combinations
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.matching import Pattern, Plan, bind, indexed, pattern, patterns, plan, unify
 from nodes.kb_node.reasoner.rules import AXIOMS, DECLARATIONS, NUMBERS, RULES, Atom, Rule
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, NIL, REST, SAME_AS, TYPE, is_literal
 from schemas.explanations import Term, Triple
-
-Pattern = tuple[Term | None, Term | None, Term | None]
-Bindings = dict[str, Term]
 
 
 class Reason(NamedTuple):
@@ -28,33 +27,21 @@ class Reason(NamedTuple):
     premises: tuple[Triple, ...]
 
 
-class _Trigger(NamedTuple):
-    """A rule as seen from one of its data atoms: that atom, and the others in the order to join them."""
-
-    rule: Rule
-    atom: Atom
-    others: tuple[Atom, ...]
-
-
 class Closure:
     """A graph and all that follows from it, until a contradiction is met."""
 
-    def __init__(self, triples: Iterable[Triple] = ()) -> None:
-        self.facts: dict[Triple, Reason | None] = {}
-        self.clash: Reason | None = None
-        self._index: dict[Pattern, dict[Triple, None]] = {}
-        self._triggers: dict[Pattern, list[_Trigger]] = {}
-        self._watchers: dict[Pattern, list[Rule]] = {}
+    def __init__(self, triples: Iterable[Triple] = (), base: Closure | None = None) -> None:
+        """Close a graph; `base` is a closure to start from, which stays as it is."""
+        base = base or _empty()
+        self.clash: Reason | None = base.clash
+        self.facts: dict[Triple, Reason | None] = base.facts.copy()
+        self._index: dict[Pattern, dict[Triple, None]] = {k: v.copy() for k, v in base._index.items()}
+        self._triggers: dict[Pattern, list[Plan]] = {k: list(v) for k, v in base._triggers.items()}
+        self._watchers: dict[Pattern, list[Rule]] = {k: list(v) for k, v in base._watchers.items()}
+        self._literals: dict[datatypes.Value, list[Term]] = {k: list(v) for k, v in base._literals.items()}
+        self._datatypes: list[Term] = list(base._datatypes)
+        self._compared: list[Term] = list(base._compared)
         self._agenda: deque[Triple] = deque()
-        self._literals: dict[datatypes.Value, list[Term]] = {}
-        self._datatypes: list[Term] = []
-        self._compared: list[Term] = []
-        for number in NUMBERS:
-            self._meet(number)
-        for rule in RULES:
-            self._watch(rule)
-        for axiom, name in AXIOMS.items():
-            self._add(axiom, Reason(name, ()))
         self.insert(triples)
 
     def insert(self, triples: Iterable[Triple]) -> None:
@@ -85,21 +72,40 @@ class Closure:
         s, p, o = triple
         return triple in self.facts or triple in DECLARATIONS or (p == SAME_AS and s == o)
 
+    def leaves(self, goal: Triple | None) -> list[Triple]:
+        """The asserted triples that a fact (None: the clash) was concluded from, in the proof's order."""
+        seen: set[Triple | None] = set()
+        leaves: list[Triple] = []
+        pending = [goal]
+        while pending:
+            fact = pending.pop()
+            if fact in seen:
+                continue
+            seen.add(fact)
+            reason = self.reason(fact)
+            if reason is not None:
+                pending += reversed(reason.premises)
+            elif fact is not None and fact in self.facts:
+                leaves.append(fact)
+        return leaves
+
+    def reason(self, fact: Triple | None) -> Reason | None:
+        """How a fact (or None: the clash) was concluded; None for what is asserted or not there."""
+        return self.clash if fact is None else self.facts.get(fact)
+
     # Facts
 
     def _add(self, fact: Triple, reason: Reason | None) -> None:
         if fact in self.facts:
             return
         self.facts[fact] = reason
-        s, p, o = fact
-        for pattern in ((s, None, None), (None, p, None), (None, None, o), (s, p, None), (None, p, o)):
-            self._index.setdefault(pattern, {})[fact] = None
         self._agenda.append(fact)
         for term in fact:
             self._meet(term)
             if is_literal(term) and datatypes.is_ill_typed(term):
                 self._conclude("dt-not-type", (fact,), None)
-        if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and not datatypes.contains(o, s):
+        s, p, o = fact
+        if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and datatypes.excludes(o, s):
             self._conclude("dt-not-type", (fact,), None)
         if p == SAME_AS and is_literal(o) and s != o:
             self._tell_apart(fact)
@@ -142,53 +148,46 @@ class Closure:
     def _watch(self, rule: Rule) -> None:
         """Put a rule to work: on the facts at hand, and on those to come."""
         if not rule.schema:
-            self._ready(rule)
+            self._start(rule)
             return
         atom = rule.schema[0]
         if atom[1] in ("in", "of"):
-            for special in self._by_members(rule):
-                self._watch(special)
+            for bindings, cells in self._choices(atom):
+                self._watch(bind(rule, bindings, cells))
             return
-        pattern = _pattern(atom, {})
-        self._watchers.setdefault(pattern, []).append(rule)
-        for fact in list(self.match(*pattern)):
+        self._watchers.setdefault(pattern(atom), []).append(rule)
+        for fact in list(self.match(*pattern(atom))):
             self._specialise(rule, fact)
 
     def _specialise(self, rule: Rule, fact: Triple) -> None:
-        bindings = _unify(rule.schema[0], fact, {})
+        bindings = unify(rule.schema[0], fact)
         if bindings is not None:
-            self._watch(_bind(rule, rule.schema[1:], bindings, (fact,)))
+            self._watch(bind(rule, bindings, (fact,)))
 
-    def _by_members(self, rule: Rule) -> Iterator[Rule]:
-        names, _, head = rule.schema[0]
-        members, cells = self._list(head) or ([], ())
+    def _choices(self, atom: Atom) -> Iterator[tuple[dict[str, Term], tuple[Triple, ...]]]:
+        """The ways to choose members of a list."""
+        names, _, head = atom
+        members, cells = self.members(head) or ([], ())
         variables = names.split(",")
         for choice in combinations(members, len(variables)):
-            yield _bind(rule, rule.schema[1:], dict(zip(variables, choice, strict=True)), cells)
+            yield dict(zip(variables, choice, strict=True)), cells
 
-    def _ready(self, rule: Rule) -> None:
-        """Start a rule whose schema atoms are all matched."""
-        written_out = self._without_lists(rule)
-        if written_out is None:
-            return
-        rule = written_out
+    def _start(self, rule: Rule) -> None:
+        """Put a rule to work whose schema atoms are all matched."""
+        rule = self._without_lists(rule)
         data = tuple(atom for atom in rule.data if not (atom[1] == SAME_AS and atom[0] == atom[2]))
         for i, atom in enumerate(data):
-            trigger = _Trigger(rule, atom, _join_order(atom, data[:i] + data[i + 1 :]))
-            self._triggers.setdefault(_pattern(atom, {}), []).append(trigger)
-        for bindings, premises in list(self._join(data, {}, ())):
-            self._apply(rule, bindings, premises)
+            self._triggers.setdefault(pattern(atom), []).append(plan(rule, data, i))
+        whole = plan(rule, data)
+        self._join(whole, 0, [""] * whole.variables, ())
 
-    def _without_lists(self, rule: Rule) -> Rule | None:
-        """Write the list atoms `all`, `path`, `agree` out, member by member; None without such a list."""
+    def _without_lists(self, rule: Rule) -> Rule:
+        """Write the list atoms `all`, `path`, `agree` out, member by member."""
         data: list[Atom] = []
         premises = rule.premises
         for s, p, o in rule.data:
             kind, _, head = next((w for w in (p, o) if w.endswith(")")), "").rstrip(")").partition("(")
-            found = self._list(head) if kind else ([], ())
-            if found is None:
-                return None
-            members, cells = found
+            members, cells = (self.members(head) if kind else None) or ([], ())
             premises += cells
             if kind == "all":
                 data += [(s, p, member) for member in members]
@@ -197,11 +196,11 @@ class Closure:
                 data += [(stops[i], member, stops[i + 1]) for i, member in enumerate(members)]
             elif kind == "agree":
                 data += [(who, member, f"?{i}") for i, member in enumerate(members) for who in (s, o)]
-            else:
-                data.append((s, p, o))
+            if not members:
+                data.append((s, p, o))  # no list atom, or no list: then nothing matches it
         return rule._replace(data=tuple(data), premises=premises)
 
-    def _list(self, head: Term) -> tuple[list[Term], tuple[Triple, ...]] | None:
+    def members(self, head: Term) -> tuple[list[Term], tuple[Triple, ...]] | None:
         """Members and cells of an asserted list; None when it is cut off, branches or runs in a circle."""
         members: list[Term] = []
         cells: list[Triple] = []
@@ -216,38 +215,57 @@ class Closure:
         return members, tuple(cells)
 
     def _fire(self, fact: Triple) -> None:
-        s, p, o = fact
-        for pattern in (
-            (None, p, None), (None, p, o), (s, p, None), (None, None, None), (s, None, None),
-            (None, None, o), (s, p, o), (s, None, o),
-        ):  # fmt: skip
-            for rule in list(self._watchers.get(pattern, ())):
+        """Index a fact, and apply the rules to it and to the facts indexed before: each pair meets once."""
+        for key in indexed(fact):
+            self._index.setdefault(key, {})[fact] = None
+        for key in patterns(fact):
+            for rule in list(self._watchers.get(key, ())):
                 self._specialise(rule, fact)
-            for trigger in list(self._triggers.get(pattern, ())):
-                bindings = _unify(trigger.atom, fact, {})
-                if bindings is not None:
-                    for found, premises in list(self._join(trigger.others, bindings, (fact,))):
-                        self._apply(trigger.rule, found, premises)
+            for found in list(self._triggers.get(key, ())):
+                self._take(found, 0, fact, [""] * found.variables, ())
 
-    def _join(
-        self, atoms: Sequence[Atom], bindings: Bindings, premises: tuple[Triple, ...]
-    ) -> Iterator[tuple[Bindings, tuple[Triple, ...]]]:
-        if not atoms:
-            yield bindings, premises
+    def _join(self, found: Plan, at: int, known: list[Term], premises: tuple[Triple, ...]) -> None:
+        """Match the atoms of a rule from one on, and apply the rule to each match."""
+        if at == len(found.accesses):
+            self._apply(found, known, premises)
             return
-        for fact in self.match(*_pattern(atoms[0], bindings)):
-            extended = _unify(atoms[0], fact, bindings)
-            if extended is not None:
-                yield from self._join(atoms[1:], extended, (*premises, fact))
+        s, p, o = found.accesses[at].key
+        key = (
+            known[s] if isinstance(s, int) else s,
+            known[p] if isinstance(p, int) else p,
+            known[o] if isinstance(o, int) else o,
+        )
+        for fact in self.match(*key):
+            self._take(found, at, fact, known, premises)
 
-    def _apply(self, rule: Rule, bindings: Bindings, premises: tuple[Triple, ...]) -> None:
-        if rule.head is None:
-            self._conclude(rule.name, (*premises, *rule.premises), None)
-            return
-        s, p, o = rule.head
-        head = (bindings.get(s, s), bindings.get(p, p), bindings.get(o, o))
-        if head not in self.facts and not (head[1] == SAME_AS and head[0] == head[2]):
-            self._conclude(rule.name, (*premises, *rule.premises), head)
+    def _take(
+        self, found: Plan, at: int, fact: Triple, known: list[Term], premises: tuple[Triple, ...]
+    ) -> None:
+        """A fact for one atom of a rule: settle its variables and go on with the next atom."""
+        access = found.accesses[at]
+        for one, other in access.repeats:
+            if fact[one] != fact[other]:
+                return
+        for variable, place in access.takes:
+            known[variable] = fact[place]
+        if at + 1 == len(found.accesses):
+            self._apply(found, known, (*premises, fact))
+        else:
+            self._join(found, at + 1, known, (*premises, fact))
+
+    def _apply(self, found: Plan, known: list[Term], matched: tuple[Triple, ...]) -> None:
+        head: Triple | None = None
+        if found.head is not None:
+            s, p, o = found.head
+            head = (
+                known[s] if isinstance(s, int) else s,
+                known[p] if isinstance(p, int) else p,
+                known[o] if isinstance(o, int) else o,
+            )
+            if head in self.facts or (head[1] == SAME_AS and head[0] == head[2]):
+                return
+        premises = sorted(zip(found.places, matched, strict=True))
+        self._conclude(found.rule.name, (*(fact for _, fact in premises), *found.rule.premises), head)
 
     def _conclude(self, rule: str, premises: tuple[Triple, ...], head: Triple | None) -> None:
         reason = Reason(rule, tuple(dict.fromkeys(premises)))
@@ -257,58 +275,26 @@ class Closure:
             self.clash = reason
 
 
+class _Empty(Closure):
+    """The axiomatic triples, and all rules at work."""
+
+    def __init__(self) -> None:
+        self.clash, self.facts, self._agenda = None, {}, deque()
+        self._index, self._triggers, self._watchers = {}, {}, {}
+        self._literals, self._datatypes, self._compared = {}, [], []
+        for number in NUMBERS:
+            self._meet(number)
+        for rule in RULES:
+            self._watch(rule)
+        for axiom, name in AXIOMS.items():
+            self._add(axiom, Reason(name, ()))
+        self.insert(())
+
+
+@cache
+def _empty() -> Closure:
+    return _Empty()
+
+
 def _cells_first(triple: Triple) -> bool:
     return triple[1] not in (FIRST, REST)
-
-
-def _pattern(atom: Atom, bindings: Bindings) -> Pattern:
-    s, p, o = atom
-    return (
-        bindings.get(s) if s[0] == "?" else s,
-        bindings.get(p) if p[0] == "?" else p,
-        bindings.get(o) if o[0] == "?" else o,
-    )
-
-
-def _unify(atom: Atom, fact: Triple, bindings: Bindings) -> Bindings | None:
-    found = dict(bindings)
-    for word, term in zip(atom, fact, strict=True):
-        if word[0] == "?":
-            if found.setdefault(word, term) != term:
-                return None
-        elif word != term:
-            return None
-    return found
-
-
-def _bind(rule: Rule, schema: tuple[Atom, ...], bindings: Bindings, premises: tuple[Triple, ...]) -> Rule:
-    """A rule with variables replaced; `schema` are the schema atoms still to be matched."""
-
-    def bound(word: str) -> str:
-        if word[-1] == ")":
-            kind, _, variable = word[:-1].partition("(")
-            return f"{kind}({bindings.get(variable, variable)})"
-        return bindings.get(word, word)
-
-    def each(atom: Atom) -> Atom:
-        return (bound(atom[0]), bound(atom[1]), bound(atom[2]))
-
-    return Rule(
-        rule.name,
-        tuple(map(each, schema)),
-        tuple(map(each, rule.data)),
-        rule.head and each(rule.head),
-        rule.premises + premises,
-    )
-
-
-def _join_order(first: Atom, others: tuple[Atom, ...]) -> tuple[Atom, ...]:
-    """The atom with the most known words next."""
-    known = set(first)
-    left, ordered = list(others), []
-    while left:
-        best = max(left, key=lambda atom: sum(word[0] != "?" or word in known for word in atom))
-        left.remove(best)
-        ordered.append(best)
-        known.update(best)
-    return tuple(ordered)

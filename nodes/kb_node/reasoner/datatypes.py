@@ -133,6 +133,11 @@ def contains(datatype: Term, term: Term) -> bool:
     return kind == name
 
 
+def excludes(datatype: Term, term: Term) -> bool:
+    """Whether a literal is known not to be in a known datatype (an unknown one's literal might be)."""
+    return (value(term) is not None or is_ill_typed(term)) and not contains(datatype, term)
+
+
 def datatypes(term: Term) -> list[Term]:
     """All known datatypes that hold the value of a literal (dt-type2)."""
     return [datatype for datatype in sorted(_KNOWN) if contains(datatype, term)] if is_literal(term) else []

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import islice
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.proof import prove
-from nodes.kb_node.reasoner.terms import FIRST, REST, TYPE, iri, is_literal
+from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from nodes.kb_node.reasoner.general import GeneralEngine
+from nodes.kb_node.reasoner.schema import NotCompilable
+from nodes.kb_node.reasoner.split import is_schema
+from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 
 _SUB_CLASS_OF = iri("rdfs:subClassOf")
 
 
 class Inconsistent(Exception):
-    """A change that the ontology contradicts; it was undone."""
+    """A change that contradicts the rest; it was undone. `explanation` says why."""
 
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
@@ -29,82 +30,108 @@ class Change(NamedTuple):
 
 
 class Reasoner:
-    """A TBox and an ABox that are consistent, and what follows from them."""
+    """A TBox and an ABox that are consistent, and what follows from them by the OWL 2 RL/RDF rules.
+
+    Terms are strings in N-Triples syntax. A pattern's None is a wildcard. Not thread-safe.
+    """
 
     def __init__(self, tbox: Iterable[Triple] = ()) -> None:
-        """Start with a TBox. Raises Inconsistent when it contradicts itself."""
-        self._asserted: dict[Triple, None] = {}
-        self._closure = Closure()
-        self.apply(insert=tbox)
+        """Start with some triples. Raises Inconsistent when they contradict each other."""
+        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox)
 
     def __len__(self) -> int:
-        """How many triples are asserted, TBox included."""
-        return len(self._asserted)
+        """How many triples are asserted, the TBox's included."""
+        return len(self._engine)
 
     def apply(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple] = ()) -> Change:
         """One transaction: deletes, then inserts, then checks.
 
-        Deleting what is not there and inserting what is there changes nothing.
+        Deleting what is not there and inserting what is there changes nothing. Triples of the schema are
+        allowed and cost as much as loading the whole map anew.
 
         Raises:
             Inconsistent: everything is as it was before.
         """
-        removed = [triple for triple in dict.fromkeys(delete) if triple in self._asserted]
-        asserted = self._asserted.copy()
-        for triple in removed:
-            del asserted[triple]
-        added = [triple for triple in dict.fromkeys(insert) if triple not in asserted]
-        asserted.update(dict.fromkeys(added))
-        before = len(self._closure.facts)
-        if removed or any(p in (FIRST, REST) for _, p, _ in added):
-            closure, known = Closure(asserted), set(self._closure.facts)
-        else:
-            closure, known = self._closure, set()
-            closure.insert(added)
-        if closure.clash is not None:
-            explanation = prove(asserted, None)
-            self._closure = Closure(self._asserted)
-            raise Inconsistent(explanation)
-        different = known ^ set(closure.facts) if known else islice(closure.facts, before, None)
-        self._closure, self._asserted = closure, asserted
-        changed = {triple[0] for triple in (*removed, *added)}
-        changed |= {s for s, p, _ in different if p == TYPE}
-        return Change(frozenset(term for term in changed if not is_literal(term)))
+        delete, insert = list(delete), list(insert)
+        engine = self._engine
+        if isinstance(engine, CompiledEngine) and not any(map(is_schema, (*delete, *insert))):
+            try:
+                return Change(engine.apply(delete, insert))
+            except Refused as refused:
+                raise Inconsistent(refused.explanation) from None
+            except NotCompilable:
+                pass  # undone; the general engine can do it
+        return self._apply_anew(delete, insert)
+
+    def _apply_anew(self, delete: list[Triple], insert: list[Triple]) -> Change:
+        before = dict.fromkeys(self.asserted())
+        after = before.copy()
+        for triple in delete:
+            after.pop(triple, None)
+        after.update(dict.fromkeys(insert))
+        engine = _engine_for(after)
+        old, self._engine = self._engine, engine
+        individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
+        touched = {s for s, _, _ in before.keys() ^ after.keys()}
+        touched |= {term for term in individuals if old.types(term) != engine.types(term)}
+        return Change(frozenset(term for term in touched if not is_literal(term)))
 
     def asserted(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """Asserted triples of a pattern; None is a wildcard."""
-        return (triple for triple in self._closure.match(s, p, o) if triple in self._asserted)
+        """The asserted triples of a pattern."""
+        return self._engine.asserted(s, p, o)
 
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """Triples of a pattern that follow and were not asserted."""
-        return (triple for triple in self._closure.match(s, p, o) if triple not in self._asserted)
+        """The triples about individuals that follow and were not asserted, of a pattern.
+
+        Left out are classes without a name, that everything is the same as itself, and other spellings of
+        a literal; `holds` knows them. What follows of classes and properties is given when the pattern's
+        predicate asks for it.
+        """
+        return self._engine.inferred(s, p, o)
 
     def holds(self, triple: Triple) -> bool:
         """Whether a triple is asserted or follows."""
-        return self._closure.holds(triple)
+        return self._engine.holds(triple)
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual, asserted and inferred."""
-        return frozenset(o for _, _, o in self._closure.match(individual, TYPE) if o[0] == "<")
+        return self._engine.types(individual)
 
     def instances(self, cls: Term) -> Iterator[Term]:
         """The individuals of a class, asserted and inferred."""
-        return (s for s, _, _ in self._closure.match(None, TYPE, cls))
+        return self._engine.instances(cls)
 
     def superclasses(self, cls: Term) -> frozenset[Term]:
         """The named classes that a class is a subclass of, itself included."""
-        found = {o for _, _, o in self._closure.match(cls, _SUB_CLASS_OF) if o[0] == "<"}
-        return frozenset(found | {cls})
+        wider = {o for source in (self.asserted, self.inferred) for _, _, o in source(cls, _SUB_CLASS_OF)}
+        return frozenset(filter(is_named, wider)) | {cls}
 
     def subclasses(self, cls: Term) -> frozenset[Term]:
         """The named classes that are subclasses of a class, itself included."""
-        found = {s for s, _, _ in self._closure.match(None, _SUB_CLASS_OF, cls) if s[0] == "<"}
-        return frozenset(found | {cls})
+        narrower = {
+            s for source in (self.asserted, self.inferred) for s, _, _ in source(None, _SUB_CLASS_OF, cls)
+        }
+        return frozenset(filter(is_named, narrower)) | {cls}
 
     def explain(self, triple: Triple) -> Explanation | None:
         """Why a triple holds; None when it does not."""
-        return prove(self._asserted, triple) if self.holds(triple) else None
+        return self._engine.explain(triple) if self.holds(triple) else None
+
+
+def _engine_for(triples: Iterable[Triple]) -> CompiledEngine | GeneralEngine:
+    """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
+    triples = list(dict.fromkeys(triples))
+    try:
+        return CompiledEngine(triples)
+    except Refused as refused:
+        raise Inconsistent(refused.explanation) from None
+    except NotCompilable:
+        engine = GeneralEngine(triples)
+    contradiction = engine.contradiction()
+    if contradiction is not None:
+        raise Inconsistent(contradiction)
+    return engine

@@ -54,6 +54,11 @@ def is_literal(term: Term) -> bool:
     return term[0] == '"'
 
 
+def is_named(term: Term) -> bool:
+    """Whether the term is an IRI."""
+    return term[0] == "<"
+
+
 def is_reserved(term: Term) -> bool:
     """Whether the term is an IRI of the RDF, RDFS, OWL or XSD vocabulary."""
     return term.startswith(_RESERVED)

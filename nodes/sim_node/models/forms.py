@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from nodes.sim_node.models.parts import (
@@ -117,3 +118,13 @@ def turned(profile: Sequence[tuple[float, float]], colour: Colour, *, steps: int
 def column(radius: float, bottom: float, top: float, colour: Colour) -> Part:
     """An upright cylinder between two heights."""
     return rod(radius, top - bottom, (0.0, 0.0, (bottom + top) / 2), colour)
+
+
+def shifted(parts: Iterable[Part], *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Parts:
+    """The same parts elsewhere."""
+    return [
+        replace(
+            part, centre=(float(part.centre[0] + x), float(part.centre[1] + y), float(part.centre[2] + z))
+        )
+        for part in parts
+    ]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from nodes.sim_node.models.forms import (
+    BLACK,
     BRASS,
     DARK,
     GREY,
@@ -11,11 +14,9 @@ from nodes.sim_node.models.forms import (
     WHITE,
     column,
     front,
-    hollow_box,
     legs,
     shade,
     slab,
-    solid,
     turned,
 )
 from nodes.sim_node.models.parts import (
@@ -28,6 +29,7 @@ from nodes.sim_node.models.parts import (
     box,
     felt,
     pill,
+    product,
     rod,
     seen,
 )
@@ -36,12 +38,11 @@ from nodes.sim_node.models.parts import (
 def chair(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Four legs, a seat and a slatted back at -x."""
     seat, thick = 0.5 * z, 0.035
-    post = box((thick, thick, z - seat), (0, 0, (z + seat) / 2), colour)
     posts = [
         box(
             (thick, thick, z - seat),
             (-(x - thick) / 2, side * (y - thick) / 2, (z + seat) / 2),
-            post.colour,
+            colour,
         )
         for side in (-1, 1)
     ]
@@ -300,8 +301,6 @@ def board(x: float, y: float, z: float, colour: Colour) -> Parts:
 def clothes_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A drying rack: two crossed frames and lines between them."""
     lean = 0.42 * x
-    import math
-
     angle = math.atan2(2 * lean, z)
     length = math.hypot(2 * lean, z) * 0.98
     frames = [
@@ -316,17 +315,6 @@ def clothes_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
     feet = felt(rod(0.012, 0.98 * y, (side * lean, 0, 0.012), colour, ALONG_Y) for side in (-1, 1))
     rails = [box((x, 0.02, 0.02), (0, side * 0.48 * y, z - 0.01), colour) for side in (-1, 1)]
     return [*frames, *lines, *feet, *rails]
-
-
-def press(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """An ironing board: a padded top with a nose, on crossed legs."""
-    width = min(x, y)
-    return [
-        box((width, 0.75 * max(x, y), 0.05), (0, -0.125 * max(x, y), z - 0.025), colour),
-        *seen(ball((width, 0.5 * max(x, y), 0.05), (0, 0.25 * max(x, y), z - 0.025), colour)),
-        *seen(box((0.03, 0.03, 1.15 * z), (0, 0, 0.48 * z), STEEL, about("x", s * 0.6)) for s in (-1, 1)),
-        *felt(box((0.9 * width, 0.6 * max(x, y), z - 0.05), (0, 0, (z - 0.05) / 2), STEEL)),
-    ]
 
 
 def lamp(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -359,12 +347,9 @@ def clock(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         rod(radius, 0.9 * x, (-0.05 * x, 0, z / 2), colour, ALONG_X),
         *seen(rod(0.88 * radius, 0.05 * x, (0.42 * x, 0, z / 2), PAPER, ALONG_X)),
-        *seen(box((0.05 * x, 0.05 * radius, 0.7 * radius), (0.47 * x, 0, z / 2 + 0.3 * radius), BLACK_HAND)),
-        *seen(box((0.05 * x, 0.5 * radius, 0.06 * radius), (0.47 * x, 0.22 * radius, z / 2), BLACK_HAND)),
+        *seen(box((0.05 * x, 0.05 * radius, 0.7 * radius), (0.47 * x, 0, z / 2 + 0.3 * radius), BLACK)),
+        *seen(box((0.05 * x, 0.5 * radius, 0.06 * radius), (0.47 * x, 0.22 * radius, z / 2), BLACK)),
     ]
-
-
-BLACK_HAND: Colour = (0.05, 0.05, 0.05)
 
 
 def toilet_roll(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -374,45 +359,17 @@ def toilet_roll(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def cushion(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Soft, thick in the middle."""
+    """Soft: thick in the middle, thin at its square border."""
     return [
-        *seen(ball((1.1 * x, 1.1 * y, z), (0, 0, z / 2), colour)),
-        *felt(box((0.9 * x, 0.9 * y, 0.8 * z), (0, 0, 0.4 * z), colour)),
+        *seen(box((x, y, 0.34 * z), (0, 0, 0.5 * z), shade(colour, 0.9))),
+        *seen(ball((0.98 * x, 0.98 * y, z), (0, 0, 0.5 * z), colour)),
+        *felt(box((0.9 * x, 0.9 * y, z), (0, 0, z / 2), colour)),
     ]
 
 
 def rug(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A flat rug with a border."""
     return [slab(x, y, 0, z, colour), *seen(slab(0.86 * x, 0.9 * y, 0.5 * z, z + 0.001, shade(colour, 1.4)))]
-
-
-def deck(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A deck of planks."""
-    planks = max(4, min(12, round(y / 0.14)))
-    pitch = y / planks
-    boards = seen(
-        box(
-            (x, 0.94 * pitch, 0.4 * z),
-            (0, pitch * (i + 0.5) - y / 2, 0.8 * z),
-            shade(colour, 1 + 0.1 * (i % 2)),
-        )
-        for i in range(planks)
-    )
-    return [*boards, slab(0.98 * x, 0.98 * y, 0, 0.98 * z, shade(colour, 0.7))]
-
-
-def console(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A narrow hall table with a lower shelf."""
-    return [
-        slab(x, y, z - 0.03, z, colour),
-        *legs(x, y, z - 0.03, 0.035, shade(colour, 0.8)),
-        box((0.9 * x, 0.95 * y, 0.025), (0, 0, 0.2 * z), shade(colour, 1.1)),
-    ]
-
-
-def crate(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """An open box."""
-    return hollow_box(x, y, z, min(0.012, x / 12, y / 12), colour)
 
 
 def figure(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -435,5 +392,34 @@ def figure(x: float, y: float, z: float, colour: Colour) -> Parts:
         *seen(pill(0.09 * y, 0.12 * z, (0, 0, 0.85 * z), skin)),
         *seen(ball((0.11 * z, 0.1 * z, head), (0, 0, z - head / 2), skin)),
         *seen(ball((0.115 * z, 0.105 * z, 0.07 * z), (-0.008, 0, z - 0.034 * z), (0.25, 0.17, 0.1))),
-        *solid(0.9 * x, 0.9 * y, 0, z),
+        *felt(box((0.8 * x, 0.9 * y, z), (0.02, 0, z / 2), colour)),
     ]
+
+
+def coat_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A pole on four feet with a crown of pegs and a coat."""
+    spread = [box((x, 0.04, 0.03), (0, 0, 0.015), colour), box((0.04, y, 0.03), (0, 0, 0.015), colour)]
+    pegs = seen(
+        rod(
+            0.009,
+            0.22,
+            (0.09 * math.cos(a), 0.09 * math.sin(a), z - 0.06),
+            colour,
+            product(about("z", a), about("y", 1.0)),
+        )
+        for a in (i * math.pi / 3 for i in range(6))
+    )
+    coat = seen(ball((0.16, 0.30, 0.42 * z), (0.12, 0, 0.68 * z), (0.30, 0.36, 0.30)))
+    return [*spread, column(0.022, 0.03, z, colour), *pegs, *coat]
+
+
+def shoe_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Two slanting shelves between sides, with shoes on them."""
+    sides = [box((x, 0.02, z), (0, side * (y - 0.02) / 2, z / 2), colour) for side in (-1, 1)]
+    decks = [box((x, y - 0.04, 0.02), (0, 0, height * z), shade(colour, 1.2)) for height in (0.12, 0.55)]
+    pairs = seen(
+        ball((0.75 * x, 0.09, 0.10), (0, y * k, (height + 0.12) * z), tone)
+        for height in (0.12, 0.55)
+        for k, tone in ((-0.32, DARK), (-0.17, DARK), (0.1, (0.6, 0.2, 0.2)), (0.25, (0.6, 0.2, 0.2)))
+    )
+    return [*sides, *decks, *pairs, slab(x, y, 0.97 * z, z, colour)]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from nodes.sim_node.models.forms import shifted
 from nodes.sim_node.models.parts import Inertial, Part, Vec3, bounds, box, inertial, quarter_turned
 from nodes.sim_node.models.table import MODELS, ModelKind
 
@@ -15,7 +16,9 @@ FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 SIZES_M = (0.001, 100.0)
 """What a body may measure along any axis."""
 
-_BOX_DENSITY = 150.0  # kg/m^3: a thing that is mostly hollow
+DENSITY = 150.0
+"""Of a thing that nothing is known of [kg/m^3 of its bounding box]: most are hollow."""
+
 _BOX_COLOUR = (0.72, 0.66, 0.58)
 
 
@@ -25,19 +28,12 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True)
 class Model:
-    """A model at one size: its parts, what they weigh, and their bounding box from `low_m` to `high_m`."""
+    """A model at one size: its parts, what they weigh, and what it really measures along its own axes [m]."""
 
     name: str
     parts: tuple[Part, ...]
     inertial: Inertial
-    low_m: Vec3
-    high_m: Vec3
-
-    @property
-    def size_m(self) -> Vec3:
-        """Real extents along the body's own axes [m]."""
-        low, high = self.low_m, self.high_m
-        return (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+    size_m: Vec3
 
 
 @lru_cache(maxsize=1024)
@@ -47,7 +43,7 @@ def build(name: str, size_m: Vec3 | None) -> Model:
     A size that is long where the model is wide is met by turning the model a quarter. Mass grows with
     volume. Raises ModelError for a size that no body can have.
     """
-    _check(size_m)
+    check_size(size_m)
     kind = MODELS.get(name)
     if kind is None:
         return _plain_box(size_m or FALLBACK_M)
@@ -58,10 +54,11 @@ def build(name: str, size_m: Vec3 | None) -> Model:
     if turned:
         parts = quarter_turned(parts)
     standard = kind.size_m[0] * kind.size_m[1] * kind.size_m[2]
-    return _model(name, parts, kind.mass_kg * x * y * z / standard)
+    return assemble(name, parts, kind.mass_kg * x * y * z / standard)
 
 
-def _check(size_m: Sequence[float] | None) -> None:
+def check_size(size_m: Sequence[float] | None) -> None:
+    """Raise ModelError for a size that no body can have."""
     low, high = SIZES_M
     for extent in size_m or ():
         if not low <= extent <= high:
@@ -76,16 +73,18 @@ def _is_turned(kind: ModelKind, size_m: Vec3) -> bool:
 
 def _plain_box(size_m: Vec3) -> Model:
     x, y, z = size_m
-    return _model("box", [box(size_m, (0.0, 0.0, z / 2), _BOX_COLOUR)], _BOX_DENSITY * x * y * z)
+    return assemble("box", [box(size_m, (0.0, 0.0, z / 2), _BOX_COLOUR)], DENSITY * x * y * z)
 
 
-def _model(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
+def assemble(name: str, parts: Sequence[Part], mass_kg: float) -> Model:
+    """Parts as a model, moved so that the origin is the bottom centre."""
+    low, high = bounds(parts)
+    parts = shifted(parts, x=-(low[0] + high[0]) / 2, y=-(low[1] + high[1]) / 2, z=-low[2])
     low, high = bounds(parts)
     mass_kg = min(max(mass_kg, 0.002), 5000.0)
     return Model(
         name=name,
         parts=tuple(parts),
         inertial=inertial(parts, mass_kg),
-        low_m=(float(low[0]), float(low[1]), float(low[2])),
-        high_m=(float(high[0]), float(high[1]), float(high[2])),
+        size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
     )

@@ -25,6 +25,7 @@ class Shape(Enum):
     ELLIPSOID = "ellipsoid"  # semi-axes
     CYLINDER = "cylinder"  # radius, radius, half height along its own z
     CAPSULE = "capsule"  # radius, radius, half height of the straight part
+    MESH = "mesh"  # half extents of its bounding box, which is centred on the part
 
 
 class Role(Enum):
@@ -35,9 +36,18 @@ class Role(Enum):
     FELT = "felt"  # a simpler stand-in for what is seen
 
 
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles: `vertices` (N, 3) [m] around the middle of their bounding box, `faces` (M, 3)."""
+
+    key: str
+    vertices: Floats
+    faces: NDArray[np.int32]
+
+
 @dataclass(frozen=True)
 class Part:
-    """One primitive of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz."""
+    """One primitive or mesh of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz."""
 
     shape: Shape
     half: Vec3
@@ -45,13 +55,14 @@ class Part:
     colour: Colour
     turn: Quat = UPRIGHT
     role: Role = Role.BOTH
+    mesh: Mesh | None = None
 
     @property
     def volume(self) -> float:
         """Volume [m^3]."""
         a, b, c = self.half
         match self.shape:
-            case Shape.BOX:
+            case Shape.BOX | Shape.MESH:
                 return 8.0 * a * b * c
             case Shape.ELLIPSOID:
                 return 4.0 / 3.0 * math.pi * a * b * c
@@ -65,7 +76,9 @@ class Part:
         rotation = rotation_matrix(self.turn)
         radial, half = np.abs(rotation), np.asarray(self.half)
         match self.shape:
-            case Shape.BOX:
+            case Shape.MESH if self.mesh is not None:
+                return np.asarray(np.abs(self.mesh.vertices @ rotation.T).max(axis=0))
+            case Shape.BOX | Shape.MESH:
                 return np.asarray(radial @ half)
             case Shape.ELLIPSOID:
                 return np.asarray(np.sqrt((rotation**2) @ half**2))

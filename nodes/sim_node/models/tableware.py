@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from nodes.sim_node.models.forms import (
+    BLACK,
     DARK,
     STEEL,
     WHITE,
     column,
     ring,
     shade,
+    shifted,
     slab,
     turned,
 )
@@ -16,6 +18,8 @@ from nodes.sim_node.models.parts import (
     ALONG_Y,
     Colour,
     Parts,
+    about,
+    ball,
     box,
     felt,
     pill,
@@ -41,10 +45,8 @@ def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
             for height in (0.28, 0.72)
         ),
     ]
-    from dataclasses import replace
-
     return [
-        *(replace(part, centre=(part.centre[0], part.centre[1] + shift, part.centre[2])) for part in body),
+        *shifted(body, y=shift),
         *seen(handle),
     ]
 
@@ -129,4 +131,115 @@ def tray(x: float, y: float, z: float, colour: Colour) -> Parts:
             for s in (-1, 1)
         ),
         *seen(box((0.3 * x, 1.01 * wall, 0.4 * z), (0, s * (y - wall) / 2, 0.75 * z), DARK) for s in (-1, 1)),
+    ]
+
+
+def pot(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A cooking pot with two ears and a lid."""
+    radius = min(x / 2, 0.4 * y)
+    return [
+        column(radius, 0, 0.78 * z, colour),
+        *seen(column(1.03 * radius, 0.76 * z, 0.82 * z, shade(colour, 0.8))),
+        *seen(ball((1.96 * radius, 1.96 * radius, 0.24 * z), (0, 0, 0.8 * z), shade(colour, 1.15))),
+        *seen(ball((0.03, 0.03, 0.12 * z), (0, 0, 0.94 * z), BLACK)),
+        *seen(
+            box((0.5 * radius, y / 2 - radius, 0.07 * z), (0, s * (y / 2 + radius) / 2, 0.66 * z), BLACK)
+            for s in (-1, 1)
+        ),
+    ]
+
+
+def pan(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A frying pan with its handle towards +x."""
+    radius = min(y / 2, 0.3 * x)
+    middle = -(x / 2 - radius)
+    body = [
+        column(0.85 * radius, 0, 0.12 * z, colour),
+        *ring((0.86 * radius, radius), 0.02 * z, z, 0.006, colour),
+    ]
+    grip = x - 2 * radius
+    return [
+        *shifted(body, x=middle),
+        *seen(box((grip, 0.12 * radius, 0.25 * z), ((x - grip) / 2, 0, 0.8 * z), BLACK)),
+    ]
+
+
+def pitcher(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A bellied jug with a spout towards +y and a handle behind."""
+    radius = min(x / 2, 0.42 * y)
+    return [
+        *turned(
+            [(0.7 * radius, 0), (radius, 0.35 * z), (0.6 * radius, 0.78 * z), (0.72 * radius, z)], colour
+        ),
+        *felt(column(0.75 * radius, 0, z, colour)),
+        *seen(
+            box((0.5 * radius, 0.5 * radius, 0.1 * z), (0, 0.75 * radius, 0.94 * z), colour, about("x", 0.5))
+        ),
+        *seen(pill(0.1 * radius, 0.6 * z, (0, -1.35 * radius, 0.58 * z), colour)),
+        *seen(
+            box((0.15 * radius, 0.7 * radius, 0.05 * z), (0, -1.0 * radius, h * z), colour)
+            for h in (0.36, 0.83)
+        ),
+    ]
+
+
+def vase(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Narrow foot, wide belly, narrow neck, flaring lip."""
+    radius = min(x, y) / 2
+    profile = [(0.55 * radius, 0), (radius, 0.4 * z), (0.35 * radius, 0.8 * z), (0.65 * radius, z)]
+    return [*turned(profile, colour, steps=9), *felt(column(0.6 * radius, 0, z, colour))]
+
+
+def wine_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A slim bottle with high shoulders and a long neck."""
+    radius = min(x, y) / 2
+    neck = 0.36 * radius
+    return [
+        column(radius, 0, 0.6 * z, colour),
+        *turned([(radius, 0.6 * z), (neck, 0.72 * z), (neck, 0.9 * z)], colour, steps=8),
+        *seen(column(1.15 * neck, 0.86 * z, z, (0.45, 0.08, 0.12))),
+        *seen(column(1.01 * radius, 0.15 * z, 0.42 * z, (0.92, 0.88, 0.75))),
+        *felt(column(neck, 0.6 * z, z, colour)),
+    ]
+
+
+def fork(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Four tines towards +x."""
+    tines = seen(
+        box((0.26 * x, 0.12 * y, 0.6 * z), (0.37 * x, y * k, 0.5 * z), colour)
+        for k in (-0.42, -0.14, 0.14, 0.42)
+    )
+    return [
+        *tines,
+        *seen(box((0.16 * x, 0.96 * y, 0.6 * z), (0.17 * x, 0, 0.5 * z), colour)),
+        *seen(box((0.6 * x, 0.35 * y, 0.7 * z), (-0.2 * x, 0, 0.5 * z), shade(colour, 0.9))),
+        *felt(slab(x, 0.9 * y, 0, z, colour)),
+    ]
+
+
+def knife(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A blade towards +x on a dark handle."""
+    return [
+        *seen(box((0.5 * x, 0.9 * y, 0.3 * z), (0.2 * x, 0, 0.5 * z), colour)),
+        *seen(ball((0.18 * x, 0.9 * y, 0.3 * z), (0.41 * x, 0, 0.5 * z), colour)),
+        *seen(box((0.45 * x, 0.8 * y, z), (-0.275 * x, 0, 0.5 * z), DARK)),
+        *felt(slab(x, 0.9 * y, 0, z, colour)),
+    ]
+
+
+def spoon(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """An oval bowl towards +x."""
+    return [
+        *seen(ball((0.32 * x, y, z), (0.34 * x, 0, 0.5 * z), colour)),
+        *seen(ball((0.25 * x, 0.7 * y, 0.5 * z), (0.34 * x, 0, 0.8 * z), shade(colour, 0.7))),
+        *seen(box((0.7 * x, 0.28 * y, 0.5 * z), (-0.15 * x, 0, 0.4 * z), colour)),
+        *felt(slab(x, 0.8 * y, 0, 0.9 * z, colour)),
+    ]
+
+
+def cutting_board(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A board with a grip hole."""
+    return [
+        slab(x, y, 0, z, colour),
+        *seen(box((0.3 * x, 0.06 * y, z + 0.001), (0, 0.42 * y, 0.5 * z), DARK)),
     ]

@@ -41,7 +41,7 @@ class Offscreen:
         self._gl = gl
         self._option = mujoco.MjvOption()
         self._option.geomgroup[FELT_GROUP] = 0
-        self._assets: tuple[int, ...] = ()
+        self._assets: tuple[float, ...] = ()
         self._context: mujoco.MjrContext | None = None
         self._scene: mujoco.MjvScene | None = None
 
@@ -79,7 +79,15 @@ class Offscreen:
     def _prepare(self, model: mujoco.MjModel) -> tuple[mujoco.MjrContext, mujoco.MjvScene]:
         """The scene is renewed with the model; the costly context only when meshes or textures change."""
         self._gl.make_current()
-        assets = (model.nmesh, model.nmeshvert, model.nhfield, model.ntex, model.ntexdata, model.nskin)
+        assets = (
+            model.nmesh,
+            model.nmeshvert,
+            model.nhfield,
+            model.ntex,
+            model.ntexdata,
+            model.nskin,
+            float(model.mesh_vert.sum()),
+        )
         if self._context is None or assets != self._assets:
             model.vis.global_.offwidth, model.vis.global_.offheight = _MAX_PIXELS
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)

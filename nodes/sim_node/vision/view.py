@@ -70,7 +70,7 @@ def overview(low_m: Floats, high_m: Floats, width: int, height: int) -> View:
     x, y, z = (corners @ aimed.map_from_camera[:3, :3]).T
     tangent = np.tan(fovy / 2.0)
     distance = max(
-        0.5, float(np.max(np.abs(y) / tangent - z)), float(np.max(np.abs(x) / tangent * height / width - z))
+        float(np.max(np.abs(y) / tangent - z)), float(np.max(np.abs(x) / tangent * height / width - z))
     )
     return look_at(middle + 1.04 * distance * back / np.linalg.norm(back), middle, width, height, fovy)
 

@@ -1,0 +1,154 @@
+"""The engine for OWL 2 DL: a compiled schema, and an ABox that is kept closed change by change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.closure import Closure
+from nodes.kb_node.reasoner.proof import Prover
+from nodes.kb_node.reasoner.reasons import Clash
+from nodes.kb_node.reasoner.retraction import Retraction
+from nodes.kb_node.reasoner.schema import NotCompilable, Schema
+from nodes.kb_node.reasoner.schema_support import SchemaSupport
+from nodes.kb_node.reasoner.split import check_compilable, is_schema
+from nodes.kb_node.reasoner.support import Support
+from nodes.kb_node.reasoner.terms import (
+    DIFFERENT_FROM,
+    SAME_AS,
+    TYPE,
+)  # fmt: skip
+from nodes.kb_node.reasoner.view import View
+from schemas.explanations import Explanation, Term, Triple
+
+
+class Refused(Exception):
+    """A change was undone because it contradicts the rest."""
+
+    def __init__(self, explanation: Explanation) -> None:
+        super().__init__(explanation.text)
+        self.explanation = explanation
+
+
+class CompiledEngine:
+    """A schema and an ABox.
+
+    Raises:
+        NotCompilable: the graph is beyond this engine; `general.GeneralEngine` takes all.
+        Refused: the triples contradict each other.
+    """
+
+    def __init__(self, triples: Iterable[Triple]) -> None:
+        triples = list(triples)
+        self._prover = Prover()
+        self._schema_triples = dict.fromkeys(filter(is_schema, triples))
+        for triple in self._schema_triples:
+            check_compilable(triple)
+        closure = Closure(self._schema_triples)
+        if closure.clash is not None:
+            raise Refused(self._prover.prove(closure.leaves(None), None))
+        self._schema = Schema(closure)
+        self._abox = ABox(self._schema)
+        self._view = View(self._abox)
+        self._told_by = SchemaSupport(self._schema)
+        self._size = len(self._schema_triples)
+        self.apply((), [triple for triple in triples if triple not in self._schema_triples])
+
+    def __len__(self) -> int:
+        return self._size
+
+    def apply(self, delete: Iterable[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
+        """Delete and insert triples that are not of the schema; the individuals that this touched.
+
+        Raises:
+            Refused: it would contradict the rest; nothing has changed.
+            NotCompilable: it is beyond this engine; nothing has changed.
+        """
+        abox = self._abox
+        retraction = Retraction(abox)
+        removed = retraction.delete(delete)
+        added: list[Triple] = []
+        try:
+            types = [triple for triple in insert if triple[1] == TYPE]
+            edges = [triple for triple in insert if triple[1] != TYPE]
+            for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
+                for triple in batch:
+                    if triple[1] in (SAME_AS, DIFFERENT_FROM):
+                        self._check(triple)
+                    if abox.insert(triple):
+                        added.append(triple)
+                abox.run()
+        except Clash as clash:
+            explanation = self._prover.prove(Support(abox, self._told_by).of_clash(clash.claims), None)
+            self._undo(retraction, removed, added)
+            raise Refused(explanation) from None
+        except NotCompilable:
+            self._undo(retraction, removed, added)
+            raise
+        touched = {triple[0] for triple in (*removed, *added)}
+        touched.update(self._moved())
+        abox.settle()
+        retraction.release()
+        self._size += len(added) - len(removed)
+        return frozenset(touched)
+
+    def _check(self, triple: Triple) -> None:
+        check_compilable(triple)
+        if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
+            raise NotCompilable(f"classes or properties compared: {triple}")
+
+    def _undo(self, retraction: Retraction, removed: list[Triple], added: list[Triple]) -> None:
+        back = Retraction(self._abox)
+        back.delete(added)
+        for triple in removed:
+            self._abox.insert(triple)
+        self._abox.run()
+        self._abox.settle()
+        retraction.release()
+        back.release()
+
+    def _moved(self) -> Iterator[Term]:
+        """The individuals whose named classes are others now."""
+        store = self._abox.store
+        for node, before in self._abox.moved.items():
+            if before.excluded is None and store.kind[node].names != before.names:
+                yield store.terms[node]
+
+    def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The asserted triples of a pattern."""
+        yield from self._view.asserted(s, p, o)
+        for triple in self._schema.closure.match(s, p, o):
+            if triple in self._schema_triples:
+                yield triple
+
+    def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The triples of a pattern that follow and were not asserted.
+
+        What follows of classes and properties is given only when it is asked for by its predicate.
+        """
+        yield from self._view.inferred(s, p, o)
+        if p is not None and (p != TYPE or (o is not None and is_schema((o, p, o)))):
+            for triple in self._schema.closure.match(s, p, o):
+                if triple not in self._schema_triples and is_schema(triple):
+                    yield triple
+
+    def holds(self, triple: Triple) -> bool:
+        """Whether a triple is asserted or follows."""
+        return self._view.holds(triple) or self._schema.closure.holds(triple)
+
+    def types(self, individual: Term) -> frozenset[Term]:
+        """The named classes of an individual."""
+        return self._view.types(individual)
+
+    def instances(self, cls: Term) -> Iterator[Term]:
+        """The individuals of a class."""
+        return self._view.instances(cls)
+
+    def explain(self, triple: Triple) -> Explanation:
+        """Why a triple follows that holds."""
+        closure = self._schema.closure
+        if triple in closure.facts:
+            return self._prover.prove(closure.leaves(triple), triple)
+        if next(self._view.asserted(*triple), None) or not self._view.holds(triple):
+            return self._prover.prove([triple], triple)
+        return self._prover.prove(Support(self._abox, self._told_by).of_triple(triple), triple)

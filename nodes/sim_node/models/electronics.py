@@ -1,0 +1,290 @@
+"""Electronics. Depth x, width y, height z [m]; screens face +x."""
+
+from __future__ import annotations
+
+import math
+
+from nodes.sim_node.models.forms import (
+    BLACK,
+    BRASS,
+    DARK,
+    GREY,
+    LIGHT,
+    PAPER,
+    SCREEN,
+    STEEL,
+    WHITE,
+    column,
+    front,
+    shade,
+    slab,
+    solid,
+    turned,
+)
+from nodes.sim_node.models.parts import (
+    ALONG_X,
+    ALONG_Y,
+    Colour,
+    Parts,
+    Vec3,
+    about,
+    ball,
+    box,
+    felt,
+    pill,
+    rod,
+    seen,
+)
+
+
+def television(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A flat screen on two feet."""
+    foot = 0.08 * z
+    return [
+        box((0.25 * x, y, z - foot), (0, 0, (z + foot) / 2), colour),
+        *seen(
+            box((0.02 * x, 0.96 * y, 0.93 * (z - foot)), (0.125 * x, 0, (z + foot) / 2), (0.13, 0.20, 0.32))
+        ),
+        *seen(
+            box(
+                (0.02 * x, 0.5 * y, 0.25 * z),
+                (0.13 * x, -0.15 * y, 0.68 * z),
+                (0.22, 0.34, 0.50),
+                about("x", 0.4),
+            )
+        ),
+        *(box((x, 0.03, foot), (0, side * 0.35 * y, foot / 2), DARK) for side in (-1, 1)),
+    ]
+
+
+def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A screen on a stem and a plate."""
+    low = 0.28 * z
+    return [
+        box((0.15 * x, y, z - low), (0.1 * x, 0, (z + low) / 2), colour),
+        *seen(box((0.02 * x, 0.95 * y, 0.92 * (z - low)), (0.18 * x, 0, (z + low) / 2), (0.20, 0.45, 0.70))),
+        *seen(box((0.01 * x, 0.5 * y, 0.3 * z), (0.195 * x, -0.1 * y, 0.7 * z), WHITE)),
+        box((0.1 * x, 0.1 * y, 0.5 * z), (-0.05 * x, 0, 0.27 * z), STEEL),
+        box((x, 0.42 * y, 0.03 * z), (0, 0, 0.015 * z), STEEL),
+    ]
+
+
+def computer(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A tower with a drive, a button and vents."""
+    return [
+        box((x - 0.006, y, z), (-0.003, 0, z / 2), colour),
+        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.88 * z), LIGHT, deep=0.006),
+        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.77 * z), LIGHT, deep=0.006),
+        *seen(rod(0.08 * y, 0.008, (x / 2 - 0.003, 0, 0.64 * z), (0.3, 0.7, 0.95), ALONG_X)),
+        *seen(
+            box((0.006, 0.7 * y, 0.015 * z), (x / 2 - 0.003, 0, (0.1 + 0.05 * i) * z), BLACK)
+            for i in range(7)
+        ),
+    ]
+
+
+def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """An open lid at -x over a keyboard."""
+    deck, tilt = 0.08 * z, -0.3
+    lid: Vec3 = (-0.40 * x - 0.02, 0, z / 2)
+    return [
+        slab(x * 0.86, y, 0, deck, colour),
+        *seen(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
+        *seen(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
+        box((0.02 * x, y, 0.98 * z), lid, colour, about("y", tilt)),
+        *seen(
+            box(
+                (0.004, 0.93 * y, 0.84 * z),
+                (lid[0] + 0.013 * x, 0, lid[2] + 0.01 * z),
+                (0.25, 0.55, 0.80),
+                about("y", tilt),
+            )
+        ),
+    ]
+
+
+def keyboard(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Rows of keys on a plate."""
+    keys = seen(
+        box(
+            (0.15 * x, (0.5 * y if row == 4 else 0.052 * y), 0.5 * z),
+            (x * (0.4 - 0.2 * (4 - row)), y * place, 0.75 * z),
+            LIGHT,
+        )
+        for row in range(5)
+        for place in ([0.0] if row == 4 else [-0.455 + 0.07 * i for i in range(14)])
+    )
+    return [slab(x, y, 0, 0.6 * z, colour), *keys, *solid(0.9 * x, 0.95 * y, 0.6 * z, z)]
+
+
+def radio(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A box with a cloth front, a dial, two knobs and an aerial."""
+    body = 0.62 * z
+    return [
+        box((0.94 * x, y, body), (-0.03 * x, 0, body / 2), colour),
+        *seen(box((0.03 * x, 0.5 * y, 0.8 * body), (0.45 * x, -0.2 * y, body / 2), (0.80, 0.72, 0.55))),
+        *seen(box((0.03 * x, 0.36 * y, 0.3 * body), (0.45 * x, 0.26 * y, 0.68 * body), PAPER)),
+        *seen(rod(0.06 * y, 0.08 * x, (0.46 * x, y * k, 0.28 * body), BRASS, ALONG_X) for k in (0.17, 0.36)),
+        *seen(rod(0.004, 0.45 * z, (-0.3 * x, 0.4 * y, 0.78 * z), STEEL)),
+    ]
+
+
+def recorder(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A flat player with a slot and a display."""
+    return [
+        box((0.98 * x, y, z), (-0.01 * x, 0, z / 2), colour),
+        *front(x / 2, 0.4 * y, 0.16 * z, (-0.2 * y, 0.6 * z), BLACK, deep=0.02 * x),
+        *front(x / 2, 0.22 * y, 0.3 * z, (0.2 * y, 0.6 * z), (0.2, 0.8, 0.6), deep=0.02 * x),
+        *seen(rod(0.12 * z, 0.03 * x, (x / 2 - 0.01 * x, 0.4 * y, 0.4 * z), STEEL, ALONG_X)),
+    ]
+
+
+def router(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A flat box with two aerials and lights."""
+    body = 0.22 * z
+    return [
+        slab(x, y, 0, body, colour),
+        *seen(
+            rod(0.012 * z + 0.003, 0.9 * z, (-0.42 * x, side * 0.38 * y, 0.55 * z), DARK) for side in (-1, 1)
+        ),
+        *seen(
+            box((0.004, 0.02, 0.2 * body), (x / 2, y * (0.08 * i - 0.2), body / 2), (0.3, 0.9, 0.4))
+            for i in range(6)
+        ),
+    ]
+
+
+def smartphone(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A slate with a bright screen and a lens."""
+    return [
+        slab(x, y, 0, z, colour),
+        *seen(box((0.93 * x, 0.9 * y, 0.001), (0, 0, z), (0.20, 0.42, 0.65))),
+        *seen(
+            box((0.14 * x, 0.2 * y, 0.001), (-0.3 * x + 0.2 * x * i, 0.22 * y * j, z + 0.0005), WHITE)
+            for i in range(4)
+            for j in (-1, 1)
+        ),
+    ]
+
+
+def tablet(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A big slate with a wide border and a button."""
+    return [
+        slab(x, y, 0, z, colour),
+        *seen(box((0.8 * x, 0.86 * y, 0.001), (-0.02 * x, 0, z), (0.30, 0.55, 0.75))),
+        *seen(rod(0.035 * x, 0.001, (0.44 * x, 0, z), GREY)),
+    ]
+
+
+def phone(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A desk telephone: a sloping body, keys, and the receiver across it."""
+    receiver = 0.78 * z
+    return [
+        slab(x, y, 0, 0.35 * z, colour),
+        *seen(box((0.8 * x, 0.9 * y, 0.3 * z), (-0.05 * x, 0, 0.42 * z), colour, about("y", 0.2))),
+        *seen(
+            box(
+                (0.09 * x, 0.1 * y, 0.06 * z),
+                (0.02 * x + 0.13 * x * i, 0.08 * y + 0.14 * y * j, 0.56 * z - 0.03 * z * i),
+                PAPER,
+            )
+            for i in range(3)
+            for j in range(3)
+        ),
+        *seen(pill(0.12 * z, 0.94 * x, (0, -0.28 * y, receiver), DARK, ALONG_X)),
+        *seen(rod(0.2 * z, 0.25 * z, (0.36 * x * s, -0.28 * y, receiver - 0.08 * z), DARK) for s in (-1, 1)),
+        *felt(box((0.9 * x, 0.3 * y, 0.6 * z), (0, -0.28 * y, 0.6 * z), colour)),
+    ]
+
+
+def remote_control(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A long slab with buttons, the red one at the top."""
+    buttons = seen(
+        rod(0.11 * y, 0.002, (x * (0.2 - 0.11 * i), 0.26 * y * j, z), LIGHT)
+        for i in range(6)
+        for j in (-1, 0, 1)
+    )
+    return [
+        slab(x, y, 0, z, colour),
+        *buttons,
+        *seen(rod(0.14 * y, 0.003, (0.4 * x, -0.2 * y, z), (0.85, 0.15, 0.15))),
+    ]
+
+
+def camera(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A body with a lens towards +x and a viewfinder hump."""
+    body = 0.8 * z
+    return [
+        box((0.45 * x, y, body), (-0.275 * x, 0, body / 2), colour),
+        *seen(rod(0.36 * body, 0.5 * x, (0.2 * x, 0, 0.48 * body), GREY, ALONG_X)),
+        *seen(rod(0.28 * body, 0.02 * x, (0.46 * x, 0, 0.48 * body), (0.15, 0.20, 0.40), ALONG_X)),
+        *seen(box((0.4 * x, 0.3 * y, 0.2 * z), (-0.27 * x, 0, 0.9 * z), colour)),
+        *seen(rod(0.06 * y, 0.05 * z, (-0.25 * x, 0.34 * y, 0.83 * z), STEEL)),
+        *felt(box((0.55 * x, 0.4 * y, 0.7 * body), (0.22 * x, 0, 0.36 * body), colour)),
+    ]
+
+
+def headphones(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Two cups under a band, standing."""
+    radius = 0.42 * y
+    centre = z - radius - 0.04 * y
+    band = seen(
+        box(
+            (0.25 * x, 2 * math.pi * radius / 20, 0.08 * y),
+            (0, -radius * math.cos(a), centre + radius * math.sin(a)),
+            colour,
+            about("x", math.pi / 2 - a),
+        )
+        for a in (math.pi * (i + 0.5) / 10 for i in range(10))
+    )
+    cups = [
+        rod(0.5 * min(x, z), 0.16 * y, (0, side * 0.4 * y, 0.5 * min(x, z)), DARK, ALONG_Y)
+        for side in (-1, 1)
+    ]
+    return [*band, *seen(cups), *felt(slab(0.8 * x, y, 0, 0.75 * z, colour))]
+
+
+def robot(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A domestic robot: a round base, a trunk with a screen, a head with two eyes, two arms."""
+    radius = min(x, y) / 2
+    head = 0.16 * z
+    eyes = seen(
+        ball((0.03, 0.05, 0.05), (0.5 * radius, 0.2 * radius * s, z - 0.45 * head), (0.2, 0.7, 0.95))
+        for s in (-1, 1)
+    )
+    arms = seen(
+        pill(0.1 * radius, 0.34 * z, (0.05 * radius, 0.72 * radius * s, 0.5 * z), shade(colour, 0.8))
+        for s in (-1, 1)
+    )
+    return [
+        column(radius, 0, 0.14 * z, DARK),
+        *turned(
+            [(0.9 * radius, 0.14 * z), (0.5 * radius, 0.28 * z), (0.58 * radius, 0.8 * z)], colour, steps=7
+        ),
+        *felt(column(0.6 * radius, 0.14 * z, z, colour)),
+        *seen(box((0.1 * radius, 0.7 * radius, 0.2 * z), (0.54 * radius, 0, 0.58 * z), SCREEN)),
+        *seen(ball((radius, 1.1 * radius, 1.1 * head), (0, 0, z - 0.55 * head), WHITE)),
+        *eyes,
+        *arms,
+    ]
+
+
+def speaker(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A box with a small and a big cone."""
+    return [
+        box((x - 0.008, y, z), (-0.004, 0, z / 2), colour),
+        *seen(rod(0.36 * y, 0.01, (x / 2 - 0.006, 0, 0.34 * z), GREY, ALONG_X)),
+        *seen(rod(0.14 * y, 0.012, (x / 2 - 0.006, 0, 0.34 * z), BLACK, ALONG_X)),
+        *seen(rod(0.18 * y, 0.01, (x / 2 - 0.006, 0, 0.77 * z), GREY, ALONG_X)),
+    ]
+
+
+def printer(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A box with paper behind and a tray in front."""
+    return [
+        box((0.7 * x, y, 0.7 * z), (-0.05 * x, 0, 0.35 * z), colour),
+        *seen(box((0.02, 0.6 * y, 0.45 * z), (-0.34 * x, 0, 0.77 * z), WHITE, about("y", -0.25))),
+        *seen(box((0.25 * x, 0.65 * y, 0.03), (0.37 * x, 0, 0.2 * z), DARK)),
+        *seen(box((0.3 * x, 0.55 * y, 0.008), (0.33 * x, 0, 0.23 * z), WHITE)),
+        *seen(box((0.5 * x, 0.9 * y, 0.02), (-0.05 * x, 0, 0.7 * z), DARK)),
+    ]

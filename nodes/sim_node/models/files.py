@@ -1,0 +1,215 @@
+"""A person's own models: MJCF, OBJ, STL and GLB files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import trimesh
+
+from nodes.sim_node import build
+from nodes.sim_node.bodies import Floats
+from nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
+from nodes.sim_node.models.library import build as built_in
+from nodes.sim_node.models.parts import Colour, Mesh, Part, Role, Shape, Vec3, bounds
+
+MESHES = (".obj", ".stl", ".glb")
+SUFFIXES = (".xml", *MESHES)
+
+_GREY: Colour = (0.66, 0.66, 0.68)
+_LARGEST_FILE_BYTES = 64 << 20
+_SHAPES = {
+    int(mujoco.mjtGeom.mjGEOM_BOX): Shape.BOX,
+    int(mujoco.mjtGeom.mjGEOM_ELLIPSOID): Shape.ELLIPSOID,
+    int(mujoco.mjtGeom.mjGEOM_SPHERE): Shape.ELLIPSOID,
+    int(mujoco.mjtGeom.mjGEOM_CYLINDER): Shape.CYLINDER,
+    int(mujoco.mjtGeom.mjGEOM_CAPSULE): Shape.CAPSULE,
+    int(mujoco.mjtGeom.mjGEOM_MESH): Shape.MESH,
+}
+
+
+@dataclass(frozen=True)
+class Models:
+    """Where models come from: a file in `folder` or at a path, before the library's own.
+
+    `chair.glb` in the folder takes the place of the model `chair`. A model that is itself a path
+    (`/home/me/sofa.obj`) is read from there. Called with a model's name and a size, it answers the model;
+    raises ModelError for a file that cannot be used.
+    """
+
+    folder: Path | None = None
+
+    def __call__(self, name: str, size_m: Vec3 | None) -> Model:
+        """The model `name` at `size_m`, or at its own size."""
+        path = self._path(name)
+        if path is None:
+            return built_in(name, size_m)
+        try:
+            return read_model(path, size_m, path.stat().st_mtime_ns)
+        except OSError as error:
+            raise ModelError(f"the model file {path} cannot be read: {error.strerror}") from None
+
+    def _path(self, name: str) -> Path | None:
+        if name.endswith(SUFFIXES):
+            return (self.folder or Path()) / name
+        candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []
+        return next((path for path in candidates if path.is_file()), None)
+
+
+@lru_cache(maxsize=256)
+def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
+    """The model in a file, in metres, stretched to `size_m`; `version` tells a changed file apart.
+
+    MJCF is taken in its initial configuration, as one rigid body. Raises ModelError, OSError.
+    """
+    check_size(size_m)
+    if path.stat().st_size > _LARGEST_FILE_BYTES:
+        raise ModelError(f"the model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
+    try:
+        parts = _mesh_parts(path) if path.suffix in MESHES else _mjcf_parts(path)
+        if not parts:
+            raise ModelError(f"the model file {path} holds nothing that has a shape")
+        if size_m is not None:
+            parts = _stretched(parts, size_m)
+        model = assemble(str(path), _keyed(parts, f"{path}:{version}:{size_m}"), _mass_kg(parts))
+        check_size(model.size_m)
+        _try_out(model)
+    except (ModelError, OSError):
+        raise
+    except Exception as error:  # the readers of the file formats raise whatever they come across
+        raise ModelError(f"the model file {path} cannot be used: {' '.join(str(error).split())}") from None
+    return model
+
+
+def _mesh_parts(path: Path) -> list[Part]:
+    scene = trimesh.load_scene(path)
+    up = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) if path.suffix == ".glb" else np.eye(3)  # glTF: y up
+    parts = []
+    for mesh in scene.dump():
+        if len(mesh.faces):
+            parts.append(_mesh_part(np.asarray(mesh.vertices) @ up.T, np.asarray(mesh.faces), _colour(mesh)))
+    return parts
+
+
+def _colour(mesh: Any) -> Colour:
+    try:
+        red, green, blue = np.asarray(mesh.visual.to_color().main_color)[:3] / 255.0
+    except Exception:  # a texture that is missing leaves the mesh grey
+        return _GREY
+    return (float(red), float(green), float(blue))
+
+
+def _mesh_part(vertices: Floats, faces: Any, colour: Colour, role: Role = Role.BOTH) -> Part:
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    mesh = Mesh("", vertices - middle, np.asarray(faces, dtype=np.int32))
+    return Part(Shape.MESH, _vec3(half), _vec3(middle), colour, role=role, mesh=mesh)
+
+
+def _mjcf_parts(path: Path) -> list[Part]:
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    parts = []
+    for geom in range(model.ngeom):
+        shape = _SHAPES.get(int(model.geom_type[geom]))
+        if shape is None or (model.geom_bodyid[geom] == 0 and model.nbody > 1):
+            continue  # planes and height fields, and the ground beneath the bodies
+        rgba = (
+            model.mat_rgba[model.geom_matid[geom]] if model.geom_matid[geom] >= 0 else model.geom_rgba[geom]
+        )
+        colour = (float(rgba[0]), float(rgba[1]), float(rgba[2]))
+        role = Role.BOTH if model.geom_contype[geom] | model.geom_conaffinity[geom] else Role.SEEN
+        role = Role.FELT if rgba[3] == 0.0 and role is Role.BOTH else role
+        position, rotation = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
+        if shape is Shape.MESH:
+            vertices, faces = _mesh_of(model, int(model.geom_dataid[geom]))
+            parts.append(_mesh_part(vertices @ rotation.T + position, faces, colour, role))
+            continue
+        turn = np.empty(4)
+        mujoco.mju_mat2Quat(turn, data.geom_xmat[geom])
+        parts.append(
+            Part(
+                shape,
+                _half(model, geom),
+                _vec3(position),
+                colour,
+                (float(turn[0]), float(turn[1]), float(turn[2]), float(turn[3])),
+                role,
+            )
+        )
+    return parts
+
+
+def _half(model: mujoco.MjModel, geom: int) -> Vec3:
+    a, b, c = (float(value) for value in model.geom_size[geom])
+    kind = model.geom_type[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+        return (a, a, a)
+    if kind in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_CAPSULE):
+        return (a, a, b)
+    return (a, b, c)
+
+
+def _mesh_of(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Any]:
+    vertex, face = model.mesh_vertadr[mesh], model.mesh_faceadr[mesh]
+    vertices = model.mesh_vert[vertex : vertex + model.mesh_vertnum[mesh]].astype(float)
+    return vertices, model.mesh_face[face : face + model.mesh_facenum[mesh]]
+
+
+def _stretched(parts: list[Part], size_m: Vec3) -> list[Part]:
+    """Meshes are stretched along each axis, primitives keep their proportions."""
+    low, high = bounds(parts)
+    factors = np.asarray(size_m) / np.maximum(high - low, 1e-6)
+    even = float(np.cbrt(np.prod(factors)))
+    scaled = []
+    for part in parts:
+        if part.mesh is not None:
+            vertices = (part.mesh.vertices + part.centre) * factors
+            scaled.append(_mesh_part(vertices, part.mesh.faces, part.colour, part.role))
+        else:
+            half, centre = _vec3(np.asarray(part.half) * even), _vec3(np.asarray(part.centre) * even)
+            scaled.append(Part(part.shape, half, centre, part.colour, part.turn, part.role))
+    return scaled
+
+
+def _keyed(parts: list[Part], key: str) -> list[Part]:
+    """Meshes get names that are theirs alone."""
+    return [
+        part
+        if part.mesh is None
+        else Part(
+            part.shape,
+            part.half,
+            part.centre,
+            part.colour,
+            part.turn,
+            part.role,
+            Mesh(f"{key}:{number}", part.mesh.vertices, part.mesh.faces),
+        )
+        for number, part in enumerate(parts)
+    ]
+
+
+def _mass_kg(parts: list[Part]) -> float:
+    low, high = bounds(parts)
+    return DENSITY * float(np.prod(high - low))
+
+
+def _try_out(model: Model) -> None:
+    """Compile it alone, so that a bad one cannot spoil the world. Raises ValueError."""
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body()
+    for part in model.parts:
+        if part.mesh is not None:
+            build.add_mesh(spec, part.mesh)
+        build.add_part(body, part)
+    spec.compile()
+
+
+def _vec3(values: Any) -> Vec3:
+    return (float(values[0]), float(values[1]), float(values[2]))

@@ -1,0 +1,115 @@
+"""Where pictures are made: a thread of its own, which works on copies and never holds the world up."""
+
+from __future__ import annotations
+
+import copy
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Literal
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.config import CameraConfig
+from nodes.sim_node.vision.camera import Eye, picture_png
+from nodes.sim_node.vision.noise import kinect_noise
+from nodes.sim_node.vision.view import View, camera_names, camera_view
+from schemas.scenes import CameraFrame, Picture
+
+Plane = tuple[CameraFrame, NDArray[np.generic]]
+
+
+@dataclass(frozen=True)
+class Still:
+    """The world at one moment. `names` (ngeom,) is the body of each geom, "" for none."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    names: list[str]
+    stamp_ns: int = field(default_factory=time.time_ns)
+
+    @staticmethod
+    def of(model: mujoco.MjModel, data: mujoco.MjData, names: list[str]) -> Still:
+        """A copy; the model is not copied, because the world replaces its model rather than change it."""
+        return Still(model, copy.copy(data), names)
+
+
+class Studio:
+    """Owns the thread, and on it the only OpenGL context."""
+
+    def __init__(self, config: CameraConfig) -> None:
+        self._config = config
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
+        self._eye: Eye | None = None
+        self._rng = np.random.default_rng(0)
+        self._filming: Future[None] | None = None
+
+    def close(self) -> None:
+        """Let the picture in hand be finished, and no other be begun."""
+        self._thread.shutdown(wait=True, cancel_futures=True)
+
+    def paint(self, still: Still, view: View) -> Future[Picture]:
+        """A picture for people."""
+        return self._thread.submit(lambda: Picture(png=picture_png(still.model, still.data, view)))
+
+    def film(self, still: Callable[[], Still], publish: Callable[[Plane], None]) -> None:
+        """Publish the planes of all cameras, unless the last ones are still being made."""
+        if self._filming is not None:
+            if not self._filming.done():
+                return
+            self._filming.result()
+        moment = still()
+        self._filming = self._thread.submit(self._film, moment, publish)
+
+    def _film(self, still: Still, publish: Callable[[Plane], None]) -> None:
+        for camera in camera_names(still.model):
+            for plane in self.planes(still, camera):
+                publish(plane)
+
+    def planes(self, still: Still, camera: str) -> list[Plane]:
+        """What one camera sees: rgb, depth, and whose each pixel is if that is wanted."""
+        config = self._config
+        eye = self._eye = self._eye or Eye(graphics=config.graphics)
+        view = camera_view(still.model, still.data, camera, config.width, config.height)
+        rgb, depth = eye.see(still.model, still.data, view)
+        if config.noise:
+            depth = kinect_noise(depth, self._rng)
+        planes: list[Plane] = [
+            (_frame(still, camera, view, "rgb8"), rgb),
+            (_frame(still, camera, view, "depth32f"), depth),
+        ]
+        if config.segments:
+            names, segments = segment_bodies(eye.segment(still.model, still.data, view), still.names)
+            planes.append((_frame(still, camera, view, "segments16", names), segments))
+        return planes
+
+
+def segment_bodies(geoms: NDArray[np.int32], owners: list[str]) -> tuple[tuple[str, ...], NDArray[np.uint16]]:
+    """From geoms (H, W), -1 for none, to numbers of bodies (H, W): 0 for none, n for the n-th name."""
+    names = tuple(sorted(set(owners) - {""}))
+    number = {name: place + 1 for place, name in enumerate(names)}
+    numbers = np.array([*(number.get(owner, 0) for owner in owners), 0], dtype=np.uint16)
+    return names, numbers[geoms]
+
+
+def _frame(
+    still: Still,
+    camera: str,
+    view: View,
+    encoding: Literal["rgb8", "depth32f", "segments16"],
+    names: tuple[str, ...] = (),
+) -> CameraFrame:
+    return CameraFrame(
+        camera=camera,
+        encoding=encoding,
+        width=view.width,
+        height=view.height,
+        stamp_ns=still.stamp_ns,
+        sim_time_s=float(still.data.time),
+        intrinsics=tuple(view.intrinsics.ravel().tolist()),
+        map_from_camera=tuple(view.map_from_camera.ravel().tolist()),
+        names=names,
+    )

@@ -1,0 +1,230 @@
+"""Commands as changes of a real map, without the wire between."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.door import Door
+from nodes.kb_node import rdf_files
+from nodes.kb_node.journal import Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from schemas import commands as c
+from schemas import errors
+from schemas.commits import Commit
+from schemas.entities import Pose, orientation_from_yaw
+
+TBOX = b"""
+@prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
+@prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+:Physical_Thing a owl:Class . :Property a owl:Class .
+:Location a owl:Class ; rdfs:subClassOf :Physical_Thing ; owl:disjointWith :Object .
+:Kitchen a owl:Class ; rdfs:subClassOf :Location .
+:Object a owl:Class ; rdfs:subClassOf :Physical_Thing .
+:Furniture a owl:Class ; rdfs:subClassOf :Object .
+:Chair a owl:Class ; rdfs:subClassOf :Furniture ; rdfs:label "chair"@en .
+:Living_Room_Table a owl:Class ; rdfs:subClassOf :Furniture .
+:Color a owl:Class ; rdfs:subClassOf :Property .
+:Coordinates a owl:Class ; rdfs:subClassOf :Property .
+:hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
+  rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
+:float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
+"""
+
+
+@pytest.fixture
+def semantic_map(tmp_path: Path):
+    journal = Journal.create(tmp_path / "journal.sqlite", TBOX)
+    yield SemanticMap(journal, rdf_files.parse(TBOX, "tbox"))
+    journal.close()
+
+
+@pytest.fixture
+def door(semantic_map):
+    answers = {
+        "commit": semantic_map.commit,
+        "star": lambda query: semantic_map.stars(query.names),
+    }
+    door = Door(lambda verb, message: answers[verb](message))
+    door.classes = ClassNames(semantic_map.class_table())
+    return door
+
+
+def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> c.Changed:
+    return door.add(c.Add(class_=class_, name=name, **fields))
+
+
+def everything(semantic_map) -> set:
+    return set(semantic_map.abox())
+
+
+def test_add_says_what_it_made(door):
+    reply = add(door, at=(1.0, 2.0, 0.0), yaw=1.0, size=(0.4, 0.4, 0.9), ref="seat", alt=("stool",))
+    (name,) = reply.names
+    chair = door.entity(name)
+    assert (name, chair.class_, reply.commit) == ("chair1", "Chair", 1)
+    assert chair.pose == Pose(position_m=(1.0, 2.0, 0.0), orientation_wxyz=orientation_from_yaw(1.0))
+    assert (chair.size_m, chair.preferred_reference, chair.alternative_references) == (
+        (0.4, 0.4, 0.9),
+        "seat",
+        ("stool",),
+    )
+
+
+def test_add_with_all_defaults(door):
+    add(door, default=True)
+    add(door, default=True)
+    first, second = door.entity("chair1"), door.entity("chair2")
+    assert first.pose.position_m == (2.0, 2.0, 0.0)
+    assert second.pose.position_m != first.pose.position_m
+    assert first.preferred_reference == "chair"
+
+
+def test_a_class_is_found_without_regard_to_case_and_underscores(door):
+    reply = add(door, "livingroomtable", "t1")
+    assert door.entity("t1").class_ == "Living_Room_Table"
+    assert reply.notes == ("'livingroomtable' is read as Living_Room_Table",)
+
+
+@pytest.mark.parametrize(
+    ("fields", "error"),
+    [
+        ({"class_": "Chiar"}, errors.UnknownClass),
+        ({"class_": "Color"}, errors.UnknownClass),
+        ({"name": "chair1"}, errors.NameTaken),
+        ({"yaw": 1.0, "orientation": (1.0, 0.0, 0.0, 0.0)}, errors.BadRequest),
+        ({"orientation": (1.0, 1.0, 0.0, 0.0)}, errors.BadRequest),
+    ],
+)
+def test_a_refused_add_changes_nothing(door, semantic_map, fields, error):
+    add(door, name="chair1")
+    before = everything(semantic_map), dict(door.entities), door.seq
+    with pytest.raises(error):
+        add(door, **{"name": "new", **fields})
+    assert (everything(semantic_map), dict(door.entities), door.seq) == before
+
+
+def test_what_is_not_named_in_an_update_stays(door):
+    add(door, name="chair1", at=(1.0, 2.0, 3.0), yaw=1.0, size=(1.0, 1.0, 1.0), ref="seat", alt=("a", "b"))
+    door.update(c.Update(name="chair1", at=(5.0, 6.0, 7.0)))
+    chair = door.entity("chair1")
+    assert chair.pose == Pose(position_m=(5.0, 6.0, 7.0), orientation_wxyz=orientation_from_yaw(1.0))
+    assert (chair.size_m, chair.preferred_reference) == ((1.0, 1.0, 1.0), "seat")
+    assert chair.alternative_references == ("a", "b")
+    door.update(c.Update(name="chair1", ref="throne"))
+    assert door.entity("chair1").pose == chair.pose
+    assert door.entity("chair1").preferred_reference == "throne"
+    door.update(c.Update(name="chair1", class_="Furniture"))
+    assert door.entity("chair1").class_ == "Furniture"
+    assert door.entity("chair1").size_m == (1.0, 1.0, 1.0)
+
+
+def test_an_update_leaves_no_orphans(door, semantic_map):
+    add(door, name="chair1", ref="seat", alt=("a", "b"), size=(1.0, 1.0, 1.0))
+    before = len(everything(semantic_map))
+    for text in ("x", "y", "z"):
+        door.update(c.Update(name="chair1", ref=text, alt=(text, text + text), size=(2.0, 1.0, 1.0), yaw=0.0))
+    assert len(everything(semantic_map)) == before
+
+
+def test_an_update_that_changes_nothing_is_no_commit(door):
+    add(door, name="chair1", at=(1.0, 2.0, 0.0), ref="seat", alt=("a",))
+    reply = door.update(c.Update(name="chair1", at=(1.0, 2.0, 0.0), ref="seat", alt=("a",), class_="Chair"))
+    assert reply.commit is None
+
+
+def test_a_removed_entity_leaves_nothing(door, semantic_map):
+    before = everything(semantic_map)
+    add(door, name="chair1", at=(1.0, 2.0, 0.0), yaw=1.0, size=(1.0, 1.0, 1.0), ref="seat", alt=("a", "b"))
+    door.remove(c.Remove(names=("chair1",)))
+    assert everything(semantic_map) == before
+    assert door.entities == {}
+
+
+def test_remove_takes_all_or_none(door):
+    add(door, name="chair1")
+    with pytest.raises(errors.UnknownName, match="chair2"):
+        door.remove(c.Remove(names=("chair1", "chair2")))
+    assert set(door.entities) == {"chair1"}
+
+
+def test_clear_on_an_empty_map_is_no_commit(door):
+    assert door.clear(c.Clear()).commit is None
+    add(door)
+    assert door.clear(c.Clear()).names == ("chair1",)
+    assert door.entities == {}
+
+
+def test_a_name_can_be_used_again_after_removal_and_after_changes_of_references(door):
+    for _ in range(3):
+        add(door, name="chair1", ref="seat")
+        door.update(c.Update(name="chair1", ref="stool"))
+        door.remove(c.Remove(names=("chair1",)))
+
+
+def test_the_same_command_id_is_executed_once(door):
+    first = add(door, name="chair1", id="42")
+    door.remove(c.Remove(names=("chair1",)))
+    again = add(door, name="chair1", id="42")
+    assert again.commit == first.commit
+    assert door.entities == {}
+
+
+def test_perception_may_move_but_not_redefine_what_an_operator_put_in(door):
+    add(door, name="chair1")
+    door.update(c.Update(name="chair1", at=(1.0, 1.0, 0.0), source="perception"))
+    for change in ({"class_": "Furniture"}, {"ref": "thing"}):
+        with pytest.raises(errors.Refused, match="operator"):
+            door.update(c.Update(name="chair1", source="perception", **change))
+    with pytest.raises(errors.Refused, match="operator"):
+        door.remove(c.Remove(names=("chair1",), source="perception"))
+
+
+def load(door: Door, text: str, **fields) -> c.Changed:
+    return door.load(c.Load(content=text.encode(), filename="scene.json", **fields))
+
+
+def test_a_scene_is_loaded_whole_or_not_at_all(door):
+    with pytest.raises(errors.UnknownClass, match=r"'Ghost' \(of g1"):
+        load(door, '{"entities": [{"class": "Chair"}, {"class": "Ghost", "name": "g1"}]}')
+    assert door.entities == {}
+    reply = load(
+        door, '{"entities": [{"class": "Chair"}, {"class": "Ghost", "name": "g1"}]}', skip_unknown=True
+    )
+    assert reply.names == ("chair1",)
+    assert reply.skipped == ("g1 (unknown class 'Ghost')",)
+
+
+def test_replace_takes_the_present_map_out_in_the_same_commit(door):
+    add(door, name="old")
+    reply = load(door, '{"entities": [{"class": "Chair", "name": "new"}]}', replace=True)
+    assert set(door.entities) == {"new"}
+    assert reply.commit == 2
+
+
+def test_loading_a_name_twice_is_refused(door):
+    load(door, '{"entities": [{"class": "Chair", "name": "a"}]}')
+    with pytest.raises(errors.NameTaken, match="'a'"):
+        load(door, '{"entities": [{"class": "Chair", "name": "b"}, {"class": "Chair", "name": "a"}]}')
+    with pytest.raises(errors.NameTaken, match="'c'"):
+        load(door, '{"entities": [{"class": "Chair", "name": "c"}, {"class": "Chair", "name": "c"}]}')
+    assert set(door.entities) == {"a"}
+
+
+def test_a_body_that_came_to_rest_changes_only_the_pose(door):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0), ref="seat")
+    pose = Pose(position_m=(1.5, 1.0, 0.2), orientation_wxyz=orientation_from_yaw(0.3))
+    door.follow("chair1", pose)
+    chair = door.entity("chair1")
+    assert (chair.pose, chair.preferred_reference) == (pose, "seat")
+    assert (chair.pose_provenance.source, chair.shape_provenance.source) == ("scene", "operator")
+
+
+def test_a_missed_commit_is_noticed(door):
+    add(door)
+    assert door.take(Commit(seq=1, stamp_ns=0, id="a", source="operator"))
+    assert not door.take(Commit(seq=3, stamp_ns=0, id="c", source="operator"))

@@ -1,0 +1,149 @@
+"""Bad input through the command line: one clear line, its exit status, nothing changed, all alive."""
+
+from __future__ import annotations
+
+import json
+import threading
+
+import pytest
+
+from tests.conftest import running, until
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    data = tmp_path_factory.mktemp("cli")
+    with running(data, "--abox", "none", "--no-record") as system:
+        with system.client() as client:
+            client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair", wait=True)
+        yield system
+
+
+@pytest.fixture
+def files(tmp_path):
+    base = "http://www.semanticweb.org/ontologies/2016/1/"
+    chair = f"<{base}semantic_mapping_1#chair2>"
+    dm = f"{base}semantic_mapping_domain_model#"
+    (tmp_path / "truncated.owl").write_text(
+        '<?xml version="1.0"?><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/'
+    )
+    (tmp_path / "truncated.ttl").write_text(f"{chair} a <{dm}Ch")
+    (tmp_path / "inconsistent.ttl").write_text(f"{chair} a <{dm}Chair>, <{dm}Kitchen> .")
+    (tmp_path / "unknown.ttl").write_text(f"{chair} a <{dm}Chiar> .")
+    (tmp_path / "empty.ttl").write_text("")
+    (tmp_path / "bytes.bin").write_bytes(bytes(range(256)))
+    (tmp_path / "other.json").write_text('{"chairs": 3}')
+    return tmp_path
+
+
+BAD = [
+    (("add", "Chiar"), 2, "did you mean Chair"),
+    (("add", "Color"), 2, "no class of things in space"),
+    (("add", "Chair", "chair1"), 1, "taken"),
+    (("add", "Chair", "my chair"), 2, "valid name"),
+    (("add", "Chair", "1chair"), 2, "valid name"),
+    (("add", "Chair", "a/b"), 2, "valid name"),
+    (("add", "Chair", "c", "--at", "nan", "0", "0"), 2, "at"),
+    (("add", "Chair", "c", "--at", "inf", "0", "0"), 2, "at"),
+    (("add", "Chair", "c", "--at", "1e9", "0", "0"), 2, "at"),
+    (("add", "Chair", "c", "--at", "0", "0"), 2, "at"),
+    (("add", "Chair", "c", "--at", "a", "b", "c"), 2, "at"),
+    (("add", "Chair", "c", "--orientation", "1", "1", "0", "0"), 2, "quaternion"),
+    (("add", "Chair", "c", "--size", "1", "-1", "1"), 2, "size"),
+    (("add", "Chair", "c", "--size", "0", "1", "1"), 2, "size"),
+    (("add", "Chair", "c", "--ref", ""), 2, "ref"),
+    (("add", "Chair", "c", "--colour", "red"), 2, "colour"),
+    (("add",), 2, "CLASS"),
+    (("update", "chair7", "--ref", "x"), 1, "did you mean chair1"),
+    (("update", "chair1", "--class", "Chiar"), 2, "did you mean Chair"),
+    (("update", "chair1", "--class", "Color"), 2, "no class of things in space"),
+    (("remove", "chair7"), 1, "no entity is named"),
+    (("remove", "chair1", "chair7"), 1, "no entity is named"),
+    (("get", "chair7"), 1, "did you mean chair1"),
+    (("move", "chair7", "--at", "0", "0", "0"), 1, "no entity is named"),
+    (("list", "--class", "Chiar"), 2, "did you mean Chair"),
+    (("list", "--format", "xml"), 2, "xml"),
+    (("infer", "chair7"), 1, "no entity is named"),
+    (("explain", "chair1", "type", "Kitchen"), 1, "does not hold"),
+    (("explain", "chair1", "hasColour", "red"), 2, "did you mean hasColor"),
+    (("lst",), 2, "did you mean list"),
+    (("load", "nowhere.owl"), 2, "there is no file nowhere.owl"),
+    (("load", "/"), 2, "is a directory"),
+    (("export", "/nowhere/map.owl"), 2, "cannot be written"),
+    (("run", "nowhere.txt"), 2, "there is no file"),
+    (("watch", "semmap//x"), 2, "no key expression"),
+]
+
+
+@pytest.mark.parametrize(("words", "status", "said"), BAD, ids=lambda value: str(value)[:40])
+def test_bad_words(system, words, status, said):
+    assert said in system.cli(*words, status=status)
+
+
+@pytest.mark.parametrize(
+    ("file", "status", "said"),
+    [
+        ("truncated.owl", 2, "no valid RDF/XML"),
+        ("truncated.ttl", 2, "no valid Turtle"),
+        ("inconsistent.ttl", 1, "chair2"),
+        ("unknown.ttl", 2, "unknown class 'Chiar' (of chair2"),
+        ("empty.ttl", 2, "empty"),
+        ("bytes.bin", 2, "no valid"),
+        ("other.json", 2, "neither a scene"),
+    ],
+)
+def test_bad_files(system, files, file, status, said):
+    assert said in system.cli("load", files / file, status=status)
+
+
+def test_after_all_that_nothing_has_changed_and_all_nodes_are_alive(system):
+    status = json.loads(system.cli("status", "--format", "json"))
+    assert [n["state"] for n in status["nodes"]] == ["ready"] * 3
+    assert not any(n["last_error"] for n in status["nodes"])
+    assert status["commit"] == 2
+    assert [e["name"] for e in json.loads(system.cli("list", "--format", "json"))] == ["chair1"]
+
+
+def test_a_file_of_requests_reports_each(system, tmp_path):
+    requests = tmp_path / "requests.txt"
+    requests.write_text(
+        '# a comment\nadd Cup cup1 --at 3 3 0 --ref "a cup"\n\n'
+        '{"verb": "update", "name": "cup1", "alt": ["mug"]}\nget cup1\nremove cup1\n'
+    )
+    said = system.cli("run", requests)
+    assert "2: add Cup cup1" in said
+    assert "added Cup cup1 at (3, 3, 0)" in said
+    assert "mug" in said
+    assert "removed 1: cup1" in said
+
+
+def test_a_file_of_requests_stops_at_the_first_that_fails_unless_told_otherwise(system, tmp_path):
+    requests = tmp_path / "requests.txt"
+    requests.write_text("add Chiar\nadd Cup cup2\n")
+    assert "cup2" not in system.cli("run", requests, status=2)
+    requests.write_text('get chair7\nget chair1\nremove\n{"verb": "fly"}\n')
+    with pytest.raises(AssertionError):  # more than one line of errors: one a request, and the sum
+        system.cli("run", "--keep-going", requests, status=1)
+
+
+def test_watch_shows_what_happens(system):
+    seen: list[str] = []
+    with system.spawned("watch", "semmap/jena/entity/Cup/*") as watching, system.client() as client:
+        reading = threading.Thread(target=lambda: seen.extend(watching.stdout), daemon=True)
+        reading.start()
+
+        def announced():
+            client.add("Cup", "cup3", at=(3.0, 3.0, 0.0))
+            client.remove("cup3")
+            text = "".join(seen)
+            return '"preferred_reference"' in text and "cup3  gone" in text
+
+        until(announced, "watch shows a cup coming and going")
+    reading.join(timeout=10)
+    assert watching.wait(timeout=10) == 130
+
+
+def test_no_system_is_no_answer(system, monkeypatch):
+    system_elsewhere = "tcp/127.0.0.1:9"
+    said = system.cli("list", "--connect", system_elsewhere, status=3)
+    assert "no system answers at tcp/127.0.0.1:9" in said

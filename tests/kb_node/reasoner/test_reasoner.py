@@ -1,0 +1,154 @@
+from functools import cache
+
+import pytest
+from hypothesis import HealthCheck, given, note, settings
+from hypothesis import strategies as st
+
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled, datatypes
+from nodes.kb_node.reasoner.closure import Closure
+from nodes.kb_node.reasoner.compiled import CompiledEngine
+from nodes.kb_node.reasoner.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE, is_literal
+from tests.kb_node.reasoner import proofs
+from tests.kb_node.reasoner.graphs import (
+    CLASSES,
+    DATA_PROPERTIES,
+    EVERYTHING,
+    LITERALS,
+    OBJECT_PROPERTIES,
+    triple,
+    triples,
+)  # fmt: skip
+
+TBOX = triples(EVERYTHING)
+BASE = Closure(TBOX)
+
+
+@pytest.fixture(autouse=True)
+def _closed_once(monkeypatch):
+    """The schema is the same in all examples: close it once."""
+    close = cache(lambda facts: Closure(facts))
+    monkeypatch.setattr(compiled, "Closure", lambda facts: close(tuple(facts)))
+
+
+def closure_of(asserted):
+    return Closure((fact for fact in asserted if fact not in BASE.facts), base=BASE)
+
+
+INDIVIDUALS = [f":i{n}" for n in range(7)]
+
+
+def _facts():
+    individual = st.sampled_from(INDIVIDUALS)
+    typed = st.builds(lambda s, c: f"{s} a :{c}", individual, st.sampled_from(CLASSES))
+    linked = st.builds(
+        lambda s, p, o: f"{s} :{p} {o}", individual, st.sampled_from(OBJECT_PROPERTIES), individual
+    )
+    valued = st.builds(
+        lambda s, p, o: f"{s} :{p} {o}",
+        individual,
+        st.sampled_from(DATA_PROPERTIES),
+        st.sampled_from(LITERALS),
+    )
+    compared = st.builds(
+        lambda s, p, o: f"{s} owl:{p} {o}",
+        individual,
+        st.sampled_from(["sameAs", "differentFrom"]),
+        individual,
+    )
+    return st.one_of(typed, linked, linked, valued, compared).map(triple)
+
+
+CHANGES = st.lists(
+    st.tuples(st.lists(st.integers(0, 200), max_size=3), st.lists(_facts(), max_size=4)),
+    min_size=1,
+    max_size=12,
+)
+
+
+def expected(closure, asserted):
+    """What `inferred` promises of a closure."""
+    return {
+        (s, p, o)
+        for s, p, o in closure.facts
+        if (s, p, o) not in asserted
+        and not is_literal(s)
+        and not is_schema((s, p, o))
+        and not (p == TYPE and o[0] != "<")
+        and (s, p, o) not in TBOX
+    }
+
+
+def _spelling(fact):
+    """A triple with its literal replaced by the value."""
+    s, p, o = fact
+    return (s, p, datatypes.value(o) or o) if is_literal(o) else fact
+
+
+def check_same(reasoner, asserted):
+    closure = closure_of(asserted)
+    assert closure.clash is None
+    assert set(reasoner.asserted()) == set(asserted)
+    assert len(reasoner) == len(asserted)
+    individuals = {t for fact in reasoner._engine._abox.store.numbers for t in (fact,) if not is_literal(t)}
+    wanted = {f for f in expected(closure, asserted) if f[0] in individuals}
+    found = list(reasoner.inferred())
+    assert len(found) == len(set(found))
+    known = {_spelling(fact) for fact in asserted}
+    assert {_spelling(f) for f in found} - known == {_spelling(f) for f in wanted} - known
+    for fact in wanted:
+        assert reasoner.holds(fact), fact
+    for individual in individuals:
+        types = {
+            o
+            for _, _, o in closure.match(individual, TYPE)
+            if o[0] == "<" and not is_schema((individual, TYPE, o))
+        }
+        assert reasoner.types(individual) == types
+    for cls in {o for _, p, o in wanted if p == TYPE}:
+        assert set(reasoner.instances(cls)) == {
+            s for s, _, _ in closure.match(None, TYPE, cls) if not is_literal(s)
+        }
+
+
+def check_sequence(changes):
+    """Ten random transactions, each compared with a fresh closure of what is then asserted."""
+    reasoner = Reasoner(TBOX)
+    asserted = dict.fromkeys(TBOX)
+    for picks, insert in changes:
+        abox = [fact for fact in asserted if fact not in BASE.facts]
+        delete = [abox[pick % len(abox)] for pick in picks if abox]
+        note(f"delete {delete}\ninsert {insert}")
+        after = {fact: None for fact in asserted if fact not in delete} | dict.fromkeys(insert)
+        if closure_of(after).clash is None:
+            reasoner.apply(delete=delete, insert=insert)
+            asserted = after
+        else:
+            with pytest.raises(Inconsistent) as refusal:
+                reasoner.apply(delete=delete, insert=insert)
+            proofs.check(refusal.value.explanation, after)
+        assert isinstance(reasoner._engine, CompiledEngine)
+        check_same(reasoner, asserted)
+    for fact in list(reasoner.inferred())[:3]:
+        proofs.check(reasoner.explain(fact), asserted)
+
+
+def sequences(examples):
+    return settings(
+        max_examples=examples,
+        deadline=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+    )
+
+
+@sequences(200)
+@given(CHANGES)
+def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
+    check_sequence(changes)
+
+
+@pytest.mark.long
+@sequences(5000)
+@given(CHANGES)
+def test_any_of_many_sequences_leaves_what_a_fresh_closure_has(changes):
+    check_sequence(changes)

@@ -1,0 +1,99 @@
+"""A node lives on whatever its handlers do."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import Future
+
+import pytest
+
+from nodes import bus
+from nodes.loop import Node, then
+from schemas import commands, errors, keys
+from schemas.health import Health
+from tests.conftest import free_endpoint, until
+
+PREFIX = "semmap/test"
+
+
+def fail(_):
+    raise ZeroDivisionError("oops")
+
+
+@pytest.fixture
+def network():
+    endpoint = free_endpoint()
+    peer = bus.Network(mode="peer", listen=(endpoint,), connect=())
+    with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as client:
+        node = Node("test_node", session)
+        promise: Future = Future()
+        handlers = {
+            "get": (commands.Get, lambda m: commands.Done(text=m.name)),
+            "check": (commands.Check, fail),
+            "infer": (commands.Infer, lambda _: promise),
+        }
+        node.serve(PREFIX, handlers)
+        node.every(
+            0.05, lambda: promise.set_result(commands.Done(text="late")) if not promise.done() else None
+        )
+        thread = threading.Thread(target=node.run)
+        thread.start()
+        yield node, client
+        node.stop()
+        thread.join(timeout=5)
+        assert not thread.is_alive()
+
+
+def test_a_fault_is_answered_and_the_node_lives_on(network):
+    _, client = network
+    with pytest.raises(errors.InternalError, match="ZeroDivisionError: oops"):
+        bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
+    assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), commands.Done).text == "x"
+
+
+def test_an_unknown_verb_is_told_with_those_that_are_there(network):
+    _, client = network
+    with pytest.raises(errors.UnknownVerb, match="there are: check, get, infer"):
+        bus.ask(client, PREFIX, "fly", commands.Get(name="x"), commands.Done)
+
+
+def test_a_reply_may_come_later(network):
+    _, client = network
+    assert bus.ask(client, PREFIX, "infer", commands.Infer(), commands.Done).text == "late"
+
+
+def test_the_heartbeat_shows_state_and_the_last_error(network):
+    node, client = network
+    beats: list[Health] = []
+    bus.follow(client, keys.HEALTH, lambda _, health: beats.append(health))
+    with pytest.raises(errors.InternalError):
+        bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
+    until(lambda: beats and "oops" in beats[-1].last_error, "the error is in the heartbeat")
+    assert beats[-1].state == "starting"
+    node._events.put(lambda: node.ready("so many entities"))
+    until(lambda: beats[-1].state == "ready", "the heartbeat says ready")
+    assert beats[-1].detail == "so many entities"
+    assert bus.who_is_live(client) == {"test_node"}
+
+
+def test_a_loop_that_is_blocked_falls_silent(network):
+    node, client = network
+    beats: list[float] = []
+    bus.follow(client, keys.HEALTH, lambda *_: beats.append(time.monotonic()))
+    until(lambda: beats, "a heartbeat")
+    node._events.put(lambda: time.sleep(2.5))
+    time.sleep(0.3)
+    count = len(beats)
+    time.sleep(1.5)
+    assert len(beats) == count
+
+
+def test_then_passes_results_and_errors_on():
+    first: Future = Future()
+    doubled = then(first, lambda x: 2 * x)
+    first.set_result(21)
+    assert doubled.result() == 42
+    broken = then(doubled, lambda x: x / 0)
+    assert isinstance(broken.exception(), ZeroDivisionError)
+    assert then(broken, str).exception() is broken.exception()

@@ -1,0 +1,217 @@
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from contextlib import contextmanager
+
+import pytest
+
+from nodes import bus
+from nodes.loop import Node
+from nodes.recorder.node import Recorder
+from nodes.recorder.recording import open_recording
+from nodes.recorder.replay import read_commits
+from schemas import codec, errors, keys
+from schemas.bridge import SnapshotQuery, StarQuery
+from schemas.commits import Snapshot
+from schemas.health import Health
+from schemas.scenes import SceneQuery
+from tests.recorder.files import column, log, positions
+from tests.recorder.messages import START_NS, body, commit, entity, pose, poses, relation, scene, star
+
+WAIT_S = 20.0
+
+
+def wait_for(condition):
+    deadline = time.monotonic() + WAIT_S
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+class World:
+    """Plays the knowledge base and the simulator, and hears what the recorder says of itself."""
+
+    def __init__(self, session, endpoint):
+        self.endpoint = endpoint
+        self.snapshot = Snapshot(seq=1, entities=(entity("chair1"), entity("cup1", "Cup")))
+        self.scene = scene(body("chair1"))
+        self.node = Node("kb_node", session)
+        self.commits = bus.publisher(session, keys.COMMIT)
+        self._poses = bus.publisher(session, keys.POSES)
+        self._health = bus.publisher(session, keys.HEALTH, keys.health_key("kb_node"))
+        self._said = ""
+        bus.follow(session, keys.HEALTH, self._hear)
+        self.node.serve(
+            keys.BRIDGE,
+            {
+                "snapshot": (SnapshotQuery, lambda _: self.snapshot),
+                "star": (StarQuery, lambda query: tuple(map(star, query.names))),
+            },
+        )
+        self.node.serve(keys.SIM, {"snapshot": (SceneQuery, self._scene)})
+
+    def publish(self, *commits):
+        for made in commits:
+            self.commits.put(codec.encode(made))
+
+    def simulate(self, at_by_name, **others):
+        self._poses.put(codec.encode(poses(at_by_name, **others)))
+
+    def begin_anew(self, snapshot):
+        self.snapshot = snapshot
+        health = Health(node="kb_node", pid=1, started_ns=2, stamp_ns=2, state="ready")
+        self._health.put(codec.encode(health))
+
+    def await_commit(self, seq):
+        wait_for(lambda: self._said.startswith(f"commit {seq},"))
+
+    def _hear(self, _, health):
+        if health.node == "recorder":
+            self._said = health.detail
+
+    def _scene(self, _):
+        if self.scene is None:
+            raise errors.Refused("no simulator runs")
+        return self.scene
+
+
+@pytest.fixture
+def world():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    with bus.open_session(bus.Network(connect=(), listen=(endpoint,), mode="peer")) as session:
+        world = World(session, endpoint)
+        thread = threading.Thread(target=world.node.run)
+        thread.start()
+        yield world
+        world.node.stop()
+        thread.join()
+
+
+def network(world):
+    return bus.Network(connect=(world.endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
+
+
+@contextmanager
+def recorder(world, path):
+    """A recorder in this process, ready."""
+    with bus.open_session(network(world)) as session, open_recording(path, None) as recording:
+        node = Node("recorder", session)
+        Recorder(node, recording, "no live view")
+        thread = threading.Thread(target=node.run)
+        thread.start()
+        try:
+            world.await_commit(world.snapshot.seq)
+            yield
+        finally:
+            node.stop()
+            thread.join()
+
+
+def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    made = [
+        commit(
+            seq, entity(f"cup{seq}", "Cup", at=pose(seq)), inserted=(relation(f"cup{seq}", "isOn", "chair1"),)
+        )
+        for seq in range(2, 60)
+    ]
+    with recorder(world, path):
+        world.publish(*made, commit(60, removed=("cup7",)))
+        world.await_commit(60)
+    read = read_commits(path)
+    assert [c.seq for c in read] == list(range(2, 61))
+    assert [c.inserted for c in read[:-1]] == [c.inserted for c in made]
+    assert log(path)[0] == "1  the recording goes on from here with 2 entities"
+    assert positions(path, "chair1") == [[0.0, 0.0, 0.0]]
+    assert positions(path, "cup7") == [[7.0, 0.0, 0.0]]
+    assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [False]
+
+
+def test_poses_are_recorded_when_they_change(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    with recorder(world, path):
+        world.simulate({"chair1": pose()})
+        wait_for(lambda: column(path, "/map/bodies/chair1", "Boxes3D:half_sizes")[-1:] == [[0.25, 0.25, 0.5]])
+        for x in (0.0, 0.5, 0.5, 1.0):
+            world.simulate({"chair1": pose(x)}, sim_time_s=3.0 + x)
+            time.sleep(0.01)
+        wait_for(lambda: positions(path, "chair1")[-1] == [1.0, 0.0, 0.0])
+    assert [x for x, _, _ in positions(path, "chair1")] == [0.0, 0.0, 0.5, 1.0]
+
+
+def test_new_bodies_are_drawn_and_gone_ones_erased(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    with recorder(world, path):
+        world.simulate({"chair1": pose()})
+        wait_for(lambda: len(positions(path, "chair1")) == 2)
+        world.scene = scene(body("ball1", at=pose(4.0)), version=2)
+        world.simulate({"ball1": pose(4.0)}, version=2)
+        wait_for(lambda: positions(path, "ball1") == [[4.0, 0.0, 0.0]])
+        world.scene = scene(version=3)
+        world.simulate({}, version=3)
+        wait_for(lambda: column(path, "/map/bodies/ball1", "Clear:is_recursive"))
+
+
+def test_a_gap_is_filled_by_a_snapshot_and_told(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    with recorder(world, path):
+        world.snapshot = Snapshot(seq=5, entities=(entity("lamp1", "Lamp", at=pose(3.0)),))
+        world.publish(commit(2), commit(5))
+        world.await_commit(5)
+        world.publish(commit(6))
+        world.await_commit(6)
+    assert [c.seq for c in read_commits(path)] == [2, 5, 6]
+    assert "5  not heard: commit 3, 4; a snapshot fills the gap" in log(path)
+    assert positions(path, "lamp1") == [[3.0, 0.0, 0.0]]
+
+
+def test_a_knowledge_base_that_begins_anew_is_followed(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    with recorder(world, path):
+        world.publish(commit(2), commit(3))
+        world.await_commit(3)
+        world.begin_anew(Snapshot(seq=1, entities=(entity("lamp1", "Lamp", at=pose(3.0)),)))
+        world.await_commit(1)
+        world.publish(commit(2, entity("lamp2", "Lamp", at=pose(4.0))))
+        world.await_commit(2)
+    assert [c.seq for c in read_commits(path)] == [2, 2, 3]
+    assert positions(path, "lamp2") == [[4.0, 0.0, 0.0]]
+
+
+_RUN = """
+import sys
+from pathlib import Path
+from nodes.bus import Network
+from nodes.recorder.config import RecorderConfig
+from nodes.recorder.node import run
+path, endpoint, serve = sys.argv[1:]
+network = Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
+run(RecorderConfig(path=Path(path), network=network, serve=serve))
+"""
+
+
+def test_a_stopped_process_leaves_a_complete_file(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        serve = f"127.0.0.1:{taken.getsockname()[1]}"
+        command = [sys.executable, "-c", _RUN, str(path), world.endpoint, serve]
+        process = subprocess.Popen(command, env=os.environ)
+        try:
+            world.await_commit(1)
+            assert f"no live view: {serve} is taken" in world._said
+            world.publish(commit(2))
+            world.await_commit(2)
+        finally:
+            process.send_signal(signal.SIGTERM)
+            status = process.wait(WAIT_S)
+    assert status == 0
+    assert [c.seq for c in read_commits(path)] == [2]
+    assert column(path, "/commits", "semmap.Commit:stamp_ns") == [START_NS + 2_000_000_000]

@@ -1,0 +1,96 @@
+import pytest
+import trimesh
+
+from nodes.sim_node.models.files import Models
+from nodes.sim_node.models.library import ModelError
+from nodes.sim_node.models.parts import Role
+from nodes.sim_node.world import World
+from tests.sim_node.orders import order, pose
+
+MJCF = """
+<mujoco>
+  <asset><mesh name="roof" vertex="0 0 0  1 0 0  0 1 0  0 0 1" scale="0.2 0.2 0.2"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <body pos="0 0 0.1">
+      <geom type="box" size="0.1 0.2 0.1" rgba="1 0 0 1"/>
+      <body pos="0 0 0.2"><joint type="hinge"/><geom type="sphere" size="0.1" contype="0"
+        conaffinity="0"/></body>
+      <geom type="mesh" mesh="roof" pos="0 0 0.1"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    box = trimesh.creation.box(extents=(0.4, 0.2, 0.1))
+    box.export(tmp_path / "brick.stl")
+    box.export(tmp_path / "brick2.obj")
+    trimesh.Scene(box).export(tmp_path / "chair.glb")
+    (tmp_path / "toy.xml").write_text(MJCF)
+    open_mesh = trimesh.creation.icosphere(radius=0.2)
+    open_mesh.update_faces(range(len(open_mesh.faces) // 2))
+    open_mesh.export(tmp_path / "open.stl")
+    (tmp_path / "broken.xml").write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    (tmp_path / "broken.obj").write_text("f 1 2 3")
+    (tmp_path / "empty.xml").write_text("<mujoco/>")
+    trimesh.creation.box(extents=(4000, 1, 1)).export(tmp_path / "huge.stl")
+    return tmp_path
+
+
+def test_meshes_are_read_in_metres_and_stretched(folder):
+    models = Models(folder)
+    assert models("brick.stl", None).size_m == pytest.approx((0.4, 0.2, 0.1))
+    assert models("brick2", None).size_m == pytest.approx((0.4, 0.2, 0.1))
+    assert models("brick2", (1.0, 1.0, 2.0)).size_m == pytest.approx((1.0, 1.0, 2.0))
+
+
+def test_gltf_is_turned_so_that_z_is_up(folder):
+    assert Models(folder)("chair", None).size_m == pytest.approx((0.4, 0.1, 0.2))
+
+
+def test_a_file_takes_the_place_of_a_built_in_model(folder):
+    assert Models(folder)("chair", None).name.endswith("chair.glb")
+    assert Models(folder)("table", None).name == "table"
+    assert Models()("chair", None).name == "chair"
+
+
+def test_mjcf_is_taken_as_one_rigid_body(folder):
+    toy = Models(folder)("toy", None)
+    assert [part.role for part in toy.parts] == [Role.BOTH, Role.BOTH, Role.SEEN]
+    assert toy.size_m == pytest.approx((0.3, 0.4, 0.4), abs=0.001)
+    assert toy.parts[0].colour == (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    "name", ["broken.xml", "broken.stl", "broken.obj", "empty.xml", "none.glb", "huge.stl"]
+)
+def test_a_bad_file_is_told(folder, name):
+    with pytest.raises(ModelError) as told:
+        Models(folder)(name, None)
+    assert "\n" not in str(told.value)
+
+
+def test_bodies_from_files_stand_beside_others(folder):
+    world = World(models=Models(folder))
+    spawned = world.spawn(
+        [
+            order("a", str(folder / "brick.stl"), pose(0, 0)),
+            order("b", "brick2", pose(1, 0), size_m=(0.2, 0.2, 0.5)),
+            order("c", "toy", pose(2, 0)),
+            order("d", "open", pose(3, 0)),
+            order("e", "broken.xml", pose(4, 0)),
+            order("f", "chair", pose(5, 0)),
+        ]
+    )
+    assert set(spawned.failed) == {"e"}
+    assert "broken.xml" in spawned.failed["e"]
+    world.step(1.0)
+    heights = {b.name: b.pose.position_m[2] for b in world.scene().bodies}
+    assert heights["a"] == pytest.approx(0, abs=0.002)
+    assert heights["f"] == pytest.approx(0, abs=0.002)
+    world.delete([*"abcdf"])
+    assert world.scene().bodies == ()

@@ -1,0 +1,85 @@
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nodes.sim_node.models.library import ModelError, build
+from nodes.sim_node.models.parts import Role, bounds
+from nodes.sim_node.models.table import MODELS
+
+HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
+
+
+def test_every_model_that_the_tbox_names_is_there():
+    named = set(re.findall(r'dm:model "([^"]+)"', HOUSEHOLD.read_text()))
+    assert named - MODELS.keys() == set()
+
+
+def test_there_are_sixty_models_and_no_two_are_built_alike():
+    shapes = {name: tuple((p.shape, p.role) for p in build(name, None).parts) for name in MODELS}
+    assert len(set(shapes.values())) >= 60
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_model_fills_its_size_from_the_bottom_centre_up(name):
+    wanted = MODELS[name].size_m
+    model = build(name, None)
+    low, high = bounds(model.parts)
+    assert low[2] == pytest.approx(0.0, abs=1e-9)
+    assert low[:2] == pytest.approx(-high[:2])
+    for have, want in zip(model.size_m, wanted, strict=True):
+        assert abs(have - want) <= max(0.15 * want, 0.012)
+    assert model.inertial.mass_kg == pytest.approx(MODELS[name].mass_kg, rel=0.5)
+    a, b, c = sorted(model.inertial.moments)
+    assert a > 0.0
+    assert c <= a + b + 1e-6
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_what_is_felt_is_no_bigger_than_what_is_seen(name):
+    parts = build(name, None).parts
+    felt = [part for part in parts if part.role is not Role.SEEN]
+    low, high = bounds([part for part in parts if part.role is not Role.FELT])
+    felt_low, felt_high = bounds(felt)
+    assert (felt_low >= low - 0.006).all()
+    assert (felt_high <= high + 0.006).all()
+    assert felt_low[2] == pytest.approx(0.0, abs=0.004)
+    assert len(felt) <= 40
+
+
+@pytest.mark.parametrize(
+    ("name", "size"), [("table", (1.0, 2.0, 0.5)), ("cup", (0.2, 0.25, 0.3)), ("wall", (0.2, 6, 3))]
+)
+def test_models_take_the_size_of_their_entity(name, size):
+    model = build(name, size)
+    assert model.size_m == pytest.approx(size, rel=0.15)
+    assert model.inertial.mass_kg > build(name, None).inertial.mass_kg
+
+
+def test_a_size_that_is_long_the_other_way_turns_the_model():
+    assert build("couch", (2.0, 0.9, 0.85)).size_m == pytest.approx((2.0, 0.9, 0.85), rel=0.05)
+    along, across = build("couch", (2.0, 0.9, 0.85)), build("couch", (0.9, 2.0, 0.85))
+    assert along.inertial.moments[:2] == pytest.approx(across.inertial.moments[1::-1])
+
+
+def test_without_a_model_there_is_a_box():
+    assert build("", (0.2, 0.3, 0.4)).size_m == pytest.approx((0.2, 0.3, 0.4))
+    assert build("no_such_thing", None).size_m == pytest.approx((0.3, 0.3, 0.3))
+    assert build("no_such_thing", None).name == "box"
+
+
+@pytest.mark.parametrize(
+    "size", [(1000.0, 1.0, 1.0), (1.0, 1e-6, 1.0), (1.0, 1.0, float("nan")), (1.0, 1.0, -1.0)]
+)
+def test_absurd_sizes_are_refused(size):
+    with pytest.raises(ModelError, match="measures"):
+        build("chair", size)
+
+
+def test_inertia_of_a_box_is_that_of_the_textbook():
+    model = build("", (0.6, 0.6, 1.8))
+    mass = model.inertial.mass_kg
+    expected = mass / 12 * np.array([0.36 + 3.24, 0.36 + 3.24, 0.72])
+    assert model.inertial.moments == pytest.approx(expected)
+    assert model.inertial.centre_m == pytest.approx((0, 0, 0.9))
