@@ -26,8 +26,8 @@ def test_all_unknown_classes_are_named(classes):
     with pytest.raises(errors.UnknownClass) as caught:
         documents.sort_out(triples, classes, skip_unknown=False)
     assert caught.value.text == (
-        "unknown classes 'Chiar' (did you mean Chair?), 'Xylophone': c (unknown class 'Chiar'),"
-        " x (unknown class 'Xylophone'), y (unknown class 'Xylophone'); --skip-unknown leaves these out"
+        "unknown classes 'Chiar' (of c; did you mean Chair?), 'Xylophone' (of x, y);"
+        " --skip-unknown leaves these out"
     )
 
 
