@@ -32,7 +32,10 @@ def _worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
     return (
         (s, p, o)
         for s, p, o in triples
-        if o != v.OWL_THING and (p, s) != (v.OWL_SAME_AS, o) and not (p == v.RDF_TYPE and o.startswith("_:"))
+        if not s.startswith('"')
+        and o != v.OWL_THING
+        and (p, s) != (v.OWL_SAME_AS, o)
+        and not (p == v.RDF_TYPE and o.startswith("_:"))
     )
 
 
@@ -60,8 +63,9 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
     abox = semantic_map.abox()
     following: list[Triple] = []
     if inferred:
-        for subject in {s for s, _, _ in abox}:
-            following += _worth_saying(semantic_map.reasoner.inferred(subject, None, None))
+        individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
+        for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
+            following += _worth_saying(semantic_map.reasoner.inferred(individual, None, None))
     return Picture([*semantic_map.tbox, *abox], abox + following, semantic_map.seq)
 
 
