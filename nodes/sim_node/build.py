@@ -26,7 +26,7 @@ _WIDTH = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): (1, 1),
     int(mujoco.mjtJoint.mjJNT_HINGE): (1, 1),
 }
-_FRICTION = (0.8, 0.01, 0.002)
+_FRICTION = (0.8, 0.01, 0.004)
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
