@@ -445,7 +445,7 @@ class ABox:
 
     def forget(self, node: int) -> None:
         """Release a node that nothing is said of any more."""
-        value = self.value(node)
+        value = self.value(node) if self.spellings else None
         if self.store.release(node) and value in self.spellings:
             self.spellings[value] = [other for other in self.spellings[value] if other != node]
             if not self.spellings[value]:
