@@ -105,14 +105,14 @@ class ABox:
                 node, _ = dirty.popitem()
                 try:
                     self._spread(node)
-                except Clash:
+                except (Clash, NotCompilable):
                     dirty[node] = None
                     raise
             else:
                 edge = fresh.pop()
                 try:
                     self._look_at(edge)
-                except Clash:
+                except (Clash, NotCompilable):
                     fresh.append(edge)
                     raise
 
@@ -245,23 +245,23 @@ class ABox:
             if self.is_same(s, o):
                 raise Clash(Edge(edge), Same(s, o))
             return
-        self._step(edge)
-        rules = self.steps.rules(p)
+        rules = self._step(edge).rules
         if rules is None or (rules.of_values and s not in self.equals and store.out.is_alone(edge)):
             return
         self._apply(rules, edge, s, o)
 
-    def _step(self, edge: int) -> None:
+    def _step(self, edge: int) -> Step:
         store = self.store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         subject, object_ = store.kind[s], store.kind[o]
-        step = self.steps.step(p, subject, object_)
+        step = self.steps.known.get((p, subject, object_)) or self.steps.step(p, subject, object_)
         if step.subject is not subject:
             self._widen(s, step.subject.mask)
         if step.object is not object_:
             self._widen(o, step.object.mask)
         if step.special:
             self._check(step, edge, s, o)
+        return step
 
     def _check(self, step: Step, edge: int, s: int, o: int) -> None:
         """The parts of a step that are about more than one edge, or that clash."""

@@ -9,22 +9,6 @@ from nodes.kb_node.reasoner.schema import ANY, SAME, Chain, Group, Key, Limit, R
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
-    """The kinds of subject and object afterwards, and what else must be looked at."""
-
-    subject: Kind
-    object: Kind
-    clash: tuple[Role, int, int] | None
-    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
-    limits: tuple[tuple[bool, Limit], ...]
-    """Limits that the edge now counts for, and whether their owner is the subject."""
-    keys: tuple[tuple[bool, Key], ...]
-    """Keys that now identify the subject (or else the object)."""
-    special: bool
-    """Whether there is anything beyond the kinds."""
-
-
-@dataclass(frozen=True, slots=True)
 class EdgeRules:
     """What a property's new edges are checked for whatever the kinds are."""
 
@@ -39,9 +23,26 @@ class EdgeRules:
     """Chains that the edge may end."""
     by_value: bool
     """Whether it matters that two literals are spellings of one value."""
-
     of_values: bool
     """Whether all there is to check is that the subject has no other edge with the predicate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The kinds of subject and object afterwards, and what else must be looked at."""
+
+    subject: Kind
+    object: Kind
+    clash: tuple[Role, int, int] | None
+    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
+    limits: tuple[tuple[bool, Limit], ...]
+    """Limits that the edge now counts for, and whether their owner is the subject."""
+    keys: tuple[tuple[bool, Key], ...]
+    """Keys that now identify the subject (or else the object)."""
+    special: bool
+    """Whether there is anything beyond the kinds."""
+    rules: EdgeRules | None
+    """What a new edge of the property is checked for besides; None for nothing."""
 
 
 class Steps:
@@ -53,21 +54,20 @@ class Steps:
     def __init__(self, schema: Schema, kinds: Kinds) -> None:
         self._schema = schema
         self._kinds = kinds
-        self._steps: dict[tuple[int, Kind, Kind], Step] = {}
+        self.known: dict[tuple[int, Kind, Kind], Step] = {}
         self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
         """What an edge of a property makes of two kinds."""
-        found = self._steps.get((prop, subject, object_))
+        found = self.known.get((prop, subject, object_))
         if found is None:
-            if len(self._steps) >= self.LIMIT:
-                self._steps.clear()
-            found = self._steps[prop, subject, object_] = self._work_out(prop, subject, object_)
+            if len(self.known) >= self.LIMIT:
+                self.known.clear()
+            found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
         return found
 
-    def rules(self, prop: int) -> EdgeRules | None:
-        """The edge rules of a property; None when it has none."""
+    def _rules_of(self, prop: int) -> EdgeRules | None:
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
@@ -110,7 +110,8 @@ class Steps:
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
         special = bool(clash or limits or keys or object_.clash)
-        return Step(subject, object_, clash, tuple(limits), tuple(keys), special)
+        rules = self._rules_of(prop)
+        return Step(subject, object_, clash, tuple(limits), tuple(keys), special, rules)
 
     def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
         """The kinds with what domains, ranges and restrictions add at once."""

@@ -41,6 +41,10 @@ class Adjacency:
     def link(self, node: int, edge: int, predicate: int) -> None:
         """Put an edge, whose predicate is set already, into the list of a node."""
         head = first = self.heads[node]
+        if head == NONE:
+            self.heads[node] = edge
+            self.before[edge] = self.after[edge] = self.group[edge] = NONE
+            return
         column, group = self.predicate, self.group
         while first != NONE and column[first] != predicate:
             first = group[first]
