@@ -100,21 +100,22 @@ class ABox:
     def run(self) -> None:
         """Draw all conclusions. Raises Clash at the first contradiction."""
         fresh, dirty = self.fresh, self.dirty
-        while fresh or dirty:
-            if dirty:
-                node, _ = dirty.popitem()
-                try:
+        node = edge = NONE
+        try:
+            while fresh or dirty:
+                node = edge = NONE
+                if dirty:
+                    node, _ = dirty.popitem()
                     self._spread(node)
-                except (Clash, NotCompilable):
-                    dirty[node] = None
-                    raise
-            else:
-                edge = fresh.pop()
-                try:
+                else:
+                    edge = fresh.pop()
                     self._look_at(edge)
-                except (Clash, NotCompilable):
-                    fresh.append(edge)
-                    raise
+        except (Clash, NotCompilable):
+            if node == NONE:
+                fresh.append(edge)
+            else:
+                dirty[node] = None
+            raise
 
     def settle(self) -> None:
         """File the individuals whose kind changed; to be called at the end of a transaction."""
@@ -227,9 +228,10 @@ class ABox:
 
     def add_values(self, node: int) -> None:
         """Add the edges that a node's classes come with (cls-hv1)."""
+        is_new = self.store.is_bare(node) and node not in self.equals
         for predicate, term in self.store.kind[node].values:
             value = self.store.node(term)
-            if self.find(node, (predicate, False), value) == NONE:
+            if is_new or self.find(node, (predicate, False), value) == NONE:
                 self.fresh.append(self.store.add(node, predicate, value, VALUE))
 
     def _look_at(self, edge: int) -> None:
@@ -259,7 +261,7 @@ class ABox:
             self._widen(s, step.subject.mask)
         if step.object is not object_:
             self._widen(o, step.object.mask)
-        if step.special:
+        if step.special and not (step.of_values and s not in self.equals and store.out.is_alone(edge)):
             self._check(step, edge, s, o)
         return step
 

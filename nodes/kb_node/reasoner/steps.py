@@ -41,6 +41,8 @@ class Step:
     """Keys that now identify the subject (or else the object)."""
     special: bool
     """Whether there is anything beyond the kinds."""
+    of_values: bool
+    """Whether there is not after all, when the subject has no other edge with the predicate."""
     rules: EdgeRules | None
     """What a new edge of the property is checked for besides; None for nothing."""
 
@@ -92,7 +94,8 @@ class Steps:
         wider_subject, wider_object = self._added(prop, subject, object_)
         if wider_subject is not subject or wider_object is not object_:
             return self.step(prop, wider_subject, wider_object)
-        clash, limits, keys = None, [], []
+        clash, keys = None, []
+        limits: list[tuple[bool, Limit]] = []
         for role in self._schema.roles(prop):
             q, backwards = role
             owner, filler = (object_, subject) if backwards else (subject, object_)
@@ -109,9 +112,17 @@ class Steps:
                 and _in(limit.filler, filler)
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
-        special = bool(clash or limits or keys or object_.clash)
+        others = bool(clash or keys or object_.clash)
+        of_values = not others and self._are_of_values(prop, limits)
         rules = self._rules_of(prop)
-        return Step(subject, object_, clash, tuple(limits), tuple(keys), special, rules)
+        return Step(
+            subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
+        )
+
+    def _are_of_values(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
+        """Whether limits are kept if the subject has no other edge with the predicate."""
+        alone = Group((prop,), ())
+        return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
 
     def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
         """The kinds with what domains, ranges and restrictions add at once."""
@@ -156,8 +167,7 @@ class Steps:
         others = irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
-        alone = Group((prop,), ())
-        of_values = not others and all(at and self.group(limit.role) == alone for at, limit in limits)
+        of_values = not others and self._are_of_values(prop, limits)
         return EdgeRules(
             irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value, of_values
         )

@@ -134,7 +134,8 @@ class Store:
         found = self.numbers.get(term)
         if found is not None:
             return found
-        kind = self._kinds.literal(term) if is_literal(term) else self._kinds.individual(term)
+        kinds = self._kinds
+        kind = kinds.literal(term) if is_literal(term) else kinds.individual(term)
         if self._free_nodes:
             node = self._free_nodes.pop()
             self.terms[node], self.kind[node] = term, kind
