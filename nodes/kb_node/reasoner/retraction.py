@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from nodes.kb_node.reasoner.abox import ABox, Equals
+from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.individuals import Equals
 from nodes.kb_node.reasoner.reasons import Reason
 from nodes.kb_node.reasoner.schema import Chain, Role
 from nodes.kb_node.reasoner.store import ASSERTED, NONE, VALUE
