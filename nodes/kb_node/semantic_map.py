@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 
 from msgspec import structs
 
@@ -109,10 +109,11 @@ class SemanticMap:
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
-        self._require(transaction)
+        held = self._held(transaction)
+        self._require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
-        retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and self.has(t))
-        inserted = tuple(t for t in wanted if not self.has(t))
+        retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
+        inserted = tuple(t for t in wanted if t not in held)
         if not retracted and not inserted:
             return None
         for triple in retracted:
@@ -155,12 +156,21 @@ class SemanticMap:
         self._journal.checkpoint(Checkpoint(seq=self.seq, triples=triples, marks=marks, commits=commits))
         self._checkpointed = self.seq
 
-    def _require(self, transaction: Transaction) -> None:
+    def _held(self, transaction: Transaction) -> set[Triple]:
+        """Those of the transaction's triples that are asserted already."""
+        named = {*transaction.require, *transaction.retract, *transaction.insert}
+        present = {s for s in {s for s, _, _ in named} if self._is_subject(s)}
+        return {t for t in named if t[0] in present and self.has(t)}
+
+    def _is_subject(self, term: Term) -> bool:
+        return any(True for _ in self.reasoner.asserted(term))
+
+    def _require(self, transaction: Transaction, held: Container[Triple]) -> None:
         for triple in transaction.require:
-            if not self.has(triple):
+            if triple not in held:
                 raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
         for term in transaction.vacant:
-            if any(True for _ in self.reasoner.asserted(term, None, None)):
+            if self._is_subject(term):
                 raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")
 
     def _replay(self, progress: Callable[[], None]) -> None:
@@ -190,7 +200,6 @@ class SemanticMap:
         except Inconsistent as error:
             raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
         try:
-            owners |= self._owners(commit)
             commit = self._with_effects(commit, owners, change.touched)
             make_durable(commit)
         except BaseException:
@@ -203,7 +212,10 @@ class SemanticMap:
         return commit
 
     def _owners(self, commit: Commit) -> set[Term]:
-        """Whose stars the commit's triples belong to."""
+        """Whose stars the commit's triples belong to, before it and after it.
+
+        Who comes to own a node only by the commit is itself a subject of its triples.
+        """
         subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
         return {owner for s in subjects for owner in entities.owners(self.reasoner, s)}
 
