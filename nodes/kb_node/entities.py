@@ -123,7 +123,10 @@ def read_star(
 
 def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     """The individuals in whose star `node` is."""
-    return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
+    if any(True for _ in reasoner.asserted(None, None, node)):  # most new nodes have nobody
+        for predicate in stars.STAR_PROPERTIES:
+            for user, _, _ in reasoner.asserted(None, predicate, node):
+                yield user
 
 
 def _objects(reasoner: Reasoner, subject: Term) -> dict[Term, list[Term]]:
