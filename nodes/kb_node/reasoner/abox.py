@@ -413,16 +413,20 @@ class ABox:
             self.fresh += self.store.into.all(node)
 
     def _check_joinable(self, one: int, other: int, claims: tuple[Claim, ...]) -> None:
-        literals = self.is_literal(one) + self.is_literal(other)
         terms = self.store.terms
-        if literals == 2:
-            mine, theirs = self.value(one), self.value(other)
-            if mine is not None and theirs is not None:
-                if mine != theirs:
-                    raise Clash(*claims)
-                return
-        if literals or self.schema.speaks_of(terms[one]) or self.schema.speaks_of(terms[other]):
+        if self.is_literal(one) and self.is_literal(other):
+            values = {self.value(node) for node in (*self.members(one), *self.members(other))}
+            if len(values - {None}) > 1:
+                raise Clash(*claims, *self._different(one, other))
+        elif self.is_literal(one) or self.is_literal(other):
+            raise NotCompilable(f"an individual is a value: {terms[one]}, {terms[other]}")
+        elif self.schema.speaks_of(terms[one]) or self.schema.speaks_of(terms[other]):
             raise NotCompilable(f"{terms[one]} is the same as {terms[other]}")
+
+    def _different(self, one: int, other: int) -> Iterator[Claim]:
+        """The literals known to be the same as two, among which are two values."""
+        for node in (one, other):
+            yield from (Same(node, member) for member in self.members(node) if member != node)
 
     def value(self, node: int) -> datatypes.Value | None:
         """The value of a literal; None for an individual."""
@@ -445,7 +449,7 @@ class ABox:
 
     def forget(self, node: int) -> None:
         """Release a node that nothing is said of any more."""
-        value = self.value(node)
+        value = self.value(node) if self.spellings else None
         if self.store.release(node) and value in self.spellings:
             self.spellings[value] = [other for other in self.spellings[value] if other != node]
             if not self.spellings[value]:

@@ -219,10 +219,11 @@ class Closure:
         for key in indexed(fact):
             self._index.setdefault(key, {})[fact] = None
         for key in patterns(fact):
-            for rule in list(self._watchers.get(key, ())):
-                self._specialise(rule, fact)
             for found in list(self._triggers.get(key, ())):
                 self._take(found, 0, fact, [""] * found.variables, ())
+        for key in patterns(fact):
+            for rule in list(self._watchers.get(key, ())):
+                self._specialise(rule, fact)
 
     def _join(self, found: Plan, at: int, known: list[Term], premises: tuple[Triple, ...]) -> None:
         """Match the atoms of a rule from one on, and apply the rule to each match."""

@@ -57,7 +57,7 @@ class CompiledEngine:
     def __len__(self) -> int:
         return self._size
 
-    def apply(self, delete: Iterable[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
+    def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
         """Delete and insert triples that are not of the schema; the individuals that this touched.
 
         Raises:
@@ -66,7 +66,7 @@ class CompiledEngine:
         """
         abox = self._abox
         retraction = Retraction(abox)
-        removed = retraction.delete(delete)
+        removed = retraction.delete(delete) if delete else []
         added: list[Triple] = []
         try:
             types = [triple for triple in insert if triple[1] == TYPE]

@@ -178,13 +178,11 @@ class Retraction:
     def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
         """What a dropped edge implied may follow from others: by a chain, or with a class."""
         abox = self._abox
-        abox.add_values(subject)
-        abox.add_values(object_)
-        for role in abox.schema.roles(predicate):
-            x, z = (object_, subject) if role[1] else (subject, object_)
-            for chain in abox.schema.chains:
-                if chain.result == role[0]:
-                    self._look_for_middle(x, z, chain)
+        for node in (subject, object_):
+            if self._store.kind[node].values:
+                abox.add_values(node)
+        for backwards, chain in abox.steps.made_by(predicate):
+            self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
         """An individual between two that a chain goes through, sought from the end with fewer edges."""

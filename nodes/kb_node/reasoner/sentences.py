@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 from nodes.kb_node.reasoner.rules import AXIOMS
@@ -86,7 +87,7 @@ class _Speaker:
             return f'"{literal(term).text}"'
         if term.startswith("_:"):
             return self._anonymous(term)
-        return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
+        return _local_name(term)
 
     def a(self, term: Term) -> str:
         name = self.name(term)
@@ -162,6 +163,11 @@ class _Speaker:
                 most = "no" if literal(number).text == "0" else "at most one"
                 return f"something with {most} {prop}" + (f" to {self.a(kind)}" if kind else "")
         return f"something with {prop}"
+
+
+@lru_cache(maxsize=4096)
+def _local_name(term: Term) -> str:
+    return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
 
 
 def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Step]) -> str:

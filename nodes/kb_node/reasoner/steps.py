@@ -54,6 +54,7 @@ class Steps:
         self._schema = schema
         self._kinds = kinds
         self._steps: dict[tuple[int, Kind, Kind], Step] = {}
+        self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
@@ -70,6 +71,18 @@ class Steps:
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
+
+    def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
+        """The chains that may make what an edge of a property implies, and whether that is backwards."""
+        found = self._made_by.get(prop)
+        if found is None:
+            found = self._made_by[prop] = tuple(
+                (backwards, chain)
+                for q, backwards in self._schema.roles(prop)
+                for chain in self._schema.chains
+                if chain.result == q
+            )
+        return found
 
     def group(self, role: Role) -> Group:
         """Along which edges a role leads."""
