@@ -38,7 +38,7 @@ C = TypeVar("C", bound=Command)
 
 
 def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
-    """A command that is sent again under the same id is answered with its first result, not executed again."""
+    """A command that is sent again under the same id is answered with its first result."""
 
     @functools.wraps(change)
     def execute(door: D, command: C) -> Changed:
