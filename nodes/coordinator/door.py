@@ -15,19 +15,19 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.class_names import ClassNames
-from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
-from nodes.coordinator.files.described import Described, pose_of
 from nodes.coordinator.naming import free_name, free_position
-from schemas import errors
+from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, StarQuery
 from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Triple
+from schemas.scene_files import Described, pose_of
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
-    "scene": scene_file.read,
+    "scene": scene_files.read,
     "huric": huric.read,
 }
 _ATTEMPTS = 5

@@ -210,7 +210,7 @@ class World:
             origin_m=(-x, -y, -z),
             ordered=order.pose,
             fixed=order.fixed,
-            entity=True,
+            entity=order.commit > 0,
             masks=[build.mask_of(part) for part in model.parts],
             commit=order.commit,
             shape_commit=order.commit,

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
+from schemas import scene_files
 from schemas.errors import BadFile
 from tests.data import data_folder
 
@@ -43,7 +44,7 @@ def test_what_is_nothing_of_the_kind_is_refused(content):
 
 
 def test_a_scene():
-    (chair,) = scene_file.read(as_bytes(SCENE), "scene.json")
+    (chair,) = scene_files.read(as_bytes(SCENE), "scene.json")
     assert (chair.class_, chair.name, chair.at, chair.yaw) == ("Chair", "chair9", (1.0, 2.0, 0.0), 1.5)
 
 
@@ -62,12 +63,12 @@ def test_a_scene():
 def test_a_scene_with_a_fault_names_the_field(change, said):
     scene = {"entities": [{**SCENE["entities"][0], **change}]}
     with pytest.raises(BadFile, match=said):
-        scene_file.read(as_bytes(scene), "scene.json")
+        scene_files.read(as_bytes(scene), "scene.json")
 
 
 def test_the_json_schema_in_the_repository_is_up_to_date():
-    path = Path(scene_file.__file__).parents[3] / "schemas" / "scene.schema.json"
-    assert path.read_text() == scene_file.json_schema()
+    path = Path(scene_files.__file__).with_name("scene.schema.json")
+    assert path.read_text() == scene_files.json_schema()
 
 
 HURIC = b"""<huricExample id="1"><semanticMap><entities>
