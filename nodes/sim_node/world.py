@@ -72,8 +72,9 @@ class World:
             except ModelError as error:
                 failed[order.name] = str(error)
         if newcomers:
-            for record, model in newcomers.values():
-                build.add_body(self._spec, record, model, record.ordered)
+            build.add_bodies(
+                self._spec, [(*newcomer, newcomer[0].ordered) for newcomer in newcomers.values()]
+            )
             self._records |= {name: record for name, (record, _) in newcomers.items()}
             self._made_from |= {name: model for name, (_, model) in newcomers.items()}
             self._recompile()
@@ -239,12 +240,12 @@ class World:
         for body in list(spec.worldbody.bodies):
             if body.name and body.name not in self._records:
                 spec.delete(body)
+        now = {name: pose_of(poses[rows[name]]) for name in self._records}
+        entities = [(self._records[name], model, now[name]) for name, model in self._made_from.items()]
+        build.add_bodies(spec, entities)
         for name, record in self._records.items():
-            pose = pose_of(poses[rows[name]])
-            if record.entity:
-                build.add_body(spec, record, self._made_from[name], pose)
-            elif record.static:
-                build.set_standing(spec, record, pose)
+            if record.static and not record.entity:
+                build.set_standing(spec, record, now[name])
         build.set_memory(spec, len(self._records))
         model = spec.compile()
         data = mujoco.MjData(model)
