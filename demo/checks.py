@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from nodes.recorder.replay import read_commits
 from PIL import Image
+
+from nodes.recorder.replay import read_commits
 
 if TYPE_CHECKING:
     from demo.tour import Tour

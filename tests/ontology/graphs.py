@@ -1,19 +1,14 @@
-"""Reading the ontology with rdflib and closing it with owlrl: what the tests compare with."""
+"""Reading the ontology with rdflib: what the tests compare with."""
 
 from pathlib import Path
 
-import owlrl
 import rdflib
-from owlrl.DatatypeHandling import AltXSDToPYTHON
-from rdflib import OWL, RDF, RDFS, XSD, Graph, URIRef
+from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
 from ontology.vocabulary import ABOX, TBOX
 
 DM = rdflib.Namespace(TBOX)
 MAP = rdflib.Namespace(ABOX)
-
-_ERROR = URIRef("http://www.daml.org/2002/03/agents/agent-ont#error")
-_ANNOTATIONS = (RDFS.label, RDFS.comment, DM.model, DM.fixed, OWL.versionInfo)
 
 
 def read(*paths: Path) -> Graph:
@@ -54,30 +49,3 @@ def forget_unused_classes(graph: Graph) -> None:
         subject = doomed.pop()
         doomed += [o for o in graph.objects(subject) if isinstance(o, rdflib.BNode)]
         graph.remove((subject, None, None))
-
-
-def close(graph: Graph) -> list[str]:
-    """Add all that follows from the graph under OWL 2 RL, and return what makes it inconsistent.
-
-    Annotations are dropped: nothing follows from them, and they double owlrl's time.
-    """
-    for annotation in _ANNOTATIONS:
-        graph.remove((None, annotation, None))
-    owlrl_float = AltXSDToPYTHON[XSD.float]
-    AltXSDToPYTHON[XSD.float] = float  # owlrl's own refuses 0.0
-    try:
-        owlrl.DeductiveClosure(owlrl.OWLRL_Semantics).expand(graph)
-    finally:
-        AltXSDToPYTHON[XSD.float] = owlrl_float
-    errors = [str(error) for error in graph.objects(None, _ERROR)]
-    return sorted([*errors, *_unequal_literals(graph)])
-
-
-def _unequal_literals(graph: Graph) -> list[str]:
-    """Rule dt-diff, which owlrl lacks: literals that came out the same and are not."""
-    return [
-        f"{a.n3()} is not {b.n3()}"
-        for a, b in graph.subject_objects(OWL.sameAs)
-        if isinstance(a, rdflib.Literal) and isinstance(b, rdflib.Literal)
-        if (a.value, a.language) != (b.value, b.language)
-    ]

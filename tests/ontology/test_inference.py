@@ -8,8 +8,9 @@ import pytest
 from rdflib import OWL, RDF, Graph, URIRef
 from rdflib.term import Node
 
+from nodes.kb_node.second_opinion import close
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from tests.ontology.graphs import DM, MAP, classes, close, forget_unused_classes, local, named, read
+from tests.ontology.graphs import DM, MAP, classes, forget_unused_classes, local, named, read
 
 PREFIXES = """
 @prefix : <urn:example:> .

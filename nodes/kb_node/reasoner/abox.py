@@ -7,7 +7,7 @@ values make, and which nodes are the same. The agenda is a queue of new edges an
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from itertools import combinations
+from itertools import combinations, count
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
@@ -60,6 +60,7 @@ class ABox:
         """The nodes whose kind changed since `settle`, with the kind they had."""
         self.rest_on_edge: dict[int, list[Reason]] = {}
         self.rest_on_node: dict[int, list[Reason]] = {}
+        self._order = count()
         self.spellings: dict[datatypes.Value, list[int]] = {}
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
@@ -73,11 +74,16 @@ class ABox:
         """Assert a triple; whether it is new. Conclusions come with `run`."""
         s, p, o = triple
         store, schema = self.store, self.schema
-        subject = store.node(s)
+        subject = store.numbers.get(s)
+        if subject is None:
+            subject = store.node(s)
         if p == TYPE:
             cls = schema.find_class(o)
             return self._give(subject, self._first_use(o, schema.cls) if cls is None else cls)
-        predicate, object_ = schema.find_property(p), store.node(o)
+        object_ = store.numbers.get(o)
+        if object_ is None:
+            object_ = store.node(o)
+        predicate = schema.find_property(p)
         if predicate is None:
             predicate = self._first_use(p, schema.property)
         edge = store.edge(subject, predicate, object_)
@@ -185,11 +191,12 @@ class ABox:
         kind = self.store.kind[node]
         if cls in kind.given:
             return False
-        given = self.kinds.of(kind.given | {cls})
-        self.set(node, self.kinds.widen(given, kind.mask))
-        if kind.mask != self.store.kind[node].mask:
-            self._widen(node, self.store.kind[node].mask)
-            self.dirty[node] = None
+        wider = self.kinds.give(kind, cls)
+        self.set(node, wider)
+        if wider.mask != kind.mask:
+            self._widen(node, wider.mask)
+            if wider.clash or wider.values or not self.store.is_bare(node):
+                self.dirty[node] = None
         return True
 
     def _widen(self, node: int, mask: int) -> None:
@@ -220,8 +227,7 @@ class ABox:
 
     def add_values(self, node: int) -> None:
         """Add the edges that a node's classes come with (cls-hv1)."""
-        for cls in self.store.kind[node].values:
-            predicate, term = self.schema.values[cls]
+        for predicate, term in self.store.kind[node].values:
             value = self.store.node(term)
             if self.find(node, (predicate, False), value) == NONE:
                 self.fresh.append(self.store.add(node, predicate, value, VALUE))
@@ -241,8 +247,9 @@ class ABox:
             return
         self._step(edge)
         rules = self.steps.rules(p)
-        if rules is not None:
-            self._apply(rules, edge, s, o)
+        if rules is None or (rules.of_values and s not in self.equals and store.out.is_alone(edge)):
+            return
+        self._apply(rules, edge, s, o)
 
     def _step(self, edge: int) -> None:
         store = self.store
@@ -300,7 +307,15 @@ class ABox:
 
     def _limit(self, edge: int, owner: int, value: int, limit: Limit) -> None:
         """At most one value: this one and any other are the same (prp-fp, prp-ifp, cls-maxc2, cls-maxqc*)."""
-        for other, end, found in self.related(owner, self.steps.group(limit.role)):
+        group = self.steps.group(limit.role)
+        if (
+            not group.into
+            and len(group.out) == 1
+            and owner not in self.equals
+            and self.store.out.is_alone(edge)
+        ):
+            return
+        for other, end, found in self.related(owner, group):
             if other == edge or self.is_same(value, found):
                 continue
             if limit.filler != ANY and not self.store.kind[found].mask >> limit.filler & 1:
@@ -363,7 +378,7 @@ class ABox:
         if self.is_literal(subject) or self.find(subject, (predicate, False), object_) != NONE:
             return
         edge = self.store.add(subject, predicate, object_, DERIVED)
-        self.reasons[edge] = self._remember(Reason(claims, edge=edge))
+        self.reasons[edge] = self._remember(Reason(next(self._order), claims, edge=edge))
         self.fresh.append(edge)
 
     def _meet(self, literal: int) -> None:
@@ -389,7 +404,7 @@ class ABox:
         newcomers = list(theirs.members)
         mine.members += newcomers
         mine.links += theirs.links
-        mine.links.append(self._remember(Reason(claims, link=(one, other))))
+        mine.links.append(self._remember(Reason(next(self._order), claims, link=(one, other))))
         for member in mine.members:
             self.equals[member] = mine
         self._widen(one, self.store.kind[one].mask | self.store.kind[other].mask)
@@ -398,16 +413,20 @@ class ABox:
             self.fresh += self.store.into.all(node)
 
     def _check_joinable(self, one: int, other: int, claims: tuple[Claim, ...]) -> None:
-        literals = self.is_literal(one) + self.is_literal(other)
         terms = self.store.terms
-        if literals == 2:
-            mine, theirs = self.value(one), self.value(other)
-            if mine is not None and theirs is not None:
-                if mine != theirs:
-                    raise Clash(*claims)
-                return
-        if literals or self.schema.speaks_of(terms[one]) or self.schema.speaks_of(terms[other]):
+        if self.is_literal(one) and self.is_literal(other):
+            values = {self.value(node) for node in (*self.members(one), *self.members(other))}
+            if len(values - {None}) > 1:
+                raise Clash(*claims, *self._different(one, other))
+        elif self.is_literal(one) or self.is_literal(other):
+            raise NotCompilable(f"an individual is a value: {terms[one]}, {terms[other]}")
+        elif self.schema.speaks_of(terms[one]) or self.schema.speaks_of(terms[other]):
             raise NotCompilable(f"{terms[one]} is the same as {terms[other]}")
+
+    def _different(self, one: int, other: int) -> Iterator[Claim]:
+        """The literals known to be the same as two, among which are two values."""
+        for node in (one, other):
+            yield from (Same(node, member) for member in self.members(node) if member != node)
 
     def value(self, node: int) -> datatypes.Value | None:
         """The value of a literal; None for an individual."""
@@ -430,7 +449,7 @@ class ABox:
 
     def forget(self, node: int) -> None:
         """Release a node that nothing is said of any more."""
-        value = self.value(node)
+        value = self.value(node) if self.spellings else None
         if self.store.release(node) and value in self.spellings:
             self.spellings[value] = [other for other in self.spellings[value] if other != node]
             if not self.spellings[value]:

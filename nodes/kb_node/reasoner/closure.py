@@ -219,10 +219,11 @@ class Closure:
         for key in indexed(fact):
             self._index.setdefault(key, {})[fact] = None
         for key in patterns(fact):
-            for rule in list(self._watchers.get(key, ())):
-                self._specialise(rule, fact)
             for found in list(self._triggers.get(key, ())):
                 self._take(found, 0, fact, [""] * found.variables, ())
+        for key in patterns(fact):
+            for rule in list(self._watchers.get(key, ())):
+                self._specialise(rule, fact)
 
     def _join(self, found: Plan, at: int, known: list[Term], premises: tuple[Triple, ...]) -> None:
         """Match the atoms of a rule from one on, and apply the rule to each match."""
@@ -253,18 +254,19 @@ class Closure:
         else:
             self._join(found, at + 1, known, (*premises, fact))
 
-    def _apply(self, found: Plan, known: list[Term], premises: tuple[Triple, ...]) -> None:
-        if found.head is None:
-            self._conclude(found.rule.name, (*premises, *found.rule.premises), None)
-            return
-        s, p, o = found.head
-        head: Triple = (
-            known[s] if isinstance(s, int) else s,
-            known[p] if isinstance(p, int) else p,
-            known[o] if isinstance(o, int) else o,
-        )
-        if head not in self.facts and not (head[1] == SAME_AS and head[0] == head[2]):
-            self._conclude(found.rule.name, (*premises, *found.rule.premises), head)
+    def _apply(self, found: Plan, known: list[Term], matched: tuple[Triple, ...]) -> None:
+        head: Triple | None = None
+        if found.head is not None:
+            s, p, o = found.head
+            head = (
+                known[s] if isinstance(s, int) else s,
+                known[p] if isinstance(p, int) else p,
+                known[o] if isinstance(o, int) else o,
+            )
+            if head in self.facts or (head[1] == SAME_AS and head[0] == head[2]):
+                return
+        premises = sorted(zip(found.places, matched, strict=True))
+        self._conclude(found.rule.name, (*(fact for _, fact in premises), *found.rule.premises), head)
 
     def _conclude(self, rule: str, premises: tuple[Triple, ...], head: Triple | None) -> None:
         reason = Reason(rule, tuple(dict.fromkeys(premises)))

@@ -4,53 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox import ABox
 from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.proof import prove
+from nodes.kb_node.reasoner.proof import Prover
 from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
-from nodes.kb_node.reasoner.rules import ANNOTATIONS
 from nodes.kb_node.reasoner.schema import NotCompilable, Schema
+from nodes.kb_node.reasoner.schema_support import SchemaSupport
+from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
-    NIL,
-    NOTHING,
     SAME_AS,
-    THING,
     TYPE,
-    iri,
-    is_literal,
-    is_reserved,
 )  # fmt: skip
 from nodes.kb_node.reasoner.view import View
 from schemas.explanations import Explanation, Term, Triple
-
-_PLAIN_PREDICATES = frozenset({SAME_AS, DIFFERENT_FROM, *ANNOTATIONS})
-_PLAIN_CLASSES = frozenset({THING, NOTHING, iri("owl:NamedIndividual")})
-
-
-def is_schema(triple: Triple) -> bool:
-    """Whether a triple belongs to the schema: it says something of classes, properties, lists or axioms."""
-    _, p, o = triple
-    if p == TYPE:
-        return is_reserved(o) and o not in _PLAIN_CLASSES and not datatypes.is_datatype(o)
-    return is_reserved(p) and p not in _PLAIN_PREDICATES
-
-
-def check_compilable(triple: Triple) -> None:
-    """Raise NotCompilable for a triple about the vocabulary itself, or that equates what is no individual."""
-    s, p, o = triple
-    spoken_of = (s,) if p == TYPE else (s, o)
-    if any(is_reserved(term) and not _may_be_spoken_of(term) for term in spoken_of) or is_literal(s):
-        raise NotCompilable(f"an axiom about the vocabulary: {triple}")
-    if p in (SAME_AS, DIFFERENT_FROM) and is_literal(o):
-        raise NotCompilable(f"an individual compared to a value: {triple}")
-
-
-def _may_be_spoken_of(term: Term) -> bool:
-    return term in ANNOTATIONS or term in (THING, NOTHING, NIL) or datatypes.is_datatype(term)
 
 
 class Refused(Exception):
@@ -71,22 +40,24 @@ class CompiledEngine:
 
     def __init__(self, triples: Iterable[Triple]) -> None:
         triples = list(triples)
+        self._prover = Prover()
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         for triple in self._schema_triples:
             check_compilable(triple)
         closure = Closure(self._schema_triples)
         if closure.clash is not None:
-            raise Refused(prove(closure.leaves(None), None))
+            raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
         self._abox = ABox(self._schema)
         self._view = View(self._abox)
+        self._told_by = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
         self.apply((), [triple for triple in triples if triple not in self._schema_triples])
 
     def __len__(self) -> int:
         return self._size
 
-    def apply(self, delete: Iterable[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
+    def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
         """Delete and insert triples that are not of the schema; the individuals that this touched.
 
         Raises:
@@ -95,18 +66,20 @@ class CompiledEngine:
         """
         abox = self._abox
         retraction = Retraction(abox)
-        removed = retraction.delete(delete)
+        removed = retraction.delete(delete) if delete else []
         added: list[Triple] = []
         try:
-            for types_first in (True, False):
-                for triple in insert:
-                    if (triple[1] == TYPE) == types_first:
+            types = [triple for triple in insert if triple[1] == TYPE]
+            edges = [triple for triple in insert if triple[1] != TYPE]
+            for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
+                for triple in batch:
+                    if triple[1] in (SAME_AS, DIFFERENT_FROM):
                         self._check(triple)
-                        if abox.insert(triple):
-                            added.append(triple)
+                    if abox.insert(triple):
+                        added.append(triple)
                 abox.run()
         except Clash as clash:
-            explanation = prove(Support(abox).of_clash(clash.claims), None)
+            explanation = self._prover.prove(Support(abox, self._told_by).of_clash(clash.claims), None)
             self._undo(retraction, removed, added)
             raise Refused(explanation) from None
         except NotCompilable:
@@ -120,10 +93,9 @@ class CompiledEngine:
         return frozenset(touched)
 
     def _check(self, triple: Triple) -> None:
-        if triple[1] in (SAME_AS, DIFFERENT_FROM):
-            check_compilable(triple)
-            if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
-                raise NotCompilable(f"classes or properties compared: {triple}")
+        check_compilable(triple)
+        if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
+            raise NotCompilable(f"classes or properties compared: {triple}")
 
     def _undo(self, retraction: Retraction, removed: list[Triple], added: list[Triple]) -> None:
         back = Retraction(self._abox)
@@ -176,7 +148,7 @@ class CompiledEngine:
         """Why a triple follows that holds."""
         closure = self._schema.closure
         if triple in closure.facts:
-            return prove(closure.leaves(triple), triple)
+            return self._prover.prove(closure.leaves(triple), triple)
         if next(self._view.asserted(*triple), None) or not self._view.holds(triple):
-            return prove([triple], triple)
-        return prove(Support(self._abox).of_triple(triple), triple)
+            return self._prover.prove([triple], triple)
+        return self._prover.prove(Support(self._abox, self._told_by).of_triple(triple), triple)

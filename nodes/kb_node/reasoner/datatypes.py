@@ -66,7 +66,7 @@ _BOOLEAN = {"true": True, "1": True, "false": False, "0": False}
 _ZONE = r"(Z|[+-](?:0\d|1[0-3]):[0-5]\d|[+-]14:00)?"
 _DATE_TIME = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d)T(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
 _DATE = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d){_ZONE}")
-_BASE64 = re.compile(r"(?:[A-Za-z0-9+/] ?){0,}(?:= ?){0,2}")
+_BASE64 = re.compile(r"(?:[\w+/]{4})*(?:[\w+/]{2}==|[\w+/]{3}=)?", re.ASCII)
 _IRI = re.compile(
     r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a colon up front
     r"(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*(?:\#(?:[^\s<>\"{}|\\^`%#]|%[0-9A-Fa-f]{2})*)?"
@@ -188,8 +188,10 @@ def _hex(text: str) -> Value | None:
 
 
 def _base64(text: str) -> Value | None:
-    text = text.strip(" \t\n\r")
-    return ("base64Binary", base64.b64decode(text, validate=False)) if _BASE64.fullmatch(text) else None
+    text = "".join(text.split())
+    if "_" in text or not _BASE64.fullmatch(text):
+        return None
+    return ("base64Binary", base64.b64decode(text))
 
 
 def _any_uri(text: str) -> Value | None:

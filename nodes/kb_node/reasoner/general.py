@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.proof import prove
+from nodes.kb_node.reasoner.proof import Prover
 from nodes.kb_node.reasoner.terms import TYPE, is_named
 from schemas.explanations import Explanation, Term, Triple
 
@@ -25,7 +25,7 @@ class GeneralEngine:
 
     def contradiction(self) -> Explanation | None:
         """Why the graph is inconsistent; None when it is not."""
-        return None if self._closure.clash is None else prove(self._asserted, None)
+        return None if self._closure.clash is None else Prover().prove(self._asserted, None)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
@@ -49,4 +49,4 @@ class GeneralEngine:
 
     def explain(self, triple: Triple) -> Explanation:
         """Why a triple follows that holds."""
-        return prove(self._closure.leaves(triple), triple)
+        return Prover().prove(self._closure.leaves(triple), triple)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from collections.abc import Iterable, Iterator
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.schema import Schema
+from nodes.kb_node.reasoner.terms import iri
 from schemas.explanations import Term
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
+"""How programs write a floating-point number."""
 
 
 class Kind:
@@ -28,8 +33,8 @@ class Kind:
         """For a literal the datatypes that do not hold its value; None for an individual."""
         self.clash: tuple[int, int] | None = None
         """Two classes that exclude each other; for a literal the second may be the first, a datatype."""
-        self.values: tuple[int, ...] = ()
-        """The classes that come with a value (cls-hv1)."""
+        self.values: tuple[tuple[int, Term], ...] = ()
+        """Properties and values that come with the classes (cls-hv1)."""
         self.names: frozenset[Term] = frozenset()
         """The named classes."""
         self.nodes = array("i")
@@ -42,10 +47,17 @@ class Kinds:
         self._schema = schema
         self._kinds: dict[tuple[frozenset[int], int, int | None], Kind] = {}
         self._closed: dict[int, int] = {}
+        self._given_more: dict[tuple[Kind, int], Kind] = {}
         self._nominals = frozenset(schema.nominals.values())
         self.nothing = self.of(frozenset())
         self.ill_typed = Kind(frozenset(), 0, 0)
+        self._uniform: dict[str, tuple[re.Pattern[str], Kind]] = {}
+        """By what follows a literal's text: the texts whose literals are all of one kind."""
         self.ill_typed.base, self.ill_typed.clash = self.ill_typed, (ILL_TYPED, ILL_TYPED)
+
+        if not schema.literals:
+            for datatype in (iri("xsd:float"), iri("xsd:double")):
+                self._uniform[f"^^{datatype}"] = (_NUMBER, self._literal(f'"1"^^{datatype}'))
 
     def __iter__(self) -> Iterator[Kind]:
         return iter(self._kinds.values())
@@ -61,6 +73,13 @@ class Kinds:
 
     def literal(self, term: Term) -> Kind:
         """The kind of a literal: the datatypes that hold its value, and its nominal."""
+        quote = term.rfind('"')
+        uniform = self._uniform.get(term[quote + 1 :])
+        if uniform is not None and uniform[0].fullmatch(term, 1, quote):
+            return uniform[1]
+        return self._literal(term)
+
+    def _literal(self, term: Term) -> Kind:
         if datatypes.is_ill_typed(term):
             return self.ill_typed
         value, known = datatypes.value(term), self._schema.datatypes.items()
@@ -76,6 +95,15 @@ class Kinds:
         if mask | kind.mask == kind.mask or kind is self.ill_typed:
             return kind
         return self._kind(kind.given, self.close(kind.mask | mask), kind.excluded)
+
+    def give(self, kind: Kind, cls: int) -> Kind:
+        """The kind with one given class more, and all that follows."""
+        found = self._given_more.get((kind, cls))
+        if found is None:
+            given = kind.given | {cls}
+            mask = self.close(kind.mask | 1 << cls)
+            found = self._given_more[kind, cls] = self._kind(given, mask, kind.excluded)
+        return found
 
     def without(self, kind: Kind, cls: int) -> Kind:
         """The kind with one given class less and all that followed still there."""
@@ -119,7 +147,7 @@ class Kinds:
         if wrong := kind.mask & (kind.excluded or 0):
             number = next(bits(wrong))
             kind.clash = (number, number)
-        kind.values = tuple(number for number in numbers if number in schema.values)
+        kind.values = tuple(dict.fromkeys(schema.values[n] for n in numbers if n in schema.values))
         kind.names = frozenset(
             schema.classes[number] for number in numbers if schema.classes[number][0] == "<"
         )

@@ -31,30 +31,31 @@ class Plan(NamedTuple):
 
     rule: Rule
     accesses: tuple[Access, ...]
+    places: tuple[int, ...]
+    """Where the match of each atom stands among the rule's premises."""
     head: tuple[Term | int, Term | int, Term | int] | None
     variables: int
 
 
 def plan(rule: Rule, data: tuple[Atom, ...], first: int | None = None) -> Plan:
     """Plan to match the data atoms of a rule, beginning with the given one."""
-    ordered = _join_order(data if first is None else (data[first], *data[:first], *data[first + 1 :]), first)
+    order = _join_order(data, first)
     numbers: dict[str, int] = {}
-    accesses = tuple(_access(atom, numbers) for atom in ordered)
+    accesses = tuple(_access(data[place], numbers) for place in order)
     head = rule.head and tuple(numbers.get(word, word) for word in rule.head)
-    return Plan(rule, accesses, head, len(numbers))  # type: ignore[arg-type]  # three words stay three
+    return Plan(rule, accesses, order, head, len(numbers))  # type: ignore[arg-type]  # three words stay three
 
 
-def _join_order(atoms: tuple[Atom, ...], first: int | None) -> tuple[Atom, ...]:
-    """The atom with the most known words next; the first one stays when a fact is given for it."""
-    left = list(atoms)
-    ordered = [left.pop(0)] if first is not None else []
-    known = {word for atom in ordered for word in atom}
+def _join_order(atoms: tuple[Atom, ...], first: int | None) -> tuple[int, ...]:
+    """The given atom first, then always the one with the most known words."""
+    left = [place for place in range(len(atoms)) if place != first]
+    order = [] if first is None else [first]
     while left:
-        best = max(left, key=lambda atom: sum(word[0] != "?" or word in known for word in atom))
+        known = {word for place in order for word in atoms[place]}
+        best = max(left, key=lambda place: sum(word[0] != "?" or word in known for word in atoms[place]))
         left.remove(best)
-        ordered.append(best)
-        known.update(best)
-    return tuple(ordered)
+        order.append(best)
+    return tuple(order)
 
 
 def _access(atom: Atom, numbers: dict[str, int]) -> Access:

@@ -34,11 +34,17 @@ Claim = Edge | Member | Same
 class Reason:
     """Claims that together made a derived edge, or a link between two nodes that are the same."""
 
-    __slots__ = ("alive", "claims", "edge", "link")
+    __slots__ = ("alive", "claims", "edge", "link", "order")
 
     def __init__(
-        self, claims: tuple[Claim, ...], edge: int | None = None, link: tuple[int, int] | None = None
+        self,
+        order: int,
+        claims: tuple[Claim, ...],
+        edge: int | None = None,
+        link: tuple[int, int] | None = None,
     ) -> None:
+        self.order = order
+        """Later conclusions have greater numbers, and no conclusion rests on a later one."""
         self.claims = claims
         self.edge = edge
         self.link = link

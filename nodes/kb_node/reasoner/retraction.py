@@ -41,7 +41,7 @@ class Retraction:
                 self._reset_all(node)
         for node in self.touched:
             equals = self._abox.equals.get(node)
-            if equals is not None and self._abox.is_literal(node) and self._is_bare(node):
+            if equals is not None and self._abox.is_literal(node) and self._store.is_bare(node):
                 self._dissolve(equals)
         for node in self._loosened:
             self._abox.fresh += self._store.out.all(node)
@@ -54,9 +54,6 @@ class Retraction:
         """Forget the nodes that nothing is said of any more."""
         for node in self.touched:
             self._abox.forget(node)
-
-    def _is_bare(self, node: int) -> bool:
-        return self._store.out.heads[node] == NONE and self._store.into.heads[node] == NONE
 
     # What goes
 
@@ -119,21 +116,21 @@ class Retraction:
     # What stays
 
     def _is_borne_out(self, node: int) -> bool:
-        """Whether assertions about a node and its neighbours make all of its kind."""
-        abox, store = self._abox, self._store
+        """Whether assertions about a node and its neighbours make all of its kind.
+
+        Nodes that are the same do not count: what made them the same may rest on this node's kind.
+        """
+        close, store = self._abox.kinds.close, self._store
         wanted = store.kind[node].mask
-        found = 0
-        members = abox.members(node)
-        for member in members:
-            found |= store.kind[member].base.mask
-        if abox.kinds.close(found) == wanted:
+        found = store.kind[node].base.mask
+        if found == wanted:
             return True
-        for member in members:
-            for edge in (*store.out.all(member), *store.into.all(member)):
-                found |= self._share(edge, member)
+        for side in (store.out, store.into):
+            for edge in side.all(node):
+                found |= self._share(edge, node)
                 if found == wanted:
                     return True
-        return abox.kinds.close(found) == wanted
+        return close(found) == wanted
 
     def _share(self, edge: int, node: int) -> int:
         """What an edge alone says of a node, if the edge is asserted or comes with an asserted class."""
@@ -147,9 +144,9 @@ class Retraction:
         return step.subject.mask if node == s else step.object.mask
 
     def _comes_with(self, edge: int) -> bool:
-        store, schema = self._store, self._abox.schema
+        store = self._store
         value = (store.predicate[edge], store.terms[store.object[edge]])
-        return any(schema.values[cls] == value for cls in store.kind[store.subject[edge]].base.values)
+        return value in store.kind[store.subject[edge]].base.values
 
     def _reset_all(self, node: int) -> None:
         equals = self._abox.equals.get(node)
@@ -181,13 +178,11 @@ class Retraction:
     def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
         """What a dropped edge implied may follow from others: by a chain, or with a class."""
         abox = self._abox
-        abox.add_values(subject)
-        abox.add_values(object_)
-        for role in abox.schema.roles(predicate):
-            x, z = (object_, subject) if role[1] else (subject, object_)
-            for chain in abox.schema.chains:
-                if chain.result == role[0]:
-                    self._look_for_middle(x, z, chain)
+        for node in (subject, object_):
+            if self._store.kind[node].values:
+                abox.add_values(node)
+        for backwards, chain in abox.steps.made_by(predicate):
+            self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
         """An individual between two that a chain goes through, sought from the end with fewer edges."""

@@ -69,9 +69,9 @@ cls-maxqc3   | ?r owl:maxQualifiedCardinality 1, ?r owl:onProperty ?p, ?r owl:on
 cls-maxqc4   | ?r owl:maxQualifiedCardinality 1, ?r owl:onProperty ?p, ?r owl:onClass owl:Thing | ?x ?p ?y, ?x a ?r, ?x ?p ?z | ?y owl:sameAs ?z
 cls-oo       | ?c owl:oneOf ?l, ?m in ?l                          |                                            | ?m a ?c
 
-cax-sco      |                                                    | ?c rdfs:subClassOf ?d, ?x a ?c             | ?x a ?d
-cax-eqc1     |                                                    | ?c owl:equivalentClass ?d, ?x a ?c         | ?x a ?d
-cax-eqc2     |                                                    | ?c owl:equivalentClass ?d, ?x a ?d         | ?x a ?c
+cax-sco      |                                                    | ?x a ?c, ?c rdfs:subClassOf ?d             | ?x a ?d
+cax-eqc1     |                                                    | ?x a ?c, ?c owl:equivalentClass ?d         | ?x a ?d
+cax-eqc2     |                                                    | ?x a ?d, ?c owl:equivalentClass ?d         | ?x a ?c
 cax-dw       | ?c owl:disjointWith ?d                             | ?x a ?c, ?x a ?d                           | false
 cax-adc      | ?a a owl:AllDisjointClasses, ?a owl:members ?l, ?c,?d of ?l | ?x a ?c, ?x a ?d                  | false
 

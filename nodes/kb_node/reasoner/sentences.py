@@ -4,10 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 from nodes.kb_node.reasoner.rules import AXIOMS
-from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, TYPE, iri, iris, is_literal, literal
+from nodes.kb_node.reasoner.terms import (
+    DIFFERENT_FROM,
+    FIRST,
+    NIL,
+    REST,
+    SAME_AS,
+    TYPE,
+    iri,
+    iris,
+    is_literal,
+    literal,
+)
 from schemas.explanations import Step, Term, Triple
 
 _STRUCTURE: Final = frozenset(
@@ -59,6 +71,9 @@ _KINDS: Final = {
 }
 
 
+_LIMITS: Final = ("prp-fp", "prp-ifp", "cls-maxc2", "cls-maxqc3", "cls-maxqc4")
+
+
 class _Speaker:
     """Names for terms; anonymous classes and lists are told by what the given triples say of them."""
 
@@ -72,7 +87,7 @@ class _Speaker:
             return f'"{literal(term).text}"'
         if term.startswith("_:"):
             return self._anonymous(term)
-        return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
+        return _local_name(term)
 
     def a(self, term: Term) -> str:
         name = self.name(term)
@@ -95,12 +110,14 @@ class _Speaker:
         """A triple as a clause; `subject` is the individual that is called "it"."""
         s, p, o = triple
         template = _KINDS.get(o) if p == TYPE else _PHRASES.get(p)
+        who = "it" if s == subject else self.name(s)
+        if p in (SAME_AS, DIFFERENT_FROM):
+            return self._fill(template or "", s, o).replace(self.name(s), who, 1)
         if template is not None:
             return self._fill(template, s, o)
-        who = "it" if s == subject else self.name(s)
         if p == TYPE:
             return f"{who} is {self.a(o)}"
-        return f"{who} {self.name(p)} {'itself' if s == o else 'it' if o == subject else self.name(o)}"
+        return f"{who} {self.name(p)} {'itself' if s == o else self.name(o)}"
 
     def _fill(self, template: str, s: Term, o: Term) -> str:
         members = self._get(s, "owl:members") or self._get(s, "owl:distinctMembers") or NIL
@@ -148,12 +165,17 @@ class _Speaker:
         return f"something with {prop}"
 
 
+@lru_cache(maxsize=4096)
+def _local_name(term: Term) -> str:
+    return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
+
+
 def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Step]) -> str:
     """Tell a proof: what is the case or cannot be, and the asserted facts that make it so."""
     speaker = _Speaker(support)
     if goal is not None and not steps:
         return f"{speaker.say(goal)} (asserted)."
-    subject, headline = _headline(goal, steps[-1], speaker)
+    subject, headline = _headline(goal, steps, speaker)
     clauses: list[str] = []
     for triple in support:
         if triple[1] in _STRUCTURE or (triple[0].startswith("_:") and _is_part(triple)):
@@ -166,7 +188,7 @@ def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Ste
 
 def _is_schema(triple: Triple) -> bool:
     _, p, o = triple
-    said = p in _PHRASES and p not in (iri("owl:sameAs"), iri("owl:differentFrom"))
+    said = p in _PHRASES and p not in (SAME_AS, DIFFERENT_FROM)
     return said or (p == TYPE and o in _KINDS) or triple in AXIOMS
 
 
@@ -182,10 +204,11 @@ def _negative(triple: Triple, speaker: _Speaker) -> str:
     return f"{source} is stated not to have {speaker.name(prop)} {speaker.name(target)}"
 
 
-def _headline(goal: Triple | None, last: Step, speaker: _Speaker) -> tuple[Term | None, str]:
+def _headline(goal: Triple | None, steps: Sequence[Step], speaker: _Speaker) -> tuple[Term | None, str]:
     """Who it is about, and the claim."""
     if goal is not None:
         return goal[0], f"{speaker.say(goal)} because"
+    last = steps[-1]
     facts = [triple for triple in last.premises if not _is_schema(triple) and triple[1] not in _STRUCTURE]
     s, p, o = facts[0] if facts else last.premises[0]
     who, what = speaker.name(s), speaker.name(p)
@@ -196,10 +219,12 @@ def _headline(goal: Triple | None, last: Step, speaker: _Speaker) -> tuple[Term 
     if last.rule.startswith("eq-diff"):
         if s == o:
             return s, f"{who} cannot be different from itself"
+        if told := _one_too_many({(s, o), (o, s)}, steps, speaker):
+            return told
         return s, f"{who} and {speaker.name(o)} cannot be both the same and different"
     if last.rule in ("cls-nothing2", "cax-dw", "cax-adc", "cls-com"):
         return s, f"{who} cannot be {speaker.a(o)}"
-    if last.rule == "prp-irp":
+    if last.rule == "prp-irp" or s == o:
         return s, f"{who} cannot have {what} to itself"
     if last.rule == "prp-asyp":
         return s, f"{who} and {speaker.name(o)} cannot have {what} in both directions"
@@ -207,6 +232,29 @@ def _headline(goal: Triple | None, last: Step, speaker: _Speaker) -> tuple[Term 
         other = speaker.name(facts[-1][1])
         return s, f"{who} cannot have both {what} and {other} to {speaker.name(o)}"
     return s, f"{who} cannot have {what} {speaker.name(o)}"
+
+
+def _one_too_many(
+    pairs: set[tuple[Term, Term]], steps: Sequence[Step], speaker: _Speaker
+) -> tuple[Term, str] | None:
+    """The claim when two values that differ had to be the same: who has them, by which property."""
+    for step in steps:
+        fact = step.conclusion
+        if fact is None or (fact[0], fact[2]) not in pairs or step.rule not in _LIMITS:
+            continue
+        first, second = [triple for triple in step.premises if _is_value(triple, fact, step.rule)][:2]
+        what = speaker.name(first[1])
+        if step.rule == "prp-ifp":
+            names = " and ".join(map(speaker.name, (first[0], second[0])))
+            return first[2], f"{speaker.name(first[2])} cannot be the {what} of both {names}"
+        names = " and ".join(map(speaker.name, (first[2], second[2])))
+        return first[0], f"{speaker.name(first[0])} cannot have both {names} as {what}"
+    return None
+
+
+def _is_value(triple: Triple, fact: Triple, rule: str) -> bool:
+    """Whether a premise relates the owner to one of the two values."""
+    return triple[1] != TYPE and triple[0 if rule == "prp-ifp" else 2] in (fact[0], fact[2])
 
 
 def _ill_typed(fact: Triple, speaker: _Speaker) -> str:

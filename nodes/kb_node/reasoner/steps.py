@@ -40,10 +40,8 @@ class EdgeRules:
     by_value: bool
     """Whether it matters that two literals are spellings of one value."""
 
-    @property
-    def idle(self) -> bool:
-        """Whether there is nothing to check."""
-        return not (self.irreflexive or self.limits or self.exclusive or self.heads or self.tails)
+    of_values: bool
+    """Whether all there is to check is that the subject has no other edge with the predicate."""
 
 
 class Steps:
@@ -56,6 +54,7 @@ class Steps:
         self._schema = schema
         self._kinds = kinds
         self._steps: dict[tuple[int, Kind, Kind], Step] = {}
+        self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
@@ -70,9 +69,20 @@ class Steps:
     def rules(self, prop: int) -> EdgeRules | None:
         """The edge rules of a property; None when it has none."""
         if prop not in self._rules:
-            rules = self._edge_rules(prop)
-            self._rules[prop] = None if rules.idle else rules
+            self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
+
+    def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
+        """The chains that may make what an edge of a property implies, and whether that is backwards."""
+        found = self._made_by.get(prop)
+        if found is None:
+            found = self._made_by[prop] = tuple(
+                (backwards, chain)
+                for q, backwards in self._schema.roles(prop)
+                for chain in self._schema.chains
+                if chain.result == q
+            )
+        return found
 
     def group(self, role: Role) -> Group:
         """Along which edges a role leads."""
@@ -93,7 +103,10 @@ class Steps:
             limits += [
                 (not backwards, limit)
                 for limit in axioms.limits
-                if limit.owner != ANY and _in(limit.owner, owner) and _in(limit.filler, filler)
+                if limit.owner != ANY
+                and Limit(limit.role, ANY, ANY) not in axioms.limits
+                and _in(limit.owner, owner)
+                and _in(limit.filler, filler)
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
         special = bool(clash or limits or keys or object_.clash)
@@ -118,11 +131,14 @@ class Steps:
                 to_subject, to_object = to_subject | to_x, to_object | to_y
         return self._kinds.widen(subject, to_subject), self._kinds.widen(object_, to_object)
 
-    def _edge_rules(self, prop: int) -> EdgeRules:
+    def _edge_rules(self, prop: int) -> EdgeRules | None:
         schema = self._schema
         roles = schema.roles(prop) if prop != SAME else {}
         irreflexive = next((role for role in roles if schema.axioms[role[0]].irreflexive), None)
-        limits, exclusive, heads, tails = [], [], [], []
+        limits: list[tuple[bool, Limit]] = []
+        exclusive: list[tuple[Role, Role]] = []
+        heads: list[tuple[bool, Chain]] = []
+        tails: list[tuple[bool, Chain]] = []
         by_value = False
         for role in roles:
             q, backwards = role
@@ -136,7 +152,14 @@ class Steps:
             tails += [(not backwards, chain) for chain in schema.chains if chain.second == q]
             by_value |= bool(axioms.keys or axioms.exclusive)
         by_value |= bool(heads or tails)
-        return EdgeRules(irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value)
+        others = irreflexive or exclusive or heads or tails
+        if not (limits or others):
+            return None
+        alone = Group((prop,), ())
+        of_values = not others and all(at and self.group(limit.role) == alone for at, limit in limits)
+        return EdgeRules(
+            irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value, of_values
+        )
 
 
 def _in(cls: int, kind: Kind) -> bool:

@@ -16,6 +16,8 @@ from nodes.kb_node.reasoner.terms import is_literal
 from schemas.explanations import Term
 
 NONE: Final = -1
+BLOCK: Final = 256
+"""Edges that room is made for at once."""
 ASSERTED, VALUE, DERIVED = 0, 1, 2
 """Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
 
@@ -75,6 +77,10 @@ class Adjacency:
             first = self.group[first]
         self.group[first] = replacement
 
+    def is_alone(self, edge: int) -> bool:
+        """Whether a node has no other edge with the edge's predicate."""
+        return self.before[edge] == NONE and self.after[edge] == NONE
+
     def of(self, node: int, predicate: int) -> Iterator[int]:
         """The edges of a node with a predicate."""
         edge = self.heads[node]
@@ -108,7 +114,7 @@ class Store:
         self.source = bytearray()
         self.out = Adjacency(self.predicate)
         self.into = Adjacency(self.predicate)
-        self._numbers: dict[Term, int] = {}
+        self.numbers: dict[Term, int] = {}
         self._places = array("i")
         self._free_nodes: list[int] = []
         self._free_edges: list[int] = []
@@ -117,11 +123,11 @@ class Store:
 
     def find(self, term: Term) -> int | None:
         """The node of a term, or None."""
-        return self._numbers.get(term)
+        return self.numbers.get(term)
 
     def node(self, term: Term) -> int:
         """The node of a term; a new one if it is not there."""
-        found = self._numbers.get(term)
+        found = self.numbers.get(term)
         if found is not None:
             return found
         kind = self._kinds.literal(term) if is_literal(term) else self._kinds.individual(term)
@@ -135,19 +141,23 @@ class Store:
             self._places.append(NONE)
             self.out.heads.append(NONE)
             self.into.heads.append(NONE)
-        self._numbers[term] = node
+        self.numbers[term] = node
         if kind.mask and kind.excluded is None:
             self.file(node, kind, kind)
         return node
+
+    def is_bare(self, node: int) -> bool:
+        """Whether a node has no edges."""
+        return self.out.heads[node] == NONE and self.into.heads[node] == NONE
 
     def release(self, node: int) -> bool:
         """Forget a node that nothing is said of any more; whether it was forgotten."""
         kind = self.kind[node]
         told = kind.excluded is None and kind.given
-        if told or self.out.heads[node] != NONE or self.into.heads[node] != NONE:
+        if told or not self.is_bare(node):
             return False
         self.file(node, kind, None)
-        del self._numbers[self.terms[node]]
+        del self.numbers[self.terms[node]]
         self.terms[node] = ""
         self._free_nodes.append(node)
         return True
@@ -170,23 +180,25 @@ class Store:
 
     def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
         """Store a new edge."""
-        if self._free_edges:
-            edge = self._free_edges.pop()
-            self.subject[edge], self.predicate[edge], self.object[edge] = subject, predicate, object_
-            self.source[edge] = source
-        else:
-            edge = len(self.subject)
-            self.subject.append(subject)
-            self.predicate.append(predicate)
-            self.object.append(object_)
-            self.source.append(source)
-            for side in (self.out, self.into):
-                side.after.append(NONE)
-                side.before.append(NONE)
-                side.group.append(NONE)
+        if not self._free_edges:
+            self._make_room()
+        edge = self._free_edges.pop()
+        self.subject[edge], self.predicate[edge], self.object[edge] = subject, predicate, object_
+        self.source[edge] = source
         self.out.link(subject, edge, predicate)
         self.into.link(object_, edge, predicate)
         return edge
+
+    def _make_room(self) -> None:
+        edges = range(len(self.subject), len(self.subject) + BLOCK)
+        room = array("i", [NONE]) * BLOCK
+        for column in (self.subject, self.predicate, self.object):
+            column.extend(room)
+        for side in (self.out, self.into):
+            for column in (side.after, side.before, side.group):
+                column.extend(room)
+        self.source.extend(bytes(BLOCK))
+        self._free_edges.extend(reversed(edges))
 
     def remove(self, edge: int) -> None:
         """Forget an edge."""
@@ -197,6 +209,8 @@ class Store:
 
     def edge(self, subject: int, predicate: int, object_: int) -> int:
         """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""
+        if self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+            return NONE
         leaving, entering = self.out.of(subject, predicate), self.into.of(object_, predicate)
         for one, other in zip(leaving, entering, strict=False):
             if self.object[one] == object_:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import Final, NamedTuple
 
 from schemas.explanations import Term
@@ -18,6 +19,7 @@ _ESCAPE = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|U([0-9A-Fa-f]{8})|(.))", re.DOTALL
 _CONTROL = {"t": "\t", "b": "\b", "n": "\n", "r": "\r", "f": "\f"}
 
 
+@cache
 def iri(name: str) -> Term:
     """The term for a prefixed name: `iri("owl:Thing")`; `a` is rdf:type."""
     if name == "a":

@@ -174,7 +174,10 @@ class View:
                             yield from ((q, other) for other in others)
 
     def _equals(self, node: int) -> list[int]:
-        return [node] if self._abox.is_literal(node) else self._abox.members(node)
+        members, value = self._abox.members(node), self._abox.value(node)
+        return [
+            other for other in members if other == node or value is None or value != self._abox.value(other)
+        ]
 
     # Questions
 

@@ -1,9 +1,12 @@
 """Small graphs for the tests, written in Turtle."""
 
+from pathlib import Path
+
 import pyoxigraph
 
 PREFIXES = """
 @prefix : <http://example.org/> .
+@prefix dm: <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
 @prefix owl: <http://www.w3.org/2002/07/owl#> .
 @prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
@@ -60,12 +63,12 @@ def _names(text):
 
 
 CLASSES = _names(
-    "A B C D E F U I N D2 X Y Z W O G Some SomeThing"
-    " Only Has K2 HasData Max0 Max1 MaxQ0 MaxQ1 Exactly1 K DataSome"
+    "A B C D E F U I N D2 X Y Z W O G Some SomeThing Only Has K2 HasData Max0 Max1 MaxQ0 MaxQ1 "
+    "Exactly1 K DataSome"
 )
 OBJECT_PROPERTIES = _names(
-    "p q inv sym tra subtra fun subfun ifp irr asy eq1 eq2 dis1 dis2 adp1 adp2 chain"
-    " long m0 m1 key1 subkey free"
+    "p q inv sym tra subtra fun subfun ifp irr asy eq1 eq2 dis1 dis2 adp1 adp2 chain long m0 m1 "
+    "key1 subkey free"
 )
 DATA_PROPERTIES = _names("data fundata key2 int ifd")
 LITERALS = (
@@ -73,6 +76,13 @@ LITERALS = (
     '"2.0"^^xsd:decimal', '"300"^^xsd:integer', '"-1"^^xsd:integer', '"a"', '"a"@en', '"abc"^^xsd:float',
     '"x"^^:unknown',
 )  # fmt: skip
+
+
+def household():
+    """The household TBox."""
+    path = Path(__file__).parents[3] / "ontology" / "household.ttl"
+    quads = pyoxigraph.parse(path=str(path), format=pyoxigraph.RdfFormat.TURTLE)
+    return [(str(quad.subject), str(quad.predicate), str(quad.object)) for quad in quads]
 
 
 def triples(turtle):

@@ -1,0 +1,87 @@
+import pytest
+
+from nodes.kb_node.reasoner.datatypes import contains, datatypes, is_ill_typed, value
+from nodes.kb_node.reasoner.terms import iri, literal
+
+
+def lit(text, datatype):
+    return f'"{text}"^^{iri(datatype)}'
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (lit("1.0", "xsd:float"), lit("1.00", "xsd:float")),
+        (lit("1e2", "xsd:double"), lit("100", "xsd:double")),
+        (lit("16777216", "xsd:float"), lit("16777217", "xsd:float")),
+        (lit("3", "xsd:byte"), lit("3.0", "xsd:decimal")),
+        (lit("true", "xsd:boolean"), lit("1", "xsd:boolean")),
+        (lit("a", "xsd:token"), '"a"'),
+        (lit("0a", "xsd:hexBinary"), lit("0A", "xsd:hexBinary")),
+        ('"chair"@en', '"chair"@EN'),
+        (lit("chair@en", "rdf:PlainLiteral"), '"chair"@en'),
+        (lit("2026-01-01T24:00:00Z", "xsd:dateTime"), lit("2026-01-02T01:00:00+01:00", "xsd:dateTime")),
+    ],
+)
+def test_spellings_of_one_value(one, other):
+    assert value(one) == value(other) is not None
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (lit("1.0", "xsd:float"), lit("1.0", "xsd:double")),
+        (lit("0.0", "xsd:float"), lit("-0.0", "xsd:float")),
+        (lit("1", "xsd:integer"), lit("1", "xsd:float")),
+        ('"chair"@en', '"chair"@de'),
+        ('"chair"@en', '"chair"'),
+        (lit("2026-01-01T00:00:00Z", "xsd:dateTime"), lit("2026-01-01T00:00:00", "xsd:dateTime")),
+    ],
+)
+def test_different_values(one, other):
+    assert value(one) != value(other)
+
+
+@pytest.mark.parametrize(
+    "term",
+    [
+        lit("abc", "xsd:float"),
+        lit("inf", "xsd:double"),
+        lit("1.5", "xsd:integer"),
+        lit("128", "xsd:byte"),
+        lit("-1", "xsd:nonNegativeInteger"),
+        lit("yes", "xsd:boolean"),
+        lit("0", "xsd:hexBinary"),
+        lit("=", "xsd:base64Binary"),
+        lit("a b", "xsd:NMTOKEN"),
+        lit(":a", "xsd:anyURI"),
+        lit("2026-02-30", "xsd:date"),
+        lit("2026-01-01T00:00:00", "xsd:dateTimeStamp"),
+        lit("<a>", "rdf:XMLLiteral"),
+        lit("untagged", "rdf:PlainLiteral"),
+    ],
+)
+def test_ill_typed(term):
+    assert is_ill_typed(term)
+    assert value(term) is None
+    assert datatypes(term) == []
+
+
+def test_a_literal_of_an_unknown_datatype_is_not_ill_typed():
+    assert not is_ill_typed('"x"^^<http://example.org/d>')
+
+
+def test_a_value_is_in_every_datatype_that_holds_it():
+    assert contains(iri("xsd:byte"), lit("42.0", "xsd:decimal"))
+    assert not contains(iri("xsd:byte"), lit("300", "xsd:integer"))
+    assert not contains(iri("xsd:float"), lit("1", "xsd:integer"))
+    assert contains(iri("rdfs:Literal"), '"anything"')
+
+
+def test_escapes_are_read():
+    assert literal(r'"a\"b\u00e9\n"').text == 'a"b\u00e9\n'
+
+
+def test_no_literal():
+    with pytest.raises(ValueError, match="not a literal"):
+        literal("<http://example.org/a>")
