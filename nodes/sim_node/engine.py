@@ -114,7 +114,7 @@ class Engine:
         entities = [(self.records[name], model, now[name]) for name, model in self._made_from.items()]
         build.add_bodies(spec, entities)
         for name, record in self.records.items():
-            if record.static and not record.entity:
+            if record.static and name not in self._made_from:
                 build.set_standing(spec, record, now[name])
         build.set_memory(spec, len(self.records))
         model = spec.compile()
