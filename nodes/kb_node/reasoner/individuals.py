@@ -153,10 +153,10 @@ class Individuals:
                 self.store.file(node, before, self.store.kind[node])
         self.moved.clear()
 
-    def forget(self, node: int) -> None:
-        """Release a node that nothing is said of any more."""
-        value = self.value(node) if self.spellings else None
-        if self.store.release(node) and value in self.spellings:
-            self.spellings[value] = [other for other in self.spellings[value] if other != node]
+    def forget_spelling(self, literal: int) -> None:
+        """A literal that nothing has any more is no spelling of its value."""
+        value = self.value(literal)
+        if value in self.spellings:
+            self.spellings[value] = [other for other in self.spellings[value] if other != literal]
             if not self.spellings[value]:
                 del self.spellings[value]
