@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.proof import Prover
 from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
-from nodes.kb_node.reasoner.schema import NotCompilable, Schema
+from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
