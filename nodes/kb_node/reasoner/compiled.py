@@ -150,6 +150,9 @@ class CompiledEngine:
         closure = self._schema.closure
         if triple in closure.facts:
             return self._prover.prove(closure.leaves(triple), triple)
-        if next(self._view.asserted(*triple), None) or not self._view.holds(triple):
+        if next(self._view.asserted(*triple), None):
             return self._prover.prove([triple], triple)
+        s, p, o = triple
+        if not self._view.holds(triple) or (p == SAME_AS and s == o):
+            return self._prover.prove((), triple)  # an axiomatic triple, or eq-ref
         return self._prover.prove(Support(self._abox, self._told_by).of_triple(triple), triple)
