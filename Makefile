@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format schema bench clean
+.PHONY: help setup demo test test-long lint format schema models bench clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -44,7 +44,10 @@ format: setup  ## Format the code
 	$(BIN)/ruff check --fix .
 
 schema: setup  ## Write the JSON Schema of scene files anew
-	$(BIN)/python -m nodes.coordinator.files.scene_file > schemas/scene.schema.json
+	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json
+
+models: setup  ## Draw the contact sheet of all models
+	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
 
 clean:  ## Remove what was installed and built
 	rm -rf .venv .tools .pytest_cache .hypothesis .mypy_cache .ruff_cache demo/data

@@ -6,14 +6,14 @@ Types are entailment, non-entailment, consistency and inconsistency.
 
 from __future__ import annotations
 
+import argparse
 import json
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 import pyoxigraph
-import typer
 from msgspec import Struct
 from msgspec.json import decode
 
@@ -95,7 +95,7 @@ def _is_open(term: Term, chosen: dict[Term, Term]) -> bool:
     return term.startswith("_:") and term not in chosen
 
 
-def main(folder: Path, json_file: Annotated[Path | None, typer.Option("--json")] = None) -> None:
+def main(folder: Path, json_file: Path | None = None) -> None:
     """Run all cases of a folder, print those that fail, and write the outcomes as JSON."""
     started = time.perf_counter()
     outcomes = [run(folder, case) for case in cases(folder)]
@@ -110,4 +110,8 @@ def main(folder: Path, json_file: Annotated[Path | None, typer.Option("--json")]
 
 
 if __name__ == "__main__":
-    typer.run(main)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    main(arguments.folder, arguments.json)

@@ -12,8 +12,6 @@ from ontology import vocabulary as v
 from schemas.entities import IDENTITY, Pose, Size
 from schemas.explanations import Term, Triple
 
-POSE_PROPERTIES = frozenset((v.HAS_POSITION, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
-SHAPE_PROPERTIES = frozenset((v.RDF_TYPE, v.HAS_SIZE, *v.SIZE_XYZ))
 STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
 """The edges from an entity to the individuals of its star."""
 

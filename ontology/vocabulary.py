@@ -18,7 +18,7 @@ RDFS: Final = "http://www.w3.org/2000/01/rdf-schema#"
 OWL: Final = "http://www.w3.org/2002/07/owl#"
 XSD: Final = "http://www.w3.org/2001/XMLSchema#"
 
-PREFIXES: Final = {"dm": TBOX, "": ABOX, "owl": OWL}
+PREFIXES: Final = {"dm": TBOX, "": ABOX, "owl": OWL, "xsd": XSD}
 """The prefixes of what is written."""
 
 TBOX_ONTOLOGY: Final[Term] = f"<{TBOX.removesuffix('#')}>"

@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
 from schemas.commits import Commit, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity, Source
+from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.explanations import Explanation
 
 
@@ -25,7 +25,7 @@ class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Add an ABox in any RDF syntax in one commit; with `replace` instead of the present one."""
 
-    id: str
+    id: CommandId
     source: Source
     agent: str = ""
     reason: str = ""

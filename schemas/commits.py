@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from schemas.entities import Entity, Probability, Source
+from schemas.entities import CommandId, Entity, Probability, Source
 from schemas.explanations import Term, Triple
 
 
@@ -16,7 +16,7 @@ class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     a second time changes nothing and is answered with the first commit.
     """
 
-    id: str
+    id: CommandId
     source: Source
     agent: str = ""
     reason: str = ""

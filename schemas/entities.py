@@ -14,6 +14,7 @@ NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_.-]{0,127}$(?!\n)"
 REACH_M = 10_000.0
 """Coordinates beyond this are taken for a mistake."""
 
+CommandId = Annotated[str, Meta(min_length=1, max_length=200)]
 Name = Annotated[str, Meta(pattern=NAME_PATTERN)]
 Metres = Annotated[float, Meta(ge=-REACH_M, le=REACH_M)]
 Length = Annotated[float, Meta(gt=0.0, le=REACH_M)]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from nodes.kb_node import rdf_files
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -11,7 +12,7 @@ from nodes.kb_node.second_opinion import owlrl_faults
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Checked, Document, Explain, Export, Inferred
+from schemas.commands import Checked, Document, Explain, Inferred, RdfFormat
 from schemas.entities import Entity
 from schemas.explanations import Explanation, Term, Triple
 
@@ -23,12 +24,19 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
     """What follows that was not said, without what is true of everything or of nameless classes."""
-    triples = tuple(
-        (s, p, o)
-        for s, p, o in semantic_map.inferred(name)
-        if o != v.OWL_THING and p != v.OWL_SAME_AS and not (p == v.RDF_TYPE and o.startswith("_:"))
-    )
+    triples = tuple(_worth_saying(semantic_map.inferred(name)))
     return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
+
+
+def _worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
+    return (
+        (s, p, o)
+        for s, p, o in triples
+        if not s.startswith('"')
+        and o != v.OWL_THING
+        and (p, s) != (v.OWL_SAME_AS, o)
+        and not (p == v.RDF_TYPE and o.startswith("_:"))
+    )
 
 
 def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
@@ -42,16 +50,35 @@ def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
     raise errors.Refused(f"it does not hold that {question.name} {question.predicate} {question.value}")
 
 
-def export(semantic_map: SemanticMap, question: Export) -> Document:
-    """The ABox as a document, with `inferred` also what follows from it."""
-    triples = set(semantic_map.abox())
-    if question.inferred:
-        triples |= {t for t in semantic_map.reasoner.inferred(None, None, None) if not t[0].startswith('"')}
+class Picture(NamedTuple):
+    """The map at one moment, for work beside it: what is asserted, and what of it to write."""
+
+    asserted: list[Triple]
+    written: list[Triple]
+    seq: int
+
+
+def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
+    """The map as it is now, to be written: the ABox and, if `inferred`, what follows about those in it."""
+    abox = semantic_map.abox()
+    following: list[Triple] = []
+    if inferred:
+        individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
+        for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
+            following += _worth_saying(semantic_map.reasoner.inferred(individual, None, None))
+    return Picture([*semantic_map.tbox, *abox], abox + following, semantic_map.seq)
+
+
+def export(picture: Picture, syntax: RdfFormat) -> Document:
+    """The map as a document. Raises Inconsistent, or Refused for a text that the syntax cannot hold."""
+    checked = check(picture.asserted, "semmap")
+    if not checked.consistent:
+        raise errors.Inconsistent(checked.text, explanation=checked.explanation)
     return Document(
-        content=rdf_files.serialise(triples, question.format),
-        media_type=rdf_files.MEDIA_TYPES[question.format],
-        triples=len(triples),
-        seq=semantic_map.seq,
+        content=rdf_files.serialise(picture.written, syntax),
+        media_type=rdf_files.MEDIA_TYPES[syntax],
+        triples=len(picture.written),
+        seq=picture.seq,
     )
 
 

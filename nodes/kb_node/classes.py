@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import cached_property
 
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
+from schemas import errors
 from schemas.entities import ClassInfo
 from schemas.explanations import Term
 
+_CHUNK = re.compile(r"[^/*$?#\s]+")
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
 
 
@@ -17,6 +20,7 @@ class ClassTable:
     """The named classes of a TBox: which are of things in space, which are places, what they look like."""
 
     def __init__(self, reasoner: Reasoner) -> None:
+        """Raises BadFile when the classes cannot be told apart by their local names, in commands and keys."""
         self._reasoner = reasoner
         self.names: dict[Term, str] = {
             c: v.local_name(c)
@@ -25,7 +29,7 @@ class ClassTable:
         }
         self.spatial: frozenset[Term] = frozenset().union(*map(self._named_below, self._spatial_roots()))
         self.places: frozenset[Term] = self._named_below(v.LOCATION)
-        self.iris = {name: c for c, name in self.names.items()}
+        self.iris = _by_name(self.names)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
@@ -89,3 +93,13 @@ class ClassTable:
             seen.update(level)
             level = [p for a in level for p in self._parents.get(a, ()) if p not in seen]
         return ""
+
+
+def _by_name(names: dict[Term, str]) -> dict[str, Term]:
+    iris: dict[str, Term] = {}
+    for c, name in names.items():
+        if not _CHUNK.fullmatch(name):
+            raise errors.BadFile(f"the class {c} of the TBox needs an IRI that ends in a name")
+        if iris.setdefault(name, c) != c:
+            raise errors.BadFile(f"the TBox has two classes named {name}, {iris[name]} and {c}: rename one")
+    return iris

@@ -4,90 +4,125 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+
+from msgspec import structs
 
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Marks
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
 from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance
-from schemas.explanations import Term
+from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
+_IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 
 
-def read_entity(
-    reasoner: Reasoner, classes: ClassTable, iri: Term, marks: Marks, commits: Mapping[int, Provenance]
-) -> Entity:
-    """The Entity that the triples about `iri` describe.
+def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: Provenance) -> Entity | None:
+    """The Entity that the triples about `iri` describe, all of it by `provenance`; None if it is no entity.
 
-    Raises BadRequest when a number in its star is none, or is not finite, or is out of all bounds.
+    Raises BadRequest for an entity that cannot be named, or whose star makes no sense: a number that is none,
+    is not finite or is out of all bounds, a size that is not positive.
     """
-    name = v.local_name(iri)
     types = classes.special_first(reasoner.types(iri))
-    asserted = {o for _, _, o in reasoner.asserted(iri, v.RDF_TYPE, None)}
     spatial = [t for t in types if t in classes.spatial]
+    if not spatial:
+        return None
+    asserted = {o for _, _, o in reasoner.asserted(iri, v.RDF_TYPE, None)}
     said = [t for t in spatial if t in asserted] or spatial
-    preferred = sorted(_references(reasoner, iri, v.HAS_PREFERRED_REFERENCE))
+    _require_name(iri, classes.names[said[0]])
+    preferred = _references(reasoner, iri, v.HAS_PREFERRED_REFERENCE)
     return Entity(
-        name=name,
+        name=v.local_name(iri),
         class_=classes.names[said[0]],
         iri=v.bare(iri),
         types=tuple(classes.names[t] for t in types),
         pose=_pose(reasoner, iri),
         size_m=_size(reasoner, iri),
-        preferred_reference=preferred[0] if preferred else None,
+        preferred_reference=min(preferred, default=None),
         alternative_references=tuple(_references(reasoner, iri, v.HAS_ALTERNATIVE_REFERENCE)),
         place=any(t in classes.places for t in types),
         fixed=any(t in classes.fixed for t in said),
         model=classes.models[said[0]],
-        provenance=commits[marks.any],
-        pose_provenance=commits[marks.pose],
-        shape_provenance=commits[marks.shape],
+        provenance=provenance,
+        pose_provenance=provenance,
+        shape_provenance=provenance,
     )
 
 
-def is_valid_name(iri: Term) -> bool:
-    """Can `iri` be an entity's? It must be an IRI whose local part is a valid name."""
-    return iri.startswith("<") and _NAME.match(v.local_name(iri)) is not None
+def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
+    """`entity` with the provenance of what is still as in `known`; `concerned`: something was said of it."""
+    same_shape = (entity.class_, entity.size_m, entity.model, entity.fixed) == (
+        known.class_,
+        known.size_m,
+        known.model,
+        known.fixed,
+    )
+    return structs.replace(
+        entity,
+        provenance=entity.provenance if concerned else known.provenance,
+        pose_provenance=known.pose_provenance if entity.pose == known.pose else entity.pose_provenance,
+        shape_provenance=known.shape_provenance if same_shape else entity.shape_provenance,
+    )
 
 
-def owners(reasoner: Reasoner, subject: Term) -> Iterator[Term]:
+def _require_name(iri: Term, class_name: str) -> None:
+    if not iri.startswith("<"):
+        raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
+    if not _IRI.match(iri):
+        raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
+    if not _NAME.match(v.local_name(iri)):
+        raise errors.BadRequest(
+            f"the {class_name} {iri} needs an IRI that ends in a name of letters, digits, '_', '.' and '-',"
+            " not beginning with a digit"
+        )
+
+
+def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
     """The individuals to whose star a triple about `subject` may belong: itself, and who points to it."""
-    yield subject
-    for predicate in stars.STAR_PROPERTIES:
-        for s, _, _ in reasoner.asserted(None, predicate, subject):
-            yield s
+    return {subject} | _users(reasoner, subject)
 
 
-def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: frozenset[Term]) -> Star:
+def read_star(
+    reasoner: Reasoner, iri: Term, seq: int, leaving: frozenset[Term], tbox: frozenset[Triple]
+) -> Star:
     """The triples about an entity: its own, and what others say of it.
 
-    What is used only by entities of `leaving` (among them this one) counts as its own.
+    What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox
+    says does not. Raises Refused for an entity that the TBox itself has.
     """
     own = list(reasoner.asserted(iri, None, None))
-    edges = {p: [o for _, q, o in own if q == p] for p in stars.STAR_PROPERTIES}
-    for predicate, node in [(p, o) for p, nodes in edges.items() for o in nodes]:
-        users = {s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node)}
-        if users <= leaving:
-            own += reasoner.asserted(node, None, None)
-        elif predicate in (v.HAS_POSITION, v.HAS_SIZE):
-            edges[predicate] = []  # somebody else's too: a change makes a new one
-    coordinates, size = edges[v.HAS_POSITION], edges[v.HAS_SIZE]
+    if not tbox.isdisjoint(own):
+        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
+    nodes: dict[Term, list[Term]] = {}
+    for predicate in stars.STAR_PROPERTIES:
+        objects = sorted({o for _, _, o in reasoner.asserted(iri, predicate, None)})
+        private = {o for o in objects if _users(reasoner, o) <= leaving}
+        about = {o: list(reasoner.asserted(o, None, None)) for o in private - leaving}
+        own += [t for triples in about.values() if tbox.isdisjoint(triples) for t in triples]
+        # A position or size that is somebody else's too is not changed: a change makes a new one.
+        shared = predicate in (v.HAS_POSITION, v.HAS_SIZE) and len(private) < len(objects)
+        nodes[predicate] = [] if shared else objects
+    coordinates, size = nodes[v.HAS_POSITION], nodes[v.HAS_SIZE]
     return Star(
         seq=seq,
         name=v.local_name(iri),
         iri=iri,
-        own=tuple(own),
+        own=tuple(dict.fromkeys(own)),
         incoming=tuple(t for t in reasoner.asserted(None, None, iri) if t[0] != iri),
         coordinates=coordinates[0] if coordinates else None,
         size=size[0] if size else None,
-        preferred=tuple(edges[v.HAS_PREFERRED_REFERENCE]),
-        alternatives=tuple(edges[v.HAS_ALTERNATIVE_REFERENCE]),
+        preferred=tuple(nodes[v.HAS_PREFERRED_REFERENCE]),
+        alternatives=tuple(nodes[v.HAS_ALTERNATIVE_REFERENCE]),
     )
+
+
+def _users(reasoner: Reasoner, node: Term) -> set[Term]:
+    """The individuals in whose star `node` is."""
+    return {s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node)}
 
 
 def _pose(reasoner: Reasoner, iri: Term) -> Pose | None:
@@ -126,17 +161,21 @@ def _number(reasoner: Reasoner, iri: Term, node: Term, predicate: Term) -> float
     term = _object(reasoner, node, predicate)
     if term is None:
         return None
-    text = v.lexical(term)
+    text = _said(term)
     try:
-        value = float(text)
+        value = float(text) if term.startswith('"') else math.nan
     except ValueError:
         value = math.nan
     if not abs(value) <= REACH_M:
         raise errors.BadRequest(
             f"{v.local_name(iri)}: {v.local_name(predicate)} is {text}; it must be a number"
-            f" between -{REACH_M:g} and {REACH_M:g}"
+            f" from -{REACH_M:g} to {REACH_M:g}"
         )
     return value
+
+
+def _said(term: Term) -> str:
+    return v.lexical(term) if term.startswith('"') else v.local_name(term)
 
 
 def _references(reasoner: Reasoner, iri: Term, predicate: Term) -> list[str]:
@@ -145,4 +184,4 @@ def _references(reasoner: Reasoner, iri: Term, predicate: Term) -> list[str]:
 
 
 def _texts(reasoner: Reasoner, node: Term) -> Iterator[Term]:
-    return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE, None))
+    return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE, None) if o.startswith('"'))

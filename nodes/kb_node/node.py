@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 
 from nodes import bus
-from nodes.kb_node import answers, documents, rdf_files
+from nodes.kb_node import answers, documents, rdf_files, terms
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal
 from nodes.kb_node.semantic_map import SemanticMap
@@ -18,6 +20,8 @@ from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 
+CHECKPOINT_PERIOD_S = 10.0
+
 
 class KnowledgeBase:
     """Binds the map to the wire."""
@@ -27,15 +31,21 @@ class KnowledgeBase:
         tbox = rdf_files.parse(journal.tbox(), f"the TBox in {journal.path}")
         self.map = SemanticMap(journal, tbox, progress=node.beat)
         self._commits = bus.publisher(node.session, keys.COMMIT)
+        self._published = {entity.name: entity.types for entity in self.map.entities()}
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         functions = {
             name.removeprefix("on_"): getattr(self, name) for name in dir(self) if name.startswith("on_")
         }
         node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.ready(self._summary())
 
     def on_commit(self, transaction: Transaction) -> Commit | None:
         """One transaction: journal (durable), publish, reply."""
+        terms.require_triples(transaction.insert)
+        return self._commit(transaction)
+
+    def _commit(self, transaction: Transaction) -> Commit | None:
         before = self.map.seq
         commit = self.map.commit(transaction)
         if commit is not None and commit.seq > before:
@@ -44,7 +54,7 @@ class KnowledgeBase:
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit."""
-        label = uuid.uuid4().hex[:8]
+        label = f"f{uuid.uuid4().hex[:8]}"
         triples = rdf_files.parse(load.content, load.filename, label_prefix=label)
         kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
         transaction = Transaction(
@@ -55,7 +65,7 @@ class KnowledgeBase:
             retract=tuple(self.map.abox()) if load.replace else (),
             insert=tuple(t for t in kept if t not in self.map.tbox),
         )
-        return Loaded(commit=self.on_commit(transaction), skipped=tuple(skipped))
+        return Loaded(commit=self._commit(transaction), skipped=tuple(skipped))
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
         """Every entity, as of the last commit."""
@@ -85,34 +95,41 @@ class KnowledgeBase:
         """Why it follows."""
         return answers.explain(self.map, query)
 
-    def on_export(self, query: Export) -> Document:
-        """The map as a document; checked first."""
-        checked = answers.check([*self.map.tbox, *self.map.abox()], "semmap")
-        if not checked.consistent:
-            raise errors.Inconsistent(checked.text, explanation=checked.explanation)
-        return answers.export(self.map, query)
+    def on_export(self, query: Export) -> Future[Document]:
+        """The map as a document; checked first, and written beside the node's own work."""
+        return self._aside.submit(answers.export, answers.picture(self.map, query.inferred), query.format)
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         return self._aside.submit(answers.check, [*self.map.tbox, *self.map.abox()], query.engine)
 
     def close(self) -> None:
-        """Leave a checkpoint for a quick start."""
+        """Leave a checkpoint for a quick start, if the disk takes it."""
         self._aside.shutdown(wait=False, cancel_futures=True)
-        self.map.checkpoint()
+        with suppress(errors.Refused):
+            self.map.checkpoint()
+
+    def _checkpoint(self) -> None:
+        if self.map.checkpoint_is_due:
+            self.map.checkpoint()
 
     def _publish(self, commit: Commit) -> None:
+        """The commit, and under each of its classes the entity or, where it is no more, a delete."""
         self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
-        for entity in commit.changed:
-            payload = codec.encode(entity)
-            for class_name in entity.types:
-                self._node.session.put(
-                    keys.entity_key(class_name, entity.name), payload, encoding=codec.encoding_of(entity)
-                )
         for gone in commit.removed:
-            for class_name in gone.types:
-                self._node.session.delete(keys.entity_key(class_name, gone.name))
+            self._unpublish(gone.name, self._published.pop(gone.name, gone.types))
+        for entity in commit.changed:
+            lost = set(self._published.get(entity.name, ())).difference(entity.types)
+            self._unpublish(entity.name, sorted(lost))
+            payload, encoding = codec.encode(entity), codec.encoding_of(entity)
+            for class_name in entity.types:
+                self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
+            self._published[entity.name] = entity.types
         self._node.describe(self._summary())
+
+    def _unpublish(self, name: str, class_names: Iterable[str]) -> None:
+        for class_name in class_names:
+            self._node.session.delete(keys.entity_key(class_name, name))
 
     def _summary(self) -> str:
         return f"{len(self.map)} entities, {len(self.map.reasoner)} triples, commit {self.map.seq}"

@@ -1,49 +1,46 @@
 """RDF documents in and out, in every syntax; terms are strings in N-Triples form.
 
-Reading is Oxigraph's: strict, fast, and never on the network. Writing is rdflib's, for its prefixes and
-readable layout.
+Oxigraph reads and writes: strict, fast, never on the network, and every literal comes back as it went.
 """
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterable
+from xml.parsers import expat
 
 import pyoxigraph
-import rdflib
 
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import RdfFormat
 from schemas.explanations import Triple
 
-_READ = {
+_SYNTAX = {
     "rdfxml": pyoxigraph.RdfFormat.RDF_XML,
     "turtle": pyoxigraph.RdfFormat.TURTLE,
     "ntriples": pyoxigraph.RdfFormat.N_TRIPLES,
     "jsonld": pyoxigraph.RdfFormat.JSON_LD,
 }
-_WRITE = {"rdfxml": "pretty-xml", "turtle": "longturtle", "ntriples": "nt", "jsonld": "json-ld"}
+_SPOKEN = {"rdfxml": "RDF/XML", "turtle": "Turtle", "ntriples": "N-Triples", "jsonld": "JSON-LD"}
 MEDIA_TYPES: dict[str, str] = {
     "rdfxml": "application/rdf+xml",
     "turtle": "text/turtle",
     "ntriples": "application/n-triples",
     "jsonld": "application/ld+json",
 }
+_BOM = b"\xef\xbb\xbf"
+_XML = re.compile(rb"\s*<(\?xml|!DOCTYPE|!--|[\w.:-]+\s[^>]*\bxmlns)")
+_JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
+_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
 def syntax_of(content: bytes) -> RdfFormat:
     """The syntax that `content` begins like: XML, JSON, or else Turtle (of which N-Triples is a part)."""
-    start = content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
-    if start in (b"{", b"["):
-        return "jsonld"
-    if start == b"<" and _is_xml(content):
+    if _XML.match(content):
         return "rdfxml"
-    return "turtle"
-
-
-def _is_xml(content: bytes) -> bool:
-    head = content.lstrip(b"\xef\xbb\xbf \t\r\n")[:4096]
-    return head.startswith((b"<?xml", b"<!")) or b"<rdf:RDF" in head or b"xmlns" in head
+    return "jsonld" if _JSON.match(content) else "turtle"
 
 
 def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Triple]:
@@ -51,34 +48,70 @@ def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Trip
 
     Raises BadFile with the place of the fault.
     """
+    name = filename or "the document"
+    content = content.removeprefix(_BOM)
+    if not content.strip():
+        raise errors.BadFile(f"{name} is empty")
+    try:
+        content.decode()
+    except UnicodeDecodeError as error:
+        where = content.count(b"\n", 0, error.start) + 1
+        raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
     syntax = syntax_of(content)
     try:
-        quads = list(pyoxigraph.parse(content, _READ[syntax], base_iri=v.ABOX, without_named_graphs=True))
+        if syntax == "rdfxml":
+            _require_well_formed(content)
+        quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
+        return [tuple(_term(term, label_prefix) for term in quad.triple) for quad in quads]  # type: ignore[misc]
     except (SyntaxError, ValueError) as error:
-        raise errors.BadFile(f"{filename or 'the document'} is no valid {_spoken(syntax)}: {error}") from None
-    return [
-        (_term(quad.subject, label_prefix), str(quad.predicate), _term(quad.object, label_prefix))
-        for quad in quads
-    ]
+        raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {_reason(error)}") from None
 
 
 def _term(term: object, label_prefix: str) -> str:
     if isinstance(term, pyoxigraph.BlankNode):
         return f"_:{label_prefix}{term.value}"
+    if isinstance(term, pyoxigraph.Triple):
+        raise ValueError("it states something about a triple, and there is no place for that in OWL")
     return str(term)
 
 
-def _spoken(syntax: str) -> str:
-    return {"rdfxml": "RDF/XML", "turtle": "Turtle", "ntriples": "N-Triples", "jsonld": "JSON-LD"}[syntax]
+def _reason(error: Exception) -> str:
+    if "LoadDocumentCallback" in str(error):
+        return (
+            "its @context is elsewhere, and nothing is fetched from the network; write the context out in it"
+        )
+    return str(error).replace("\n", " ")
+
+
+def _require_well_formed(content: bytes) -> None:
+    """Oxigraph takes an end within elements for the end of the document, and unfolds entities without bounds.
+
+    Expat notices the one and bounds the other. Raises ValueError.
+    """
+    try:
+        expat.ParserCreate().Parse(content, True)
+    except expat.ExpatError as error:
+        raise ValueError(str(error)) from None
 
 
 def serialise(triples: Iterable[Triple], syntax: RdfFormat) -> bytes:
-    """A document in which `triples` are sorted and prefixed."""
-    lines = sorted(f"{s} {p} {o} .\n" for s, p, o in triples)
+    """A document in which `triples` are sorted and prefixed; `parse` gives them back.
+
+    Raises Refused for a text that the syntax cannot hold.
+    """
+    lines = "".join(sorted(f"{s} {p} {o} .\n" for s, p, o in triples)).encode()
     if syntax == "ntriples":
-        return "".join(lines).encode()
-    graph = rdflib.Graph()
-    graph.parse(data="".join(lines), format="nt")
-    for prefix, namespace in v.PREFIXES.items():
-        graph.bind(prefix, namespace, replace=True)
-    return graph.serialize(format=_WRITE[syntax], encoding="utf-8")
+        return lines
+    quads = pyoxigraph.parse(lines, pyoxigraph.RdfFormat.N_TRIPLES)
+    document = pyoxigraph.serialize(quads, format=_SYNTAX[syntax], prefixes=dict(v.PREFIXES))
+    assert document is not None
+    if syntax == "jsonld":
+        return json.dumps(json.loads(document), indent=1, ensure_ascii=False).encode()
+    return _as_xml(document) if syntax == "rdfxml" else document
+
+
+def _as_xml(document: bytes) -> bytes:
+    """What an XML reader would change or not accept: line ends are escaped, control characters refused."""
+    if found := _NOT_XML.search(document.decode()):
+        raise errors.Refused(f"RDF/XML cannot hold the character {found[0]!r}; export as Turtle instead")
+    return document.replace(b"\r", b"&#13;")

@@ -10,6 +10,7 @@ from schemas import errors
 from schemas.explanations import Triple
 
 TIMEOUT_S = 600.0
+_CHILD = "nodes.kb_node.owlrl_closure"
 
 
 def owlrl_faults(triples: Iterable[Triple]) -> list[str]:
@@ -18,10 +19,9 @@ def owlrl_faults(triples: Iterable[Triple]) -> list[str]:
     Raises Refused when it does not come to an end.
     """
     document = "".join(f"{s} {p} {o} .\n" for s, p, o in triples)
-    document = document.replace('"-0.0"', '"0.0"')  # owlrl takes the two for a clash
     try:
         run = subprocess.run(
-            [sys.executable, "-m", __name__],
+            [sys.executable, "-m", _CHILD],
             input=document,
             capture_output=True,
             text=True,
@@ -34,20 +34,3 @@ def owlrl_faults(triples: Iterable[Triple]) -> list[str]:
     if run.returncode != 0:
         raise errors.Refused(f"owlrl failed: {(run.stderr.strip() or str(run.returncode)).splitlines()[-1]}")
     return [line for line in run.stdout.splitlines() if line]
-
-
-def main() -> None:
-    """Read N-Triples from stdin, print one fault a line."""
-    import owlrl
-    import rdflib
-
-    graph = rdflib.Graph()
-    graph.parse(data=sys.stdin.read(), format="nt")
-    owlrl.DeductiveClosure(owlrl.OWLRL_Semantics).expand(graph)
-    described = rdflib.URIRef("http://www.daml.org/2002/03/agents/agent-ont#error")
-    faults = {str(o).replace("\n", " ") for o in graph.objects(None, described)}
-    print("\n".join(sorted(faults)))
-
-
-if __name__ == "__main__":
-    main()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import time
+import os
+import uuid
+from datetime import datetime
 from pathlib import Path
 
 from nodes.kb_node import documents, rdf_files
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal import FILENAME, InUse, Journal
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
@@ -27,7 +29,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     path = data / FILENAME
     if path.exists() and not fresh:
         return f"going on with the map in {data} (--fresh begins anew and keeps the old one aside)"
-    tbox_triples = read_triples(tbox)
+    tbox_triples = read_triples(tbox, "t")
     try:
         reasoner = Reasoner(tbox_triples)
     except Inconsistent as error:
@@ -41,45 +43,84 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         )
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *_imports(tbox_triples)]
     if abox is not None:
-        kept, _ = documents.sort_out(read_triples(abox), classes, skip_unknown=False)
+        kept, _ = documents.sort_out(read_triples(abox, "a"), classes, skip_unknown=False)
         abox_triples += kept
-    data.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f"new-{FILENAME}")
-    _remove(new)
-    journal = Journal.create(new, rdf_files.serialise(tbox_triples, "ntriples"))
+    source = abox.name if abox is not None else "nothing"
+    transaction = Transaction(
+        id=f"seed-{uuid.uuid4().hex}",
+        source="file",
+        reason=f"begun from {source}",
+        insert=tuple(abox_triples),
+    )
     try:
-        semantic_map = SemanticMap(journal, tbox_triples)
-        source = str(abox.name) if abox is not None else "nothing"
-        semantic_map.commit(
-            Transaction(id="seed", source="file", reason=f"begun from {source}", insert=tuple(abox_triples))
-        )
-        semantic_map.checkpoint()
+        data.mkdir(parents=True, exist_ok=True)
+        _require_unused(path)
+        new = path.with_name(f"new-{FILENAME}")
+        size = _make(new, tbox_triples, reasoner, transaction)
+        set_aside(data)
+        new.rename(path)
+        _sync(data)
     except errors.SemmapError as error:
-        raise type(error)(f"{abox}: {error.text}", explanation=error.explanation) from None
+        raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
+    except OSError as error:
+        raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
+    return f"{size} entities from {source}"
+
+
+def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
+    """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
+    _remove(path)
+    try:
+        journal = Journal.create(path, rdf_files.serialise(tbox, "ntriples"))
+        try:
+            semantic_map = SemanticMap(journal, tbox, reasoner=reasoner)
+            semantic_map.commit(transaction)
+            semantic_map.checkpoint()
+        finally:
+            journal.close()
+    except errors.SemmapError:
+        _remove(path)
+        raise
+    return len(semantic_map)
+
+
+def _require_unused(path: Path) -> None:
+    """Raises Refused when a knowledge base is at work on the journal; a damaged one may be set aside."""
+    if path.exists():
+        try:
+            Journal(path).close()
+        except InUse:
+            raise
+        except errors.Refused:
+            return
+
+
+def _sync(folder: Path) -> None:
+    """Make a renaming in `folder` durable."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
     finally:
-        journal.close()
-    set_aside(data)
-    new.rename(path)
-    return f"{len(semantic_map)} entities from {source}"
+        os.close(descriptor)
 
 
 def set_aside(data: Path) -> None:
     """Move a present journal out of the way, for whoever may want it back."""
     present = [p for p in data.glob(f"{FILENAME}*") if p.is_file()]
     if present:
-        kept = data / KEPT / time.strftime("%Y-%m-%dT%H-%M-%S")
+        kept = data / KEPT / f"{datetime.now():%Y-%m-%dT%H-%M-%S.%f}"
         kept.mkdir(parents=True, exist_ok=True)
         for p in present:
             p.rename(kept / p.name)
 
 
-def read_triples(path: Path) -> list[Triple]:
-    """The triples of a file. Raises BadFile."""
+def read_triples(path: Path, label_prefix: str = "") -> list[Triple]:
+    """The triples of a file, its blank nodes named with `label_prefix`. Raises BadFile."""
     try:
         content = path.read_bytes()
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    return rdf_files.parse(content, str(path), label_prefix=path.stem)
+    return rdf_files.parse(content, str(path), label_prefix=label_prefix)
 
 
 def _imports(tbox: list[Triple]) -> list[Triple]:

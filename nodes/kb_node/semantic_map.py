@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 
 from msgspec import structs
 
@@ -11,7 +11,6 @@ from nodes.kb_node import entities
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, Marks
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
@@ -19,25 +18,31 @@ from schemas.entities import ClassInfo, Entity, Provenance
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
-_UNMARKED = Marks(any=0, pose=0, shape=0)
-_UNKNOWN = Provenance(commit=0, stamp_ns=0, source="file")
+_OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
 class SemanticMap:
     """The ABox with its TBox: checked, explained, durable. Owned by one thread."""
 
     def __init__(
-        self, journal: Journal, tbox: Iterable[Triple], *, progress: Callable[[], None] = lambda: None
+        self,
+        journal: Journal,
+        tbox: Iterable[Triple],
+        *,
+        reasoner: Reasoner | None = None,
+        progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """Rebuild the map from `journal`. Raises Refused when the journal is damaged."""
+        """Rebuild the map from `journal`; `reasoner` is one that holds the TBox and no more, if there is one.
+
+        Raises Refused when the journal is damaged.
+        """
         self._journal = journal
         self.tbox = frozenset(tbox)
-        self.reasoner = Reasoner(self.tbox)
+        self.reasoner = reasoner or Reasoner(self.tbox)
         self.classes = ClassTable(self.reasoner)
-        self._provenance: dict[int, Provenance] = {0: _UNKNOWN}
-        self._marks: dict[Term, Marks] = {}
         self._entities: dict[str, Entity] = {}
         self.seq = 0
+        self._checkpointed = 0
         self._replay(progress)
 
     # Asking
@@ -55,17 +60,18 @@ class SemanticMap:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
-        names = {v.local_name(i) for i in self.reasoner.instances(class_iri)} & self._entities.keys()
-        return (self._entities[name] for name in sorted(names))
+        found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
+        return iter(sorted(found, key=lambda entity: entity.name))
 
     def snapshot(self) -> Snapshot:
         """Every entity, as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
-        """The triples about some entities, taken together. Raises UnknownName."""
+        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
         iris = [v.iri(self.entity(name).iri) for name in names]
-        return tuple(entities.read_star(self.reasoner, iri, self.seq, frozenset(iris)) for iri in iris)
+        leaving = frozenset(iris)
+        return tuple(entities.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris)
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
@@ -99,7 +105,7 @@ class SemanticMap:
         """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
 
         Raises PreconditionFailed, NameTaken, Inconsistent (with the explanation), BadRequest for a star that
-        does not make sense, Refused when the disk does not take the commit.
+        does not make sense, Refused when it takes away from the TBox or the disk does not take the commit.
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
@@ -109,6 +115,11 @@ class SemanticMap:
         inserted = tuple(t for t in wanted if not self.has(t))
         if not retracted and not inserted:
             return None
+        for triple in retracted:
+            if triple in self.tbox:
+                raise errors.Refused(
+                    f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
+                )
         commit = Commit(
             seq=self.seq + 1,
             stamp_ns=time.time_ns(),
@@ -120,18 +131,29 @@ class SemanticMap:
             retracted=retracted,
             inserted=inserted,
         )
-        changed, removed = self._apply(commit, self._journal.append)
-        if commit.seq % CHECKPOINT_EVERY == 0:
-            self.checkpoint()
-        return structs.replace(commit, changed=changed, removed=removed)
+        return self._apply(commit, self._journal.append)
+
+    @property
+    def checkpoint_is_due(self) -> bool:
+        """Would the next start have much to replay?"""
+        return self.seq - self._checkpointed >= CHECKPOINT_EVERY
 
     def checkpoint(self) -> None:
-        """Write down the whole map, so that the next start need not replay its history."""
-        named = {seq for marks in self._marks.values() for seq in (marks.any, marks.pose, marks.shape)}
-        provenance = {seq: self._provenance[seq] for seq in named}
-        self._journal.checkpoint(
-            Checkpoint(seq=self.seq, triples=tuple(self.abox()), marks=self._marks, commits=provenance)
-        )
+        """Write down the whole map, so that the next start need not replay its history.
+
+        Raises Refused when the disk does not take it; then the history is replayed.
+        """
+        if self.seq == self._checkpointed:
+            return
+        marks: dict[Term, Marks] = {}
+        commits: dict[int, Provenance] = {}
+        for e in self._entities.values():
+            since = (e.provenance, e.pose_provenance, e.shape_provenance)
+            marks[v.iri(e.iri)] = Marks(*(p.commit for p in since))
+            commits.update((p.commit, p) for p in since)
+        triples = tuple(self.abox())
+        self._journal.checkpoint(Checkpoint(seq=self.seq, triples=triples, marks=marks, commits=commits))
+        self._checkpointed = self.seq
 
     def _require(self, transaction: Transaction) -> None:
         for triple in transaction.require:
@@ -144,106 +166,90 @@ class SemanticMap:
     def _replay(self, progress: Callable[[], None]) -> None:
         start = self._journal.last_checkpoint()
         self.reasoner.apply(insert=start.triples)
-        self.seq = start.seq
-        self._provenance.update(start.commits)
-        self._show({iri: self._read(iri, marks) for iri, marks in start.marks.items()}, start.marks)
+        self.seq = self._checkpointed = start.seq
+        of_the_tbox = {
+            i for c in self.classes.spatial for i in self.reasoner.instances(c)
+        } - start.marks.keys()
+        self._show(filter(None, (self._read(iri, _OF_THE_TBOX) for iri in sorted(of_the_tbox))))
+        for iri, marks in start.marks.items():
+            if (entity := self._read(iri, start.commits[marks.any])) is not None:
+                pose, shape = start.commits[marks.pose], start.commits[marks.shape]
+                self._show([structs.replace(entity, pose_provenance=pose, shape_provenance=shape)])
         for commit in self._journal.commits(after=start.seq):
-            self._apply(commit, lambda _: None)
+            try:
+                self._apply(commit, lambda _: None)
+            except errors.SemmapError as error:
+                raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             progress()
 
-    def _apply(
-        self, commit: Commit, make_durable: Callable[[Commit], None]
-    ) -> tuple[tuple[Entity, ...], tuple[Departed, ...]]:
+    def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        aspects = self._aspects(commit)
+        owners = self._owners(commit)
         try:
             change = self.reasoner.apply(delete=commit.retracted, insert=commit.inserted)
         except Inconsistent as error:
             raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
         try:
-            for iri, aspect in self._aspects(commit).items():
-                aspects.setdefault(iri, set()).update(aspect)
-            self._provenance[commit.seq] = _provenance_of(commit)
-            marks = {iri: self._marked(iri, aspect, commit.seq) for iri, aspect in aspects.items()}
-            touched = {
-                iri: marks.get(iri) or self._marks.get(iri, _UNMARKED) for iri in {*aspects, *change.touched}
-            }
-            states = {iri: self._read(iri, marks) for iri, marks in touched.items()}
-            self._require_unique_names(states)
+            owners |= self._owners(commit)
+            commit = self._with_effects(commit, owners, change.touched)
             make_durable(commit)
         except BaseException:
-            self._provenance.pop(commit.seq, None)
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
             raise
         self.seq = commit.seq
-        return self._show(states, touched)
+        for gone in commit.removed:
+            del self._entities[gone.name]
+        self._show(commit.changed)
+        return commit
 
-    def _aspects(self, commit: Commit) -> dict[Term, set[str]]:
-        """Whose star the commit's triples belong to, and whether pose or shape is concerned."""
-        found: dict[Term, set[str]] = {}
-        owners: dict[Term, list[Term]] = {}
-        for s, p, _ in (*commit.retracted, *commit.inserted):
-            if s not in owners:
-                owners[s] = list(entities.owners(self.reasoner, s))
-            for owner in owners[s]:
-                aspects = found.setdefault(owner, set())
-                if p in stars.POSE_PROPERTIES:
-                    aspects.add("pose")
-                elif p in stars.SHAPE_PROPERTIES and (p != v.RDF_TYPE or owner == s):
-                    aspects.add("shape")
-        return found
+    def _owners(self, commit: Commit) -> set[Term]:
+        """Whose stars the commit's triples belong to."""
+        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
+        return {owner for s in subjects for owner in entities.owners(self.reasoner, s)}
 
-    def _marked(self, iri: Term, aspects: set[str], seq: int) -> Marks:
-        old = self._marks.get(iri)
-        if old is None:
-            return Marks(any=seq, pose=seq, shape=seq)
-        return Marks(
-            any=seq,
-            pose=seq if "pose" in aspects else old.pose,
-            shape=seq if "shape" in aspects else old.shape,
+    def _with_effects(self, commit: Commit, owners: set[Term], touched: Iterable[Term]) -> Commit:
+        """`commit` with the entities that it changed and those that it removed."""
+        provenance = Provenance(
+            commit=commit.seq,
+            stamp_ns=commit.stamp_ns,
+            source=commit.source,
+            agent=commit.agent,
+            reason=commit.reason,
+            confidence=commit.confidence,
+        )
+        changed: dict[str, Entity] = {}
+        removed: list[Departed] = []
+        for iri in sorted(owners.union(touched)):
+            known = self._known(iri)
+            entity = self._read(iri, provenance)
+            if entity is None:
+                removed += [Departed(name=known.name, types=known.types)] if known is not None else []
+                continue
+            if known is not None:
+                entity = entities.inherit(entity, known, concerned=iri in owners)
+            if (other := changed.setdefault(entity.name, entity)) is not entity:
+                raise _taken(other)
+        gone = {departed.name for departed in removed}
+        for name, entity in changed.items():
+            if name not in gone and (holder := self._entities.get(name, entity)).iri != entity.iri:
+                raise _taken(holder)
+        return structs.replace(
+            commit,
+            changed=tuple(e for name, e in changed.items() if e != self._entities.get(name)),
+            removed=tuple(removed),
         )
 
-    def _read(self, iri: Term, marks: Marks) -> Entity | None:
-        """The entity as the triples have it now, or None if `iri` is none."""
-        if self.classes.spatial.isdisjoint(self.reasoner.types(iri)):
-            return None
-        if not entities.is_valid_name(iri):
-            raise errors.BadRequest(
-                f"{iri} cannot be an entity: it needs an IRI that ends in a name of letters, digits, '_', '.'"
-                " and '-', not beginning with a digit"
-            )
-        return entities.read_entity(self.reasoner, self.classes, iri, marks, self._provenance)
+    def _read(self, iri: Term, provenance: Provenance) -> Entity | None:
+        return entities.read_entity(self.reasoner, self.classes, iri, provenance)
 
-    def _require_unique_names(self, states: Mapping[Term, Entity | None]) -> None:
-        new: dict[str, str] = {}
-        for entity in filter(None, states.values()):
-            known = self._entities.get(entity.name)
-            other = known.iri if known is not None else new.setdefault(entity.name, entity.iri)
-            if other != entity.iri and states.get(v.iri(other), known) is not None:
-                raise errors.NameTaken(f"the name '{entity.name}' is taken by <{other}>")
+    def _known(self, iri: Term) -> Entity | None:
+        """The entity with this IRI, as of the last commit."""
+        entity = self._entities.get(v.local_name(iri))
+        return entity if entity is not None and v.iri(entity.iri) == iri else None
 
-    def _show(
-        self, states: Mapping[Term, Entity | None], marks: Mapping[Term, Marks]
-    ) -> tuple[tuple[Entity, ...], tuple[Departed, ...]]:
-        changed, removed = [], []
-        for iri, entity in sorted(states.items()):
-            known = self._entities.get(v.local_name(iri))
-            if entity is not None:
-                self._entities[entity.name] = entity
-                self._marks[iri] = marks[iri]
-                changed.append(entity)
-            elif known is not None and v.iri(known.iri) == iri:
-                del self._entities[known.name], self._marks[iri]
-                removed.append(Departed(name=known.name, types=known.types))
-        return tuple(changed), tuple(removed)
+    def _show(self, changed: Iterable[Entity]) -> None:
+        self._entities.update((entity.name, entity) for entity in changed)
 
 
-def _provenance_of(commit: Commit) -> Provenance:
-    return Provenance(
-        commit=commit.seq,
-        stamp_ns=commit.stamp_ns,
-        source=commit.source,
-        agent=commit.agent,
-        reason=commit.reason,
-        confidence=commit.confidence,
-    )
+def _taken(holder: Entity) -> errors.NameTaken:
+    return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")

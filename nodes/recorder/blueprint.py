@@ -10,7 +10,9 @@ import rerun.blueprint as rrb
 from schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)
-_LOG_COLUMNS = rrb.TextLogColumns(text_log_columns=["body"])
+_LOG_COLUMNS = rrb.TextLogColumns(
+    timeline_columns=[rrb.encodings.TimelineColumn("time", visible=False)], text_log_columns=["body"]
+)
 _GRID = (255, 255, 255, 30)
 
 
@@ -37,7 +39,7 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
     e = bounds.extent_m
     eye = rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,
-        position=(x - 0.25 * e, y - 0.75 * e, z + 0.8 * e),
+        position=(x - 0.25 * e, y - 0.8 * e, z + 0.85 * e),
         look_target=(x, y, z),
         eye_up=(0.0, 0.0, 1.0),
     )
@@ -57,10 +59,11 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
                 rrb.GraphView(
                     origin="/graph",
                     name="Knowledge graph",
-                    force_link=rrb.archetypes.ForceLink(distance=40.0),
-                    force_many_body=rrb.archetypes.ForceManyBody(strength=-60.0),
+                    force_link=rrb.archetypes.ForceLink(distance=45.0),
+                    force_position=rrb.archetypes.ForcePosition(enabled=True, strength=0.05),
+                    force_many_body=rrb.archetypes.ForceManyBody(strength=-150.0),
                 ),
-                row_shares=[3, 2, 4],
+                row_shares=[4, 2, 4],
             ),
             column_shares=[2, 1],
         ),

@@ -8,7 +8,7 @@ from nodes.recorder.figures import Figure
 from nodes.recorder.palette import GREY, colour_of
 
 _GHOST_ALPHA = 90
-_SHEET_ALPHA = 70
+_SHEET_ALPHA = 36
 _SHEET_M = 0.002
 _LABEL_M = 0.02
 
@@ -45,7 +45,7 @@ def _sheet(figure: Figure) -> tuple[rr.Boxes3D, rr.Points3D]:
         half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
         centers=[(0.0, 0.0, below)],
         colors=[(*colour_of(figure.class_), _SHEET_ALPHA)],
-        fill_mode=rr.components.FillMode.TransparentFillMajorWireframe,
+        fill_mode=rr.components.FillMode.Solid,
     )
     name = rr.Points3D(
         [(0.0, 0.0, below)],

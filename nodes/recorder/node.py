@@ -27,15 +27,16 @@ _SCENE_LOST_S = 10.0
 class Recorder:
     """Binds the recording to the wire."""
 
-    def __init__(self, node: Node, recording: Recording, where: str) -> None:
+    def __init__(self, node: Node, recording: Recording, live: str) -> None:
         self._node = node
         self._recording = recording
-        self._where = where
+        self._live = live
         self._stage = Stage(recording)
         self._map = MapState()
         self._scene = SceneState()
         self._early: list[Commit] = []
         self._has_map = False
+        self._arranged = False
         self._fetching_map = False
         self._fetching_scene = False
         self._poses_at = 0.0
@@ -49,8 +50,6 @@ class Recorder:
 
     def _on_commit(self, commit: Commit) -> None:
         """Record it at once, whatever is known of the map; the map follows in order."""
-        if commit.seq <= self._map.seq or any(commit.seq == early.seq for early in self._early):
-            return
         self._at(commit.stamp_ns, commit.seq)
         self._recording.commit(commit)
         if self._has_map and self._map.take(commit):
@@ -63,8 +62,7 @@ class Recorder:
     def _show_commit(self, commit: Commit) -> None:
         touched = {entity.name for entity in commit.changed} | {gone.name for gone in commit.removed}
         self._stage.show(sorted(touched), self._map.entities, self._scene.bodies, simulated=self._scene.known)
-        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
-        self._describe()
+        self._shown()
 
     def _fetch_map(self) -> None:
         """Ask for a snapshot and for the relations: at the start, and when a commit was missed."""
@@ -107,10 +105,7 @@ class Recorder:
                 f"{self._map.seq}  not heard: commit {numbers}; a snapshot fills the gap", warning=True
             )
         self._show_all()
-        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
-        if first:
-            self._recording.arrange(bounds_of(self._stage.poses))
-        self._describe()
+        self._shown()
 
     def _on_health(self, health: Health) -> None:
         """A new knowledge base may know another map, or have made commits that nobody heard."""
@@ -157,13 +152,17 @@ class Recorder:
 
     def _at(self, stamp_ns: int, seq: int | None = None) -> None:
         """What is recorded from now on is of this time."""
-        self._recording.at(self._map.seq if seq is None else seq, stamp_ns, self._scene.sim_time_s)
+        self._recording.at(max(0, self._map.seq) if seq is None else seq, stamp_ns, self._scene.sim_time_s)
 
     def _show_all(self) -> None:
         self._stage.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
 
-    def _describe(self) -> None:
-        self._node.ready(f"commit {self._map.seq}, {self._where}")
+    def _shown(self) -> None:
+        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
+        if not self._arranged and self._map.entities:
+            self._arranged = True
+            self._recording.arrange(bounds_of(self._stage.poses))
+        self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
 
     def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
@@ -179,5 +178,5 @@ def run(config: RecorderConfig) -> None:
         open_node("recorder", config.network) as node,
         open_recording(config.path, serve) as recording,
     ):
-        Recorder(node, recording, f"into {config.path}, {live}")
+        Recorder(node, recording, live)
         node.run()

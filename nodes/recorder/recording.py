@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -31,14 +32,15 @@ COMMIT_FIELDS = "semmap.Commit"
 _LATENCY_S = 0.5
 """What a kill can lose, and how far a live viewer lags."""
 _LIVE_MEMORY = "256MiB"
-_FLUSH_TIMEOUT_S = 2.0
 
 
 class Recording:
     """What was drawn and said, when. Timelines: `commit` (sequence), `time` (wall), `sim_time`."""
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
+        self.path = path
         self._stream = stream
+        stream.send_blueprint(layout(Bounds()))
         stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
     def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
@@ -123,17 +125,30 @@ def free_to_serve(address: str) -> bool:
     return True
 
 
+def create(path: Path) -> Path:
+    """Make an empty file at `path` or, never to write over another, at that name with a number.
+
+    Raises BadFile.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for number in itertools.count(1):
+            candidate = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
+            if not candidate.exists():
+                break
+        candidate.touch(exist_ok=False)
+    except OSError as error:
+        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+    return candidate
+
+
 @contextmanager
 def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
     """A recording into `path`, also served to live viewers at `serve`; complete when closed.
 
     Raises BadFile when the file cannot be written.
     """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch(exist_ok=False)
-    except OSError as error:
-        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+    path = create(path)
     batches = rr.ChunkBatcherConfig(flush_tick=_LATENCY_S)
     stream = rr.RecordingStream(APPLICATION, batcher_config=batches)
     stream.set_log_time_enabled(False)
@@ -143,7 +158,6 @@ def open_recording(path: Path, serve: str | None) -> Iterator[Recording]:
         sinks.append(rr.GrpcServerSink(host, int(port), server_memory_limit=_LIVE_MEMORY))
     stream.set_sinks(*sinks)
     try:
-        yield Recording(stream)
+        yield Recording(path, stream)
     finally:
-        stream.flush(timeout_sec=_FLUSH_TIMEOUT_S)
         stream.disconnect()

@@ -32,7 +32,7 @@ class SceneState:
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
         self._run, self._version, self.sim_time_s = scene.run, scene.version, scene.sim_time_s
-        self._names = ()
+        self._names, self._rows = (), np.empty((0, 7))
 
     def matches(self, poses: Poses) -> bool:
         """Whether `poses` speaks of the bodies of the last snapshot; if not, another is needed."""

@@ -95,8 +95,14 @@ def _at(addresses: NDArray[np.int32], joint: Ints) -> Ints:
 def rotated(quaternions: Floats, vectors: Floats) -> Floats:
     """(N, 3) vectors, each rotated by its quaternion wxyz (N, 4)."""
     w, axis = quaternions[:, :1], quaternions[:, 1:]
-    twice = 2.0 * np.cross(axis, vectors)
-    return np.asarray(vectors + w * twice + np.cross(axis, twice))
+    twice = 2.0 * _cross(axis, vectors)
+    return vectors + w * twice + _cross(axis, twice)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Like np.cross, a tenth of its time for few vectors."""
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
 def frame_of(pose: Pose, origin_m: Vec3) -> tuple[Floats, Floats]:

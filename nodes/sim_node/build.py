@@ -26,7 +26,7 @@ _WIDTH = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): (1, 1),
     int(mujoco.mjtJoint.mjJNT_HINGE): (1, 1),
 }
-_FRICTION = (0.8, 0.01, 0.002)
+_FRICTION = (0.8, 0.01, 0.004)
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
@@ -73,7 +73,7 @@ def add_part(
         group=_GROUP[part.role],
         contype=contype,
         conaffinity=conaffinity,
-        condim=4 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        condim=3 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
         friction=_FRICTION,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from pathlib import Path
 
@@ -10,6 +11,9 @@ import numpy as np
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from schemas.errors import BadFile
+
+# else MuJoCo writes a file into the working directory
+mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
 _CLASS_TEXT = "semmap:"
@@ -48,6 +52,9 @@ def prepare(spec: mujoco.MjSpec) -> None:
     """Set what the simulator relies on: bodies at rest sleep, one bad body does not reset the world."""
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    if spec.option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and spec.option.impratio == 1.0:
+        # what a file does not choose: with these, things that lean on one another do not creep
+        spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
     spec.visual.quality.shadowsize = 0  # shadows and MSAA cost 40 times the frame on a CPU
     spec.visual.quality.offsamples = 0
     for number, body in enumerate(spec.worldbody.bodies):

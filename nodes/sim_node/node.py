@@ -12,7 +12,8 @@ from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.files import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
-from nodes.sim_node.world import World
+from nodes.sim_node.window import Window
+from nodes.sim_node.world_file import open_world
 from schemas import codec, keys
 from schemas.commands import Done, Pause, Reset, StepOnce
 from schemas.scenes import (
@@ -32,6 +33,7 @@ Reply = TypeVar("Reply")
 
 _ADVANCE_S = 0.01
 _PUBLISH_S = 0.05
+_REFRESH_S = 1.0 / 30.0
 _PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
     "rgb8": "rgb",
     "depth32f": "depth",
@@ -46,7 +48,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = World(config.world, models=Models(config.models))
+        self._world = open_world(config.world, Models(config.models))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -65,6 +67,9 @@ class Simulator:
                 "picture": (PictureQuery, self._picture),
             },
         )
+        self._window = Window(self._world) if config.window else None
+        if self._window is not None:
+            node.every(_REFRESH_S, self._window.refresh)
         node.every(_ADVANCE_S, self._advance)
         node.every(_PUBLISH_S, self._publish)
         if config.cameras.rate_hz > 0.0:
@@ -72,8 +77,10 @@ class Simulator:
         node.ready(self._summary())
 
     def close(self) -> None:
-        """Let go of the studio's thread."""
+        """Let go of the studio's thread and of the window."""
         self._studio.close()
+        if self._window is not None:
+            self._window.close()
 
     def _spawn(self, message: Spawn) -> Spawned:
         return self._told(self._world.spawn(message.bodies))

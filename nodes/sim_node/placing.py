@@ -76,8 +76,8 @@ class Stage:
         geoms = self._felt
         rotation = self._data.geom_xmat[geoms].reshape(-1, 3, 3)
         aabb = self._model.geom_aabb[geoms]
-        centre = self._data.geom_xpos[geoms] + np.einsum("nij,nj->ni", rotation, aabb[:, :3])
-        half = np.einsum("nij,nj->ni", np.abs(rotation), aabb[:, 3:])
+        centre = self._data.geom_xpos[geoms] + (rotation * aabb[:, None, :3]).sum(axis=2)
+        half = (np.abs(rotation) * aabb[:, None, 3:]).sum(axis=2)
         low, high = centre - half, centre + half
         plane = self._model.geom_type[geoms] == mujoco.mjtGeom.mjGEOM_PLANE
         low[plane], high[plane, :2] = -np.inf, np.inf

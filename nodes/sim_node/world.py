@@ -44,7 +44,7 @@ class World:
         """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile."""
         self._spec = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
         self._models = models
-        self.name = str(mjcf) if mjcf else "empty"
+        self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
         groundwork.prepare(self._spec)
@@ -210,7 +210,7 @@ class World:
             origin_m=(-x, -y, -z),
             ordered=order.pose,
             fixed=order.fixed,
-            entity=True,
+            entity=order.commit > 0,
             masks=[build.mask_of(part) for part in model.parts],
             commit=order.commit,
             shape_commit=order.commit,

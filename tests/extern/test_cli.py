@@ -88,7 +88,7 @@ def test_bad_words(system, words, status, said):
         ("inconsistent.ttl", 1, "chair2"),
         ("unknown.ttl", 2, "unknown class 'Chiar' (of chair2"),
         ("empty.ttl", 2, "empty"),
-        ("bytes.bin", 2, "no valid"),
+        ("bytes.bin", 2, "not UTF-8 text"),
         ("other.json", 2, "neither a scene"),
     ],
 )

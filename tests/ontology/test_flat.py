@@ -83,7 +83,7 @@ def walls() -> list[Block]:
     return [
         Block(
             model.geom(i).name,
-            model.geom_pos[i] - [0, 0, model.geom_size[i][2]],
+            model.geom_pos[i] - np.array([0, 0, model.geom_size[i][2]]),
             0.0,
             2 * model.geom_size[i],
         )
@@ -198,8 +198,9 @@ def test_things_are_within_the_place_they_are_said_to_be_in(flat: Graph, blocks:
 
 
 def test_the_floor_where_new_things_go_is_free(blocks: dict[str, Block]) -> None:
-    centre, size = np.array([2.0, 2.0, 0.0]), np.array([1.4, 1.4, 2.0])
-    disc = [Block("disc", centre, angle, size) for angle in np.arange(0, 1.6, 0.1)]
+    disc = [
+        Block("disc", np.array([2.0, 2.0, 0.0]), a, np.array([1.4, 1.4, 2.0])) for a in np.arange(0, 1.6, 0.1)
+    ]
     assert [b.name for b in blocks.values() if any(d.overlaps(b) for d in disc)] == []
 
 

@@ -102,7 +102,7 @@ def recorder(world, path):
     """A recorder in this process, ready."""
     with bus.open_session(network(world)) as session, open_recording(path, None) as recording:
         node = Node("recorder", session)
-        Recorder(node, recording, "here")
+        Recorder(node, recording, "no live view")
         thread = threading.Thread(target=node.run)
         thread.start()
         try:

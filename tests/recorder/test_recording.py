@@ -77,9 +77,18 @@ def test_a_figure_is_a_box_on_its_bottom_centre(tmp_path):
 def test_a_file_is_never_written_over(tmp_path):
     path = tmp_path / "a.rrd"
     path.write_text("precious")
-    with pytest.raises(errors.BadFile, match="exists"), open_recording(path, None):
-        pass
+    names = []
+    for _ in range(3):
+        with open_recording(path, None) as recording:
+            names.append(recording.path.name)
+    assert names == ["a-2.rrd", "a-3.rrd", "a-4.rrd"]
     assert path.read_text() == "precious"
+
+
+def test_a_folder_that_is_a_file_is_told(tmp_path):
+    (tmp_path / "a").write_text("")
+    with pytest.raises(errors.BadFile, match="cannot record"), open_recording(tmp_path / "a" / "b.rrd", None):
+        pass
 
 
 @pytest.mark.parametrize("read", [read_commits, replay])

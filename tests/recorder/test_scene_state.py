@@ -31,3 +31,10 @@ def test_a_slow_creep_is_told_in_the_end():
 
 def test_an_unknown_body_is_left_alone():
     assert dict(taken().follow(poses({"z": pose()}))) == {}
+
+
+def test_a_scene_may_become_empty():
+    state = taken()
+    list(state.follow(poses({"a": pose(), "b": pose(1.0)})))
+    state.take(scene())
+    assert dict(state.follow(poses({}))) == {}

@@ -20,8 +20,8 @@ from nodes.kb_node.reasoner.terms import (
 )  # fmt: skip
 from schemas.explanations import Term, Triple
 
-_PLAIN_PREDICATES = frozenset({SAME_AS, DIFFERENT_FROM, *ANNOTATIONS})
-_PLAIN_CLASSES = frozenset({THING, NOTHING, iri("owl:NamedIndividual")})
+_PLAIN_PREDICATES = frozenset({SAME_AS, DIFFERENT_FROM, iri("owl:imports"), *ANNOTATIONS})
+_PLAIN_CLASSES = frozenset({THING, NOTHING, iri("owl:NamedIndividual"), iri("owl:Ontology")})
 
 
 def is_schema(triple: Triple) -> bool:

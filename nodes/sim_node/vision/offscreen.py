@@ -15,7 +15,7 @@ from nodes.sim_node.build import FELT_GROUP
 from nodes.sim_node.vision.view import View
 
 _NEAR_M, _FAR_M = 0.05, 200.0
-_MAX_PIXELS = (2560, 1440)
+MAX_PIXELS = (2560, 1440)
 
 
 def open_gl() -> Any | None:
@@ -27,7 +27,7 @@ def open_gl() -> Any | None:
     if choice not in ("egl", "osmesa", "cgl"):
         return None
     try:
-        context = importlib.import_module(f"mujoco.{choice}").GLContext(*_MAX_PIXELS)
+        context = importlib.import_module(f"mujoco.{choice}").GLContext(*MAX_PIXELS)
         context.make_current()
     except Exception:  # the loaders fail each in its own way: ImportError, RuntimeError, AttributeError, ...
         return None
@@ -89,7 +89,7 @@ class Offscreen:
             float(model.mesh_vert.sum()),
         )
         if self._context is None or assets != self._assets:
-            model.vis.global_.offwidth, model.vis.global_.offheight = _MAX_PIXELS
+            model.vis.global_.offwidth, model.vis.global_.offheight = MAX_PIXELS
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
             self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)

@@ -12,7 +12,7 @@ from nodes.sim_node.vision.view import View, pixel_rays
 
 _SKY_LOW, _SKY_HIGH = np.array([0.90, 0.93, 0.96]), np.array([0.60, 0.74, 0.88])
 _LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the middle of what is seen
-_AMBIENT, _HEAD, _LAMP, _SHADOW = 0.34, 0.22, 0.50, 0.55
+_AMBIENT, _HEAD, _LAMP, _SHADOW = 0.30, 0.18, 0.48, 0.55
 
 _VISIBLE = np.array([group != FELT_GROUP for group in range(6)], dtype=np.uint8)
 
@@ -81,11 +81,23 @@ def _in_shadow(model: mujoco.MjModel, data: mujoco.MjData, lamp: Floats, points:
 
 
 def _colours(model: mujoco.MjModel) -> Floats:
-    """(ngeom, 3) linear colour of each geom: its material's, else its own."""
+    """(ngeom, 3) linear colour of each geom: its material's, a texture taken at its mean, else its own."""
     own = model.geom_rgba[:, :3].astype(float)
     painted = model.geom_matid >= 0
-    own[painted] = model.mat_rgba[model.geom_matid[painted], :3]
+    own[painted] = _paints(model)[model.geom_matid[painted]]
     return np.asarray(own**2)
+
+
+def _paints(model: mujoco.MjModel) -> Floats:
+    """(nmat, 3) mean colour of each material."""
+    paints = model.mat_rgba[:, :3].astype(float)
+    for material, texture in enumerate(model.mat_texid[:, mujoco.mjtTextureRole.mjTEXROLE_RGB]):
+        if texture >= 0 and model.tex_nchannel[texture] >= 3:
+            start, channels = model.tex_adr[texture], model.tex_nchannel[texture]
+            size = model.tex_height[texture] * model.tex_width[texture] * channels
+            texels = model.tex_data[start : start + size].reshape(-1, channels)
+            paints[material] *= texels[:, :3].mean(axis=0) / 255.0
+    return np.asarray(paints)
 
 
 def _sky(directions: Floats) -> Floats:

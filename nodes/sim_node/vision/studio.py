@@ -53,7 +53,9 @@ class Studio:
 
     def paint(self, still: Still, view: View) -> Future[Picture]:
         """A picture for people."""
-        return self._thread.submit(lambda: Picture(png=picture_png(still.model, still.data, view)))
+        return self._thread.submit(
+            lambda: Picture(png=picture_png(self._open_eye(), still.model, still.data, view))
+        )
 
     def film(self, still: Callable[[], Still], publish: Callable[[Plane], None]) -> None:
         """Publish the planes of all cameras, unless the last ones are still being made."""
@@ -69,10 +71,15 @@ class Studio:
             for plane in self.planes(still, camera):
                 publish(plane)
 
+    def _open_eye(self) -> Eye:
+        """Opened when it is first needed, on the thread that it is bound to."""
+        self._eye = self._eye or Eye(graphics=self._config.graphics)
+        return self._eye
+
     def planes(self, still: Still, camera: str) -> list[Plane]:
         """What one camera sees: rgb, depth, and whose each pixel is if that is wanted."""
         config = self._config
-        eye = self._eye = self._eye or Eye(graphics=config.graphics)
+        eye = self._open_eye()
         view = camera_view(still.model, still.data, camera, config.width, config.height)
         rgb, depth = eye.see(still.model, still.data, view)
         if config.noise:

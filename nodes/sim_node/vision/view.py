@@ -64,7 +64,7 @@ def overview(low_m: Floats, high_m: Floats, width: int, height: int) -> View:
     """A view from above and in front (+x, -y) that just holds the box between two corners (3,)."""
     fovy = float(np.radians(36.0))
     middle = (low_m + high_m) / 2.0
-    back = np.array([0.50, -0.56, 0.66])
+    back = np.array([0.40, -0.46, 0.80])
     aimed = look_at(middle + back, middle, width, height, fovy)
     corners = np.stack(np.meshgrid(*zip(low_m, high_m, strict=True)), axis=-1).reshape(-1, 3) - middle
     x, y, z = (corners @ aimed.map_from_camera[:3, :3]).T

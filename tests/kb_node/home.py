@@ -1,0 +1,86 @@
+"""A small TBox of a home, and maps over it."""
+
+from pathlib import Path
+
+from nodes.kb_node import rdf_files
+from nodes.kb_node.journal import Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from ontology import stars
+from ontology import vocabulary as v
+from schemas.commits import Transaction
+from schemas.entities import Pose
+
+PREFIXES = f"""
+@prefix : <{v.ABOX}> .
+@prefix dm: <{v.TBOX}> .
+@prefix owl: <{v.OWL}> .
+@prefix rdfs: <{v.RDFS}> .
+@prefix xsd: <{v.XSD}> .
+"""
+TBOX_TURTLE = (
+    PREFIXES
+    + """
+<http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model> a owl:Ontology .
+dm:Physical_Thing a owl:Class .
+dm:Object a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "box" .
+dm:Seat a owl:Class ; rdfs:subClassOf dm:Object .
+dm:Chair a owl:Class ; rdfs:subClassOf dm:Seat ;
+    rdfs:label "chair"@en , "sedia"@it ; rdfs:comment "To sit on." ; dm:model "chair" .
+dm:Door a owl:Class ; rdfs:subClassOf dm:Object ; dm:fixed true .
+dm:Location a owl:Class ; rdfs:subClassOf dm:Physical_Thing .
+dm:Kitchen a owl:Class ; rdfs:subClassOf dm:Location .
+dm:Location owl:disjointWith dm:Object .
+dm:Property a owl:Class .
+dm:Coordinates a owl:Class ; rdfs:subClassOf dm:Property .
+dm:3Three_Dim_Size a owl:Class ; rdfs:subClassOf dm:Property .
+dm:PreferredReference a owl:Class ; rdfs:subClassOf dm:Property .
+dm:AlternativeReference a owl:Class ; rdfs:subClassOf dm:Property .
+dm:Property owl:disjointWith dm:Physical_Thing .
+dm:hasPosition a owl:ObjectProperty ; rdfs:domain dm:Physical_Thing .
+dm:hasSize a owl:ObjectProperty .
+dm:hasPreferredReference a owl:ObjectProperty .
+dm:hasAlternativeReference a owl:ObjectProperty .
+dm:isLocatedIn a owl:ObjectProperty ; rdfs:range dm:Location .
+dm:lexicalReference a owl:DatatypeProperty .
+dm:float_coordinates_x a owl:DatatypeProperty ; rdfs:range xsd:float .
+"""
+)
+TBOX = rdf_files.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
+
+
+def new_map(folder: Path, tbox=TBOX) -> SemanticMap:
+    """An empty map with a new journal in `folder`."""
+    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf_files.serialise(tbox, "ntriples")), tbox)
+
+
+def reopened(semantic_map: SemanticMap) -> SemanticMap:
+    """The same map after a restart."""
+    path = semantic_map._journal.path
+    semantic_map._journal.close()
+    return SemanticMap(Journal(path), semantic_map.tbox)
+
+
+def close(semantic_map: SemanticMap) -> None:
+    """Release the journal."""
+    semantic_map._journal.close()
+
+
+def turtle(text: str):
+    """Triples from Turtle with the usual prefixes."""
+    return tuple(rdf_files.parse((PREFIXES + text).encode(), "test"))
+
+
+def transaction(number, insert=(), retract=(), **fields):
+    """A transaction with the command id `number`."""
+    fields = {"source": "operator", **fields}
+    return Transaction(id=str(number), insert=tuple(insert), retract=tuple(retract), **fields)
+
+
+def chair(name="chair1", at=(1.0, 2.0, 0.0), **described):
+    """The star of a chair."""
+    return stars.star(name, v.dm("Chair"), pose=Pose(position_m=at), **described)
+
+
+def state(semantic_map: SemanticMap):
+    """All that a map says of itself."""
+    return semantic_map.seq, set(semantic_map.abox()), semantic_map.snapshot()

@@ -1,0 +1,129 @@
+import pytest
+
+from nodes.kb_node import answers, rdf_files
+from nodes.kb_node.documents import sort_out
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Explain
+from tests.kb_node import home
+from tests.kb_node.graphs import canonical
+from tests.kb_node.home import chair, transaction, turtle
+
+SYNTAXES = ["rdfxml", "turtle", "ntriples", "jsonld"]
+
+
+@pytest.fixture
+def furnished(semantic_map):
+    said = turtle(
+        ":chair1 dm:isLocatedIn :kitchen1 ; dm:hasSize [ a dm:3Three_Dim_Size ; dm:float_size_x 1.50 ] ."
+        ":chair2 a dm:Chair , owl:NamedIndividual ; dm:hasAlternativeReference :ref ."
+        ':ref dm:lexicalReference "<&>" , "è"@it .'
+    )
+    semantic_map.commit(transaction(1, [*chair(preferred="two\nlines"), *said]))
+    return semantic_map
+
+
+def names(entities):
+    return [entity.name for entity in entities]
+
+
+def test_listing_is_by_exact_class_name(furnished):
+    assert names(answers.entities_of(furnished, None)) == ["chair1", "chair2", "kitchen1"]
+    assert names(answers.entities_of(furnished, "Seat")) == ["chair1", "chair2"]
+    assert answers.entities_of(furnished, "Door") == ()
+    with pytest.raises(errors.UnknownClass, match="unknown class 'Saet'; did you mean Seat"):
+        answers.entities_of(furnished, "Saet")
+
+
+def test_infer_says_what_was_not_said(furnished):
+    inferred = answers.infer(furnished, "kitchen1")
+    assert "kitchen1 type Location" in inferred.text
+    assert "chair1 type Chair" not in answers.infer(furnished, None).text
+    assert "chair1 type Seat" in answers.infer(furnished, None).text
+    with pytest.raises(errors.UnknownName):
+        answers.infer(furnished, "sofa1")
+
+
+@pytest.mark.parametrize(
+    ("name", "predicate", "value", "support"),
+    [
+        ("chair1", "a", "Chair", {"chair1 type Chair"}),
+        ("chair1", "type", "Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
+        ("kitchen1", "a", "Location", {"chair1 isLocatedIn kitchen1", "isLocatedIn range Location"}),
+        ("chair1", "isLocatedIn", "kitchen1", {"chair1 isLocatedIn kitchen1"}),
+        ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
+    ],
+)
+def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value, support):
+    explanation = answers.explain(furnished, Explain(name=name, predicate=predicate, value=value))
+    assert {v.spoken(triple) for triple in explanation.support} == support
+
+
+@pytest.mark.parametrize(
+    ("name", "predicate", "value", "error", "text"),
+    [
+        ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
+        ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
+        ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
+        ("chair1", "a", "Door", errors.Refused, "it does not hold that chair1 a Door"),
+        (
+            "chair1",
+            "isLocatedIn",
+            "chair2",
+            errors.Refused,
+            "it does not hold that chair1 isLocatedIn chair2",
+        ),
+    ],
+)
+def test_what_cannot_be_explained(furnished, name, predicate, value, error, text):
+    with pytest.raises(error, match=text):
+        answers.explain(furnished, Explain(name=name, predicate=predicate, value=value))
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
+    document = answers.export(answers.picture(furnished, inferred=False), syntax)
+    before = furnished.abox()
+    assert (document.seq, document.triples) == (1, len(before))
+    kept, skipped = sort_out(
+        rdf_files.parse(document.content, "export"), furnished.classes, skip_unknown=False
+    )
+    furnished.commit(transaction(2, kept, furnished.abox()))
+    assert skipped == []
+    assert canonical(furnished.abox()) == canonical(before)
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_an_export_with_what_follows_can_be_loaded(furnished, syntax):
+    document = answers.export(answers.picture(furnished, inferred=True), syntax)
+    triples = rdf_files.parse(document.content, "export")
+    assert set(turtle(":kitchen1 a dm:Location . :chair1 a dm:Seat .")) <= set(triples)
+    assert not {v.OWL_THING, v.dm("Chair")} & {s for s, _, _ in triples}
+    before = list(furnished.entities())
+    kept, _ = sort_out(triples, furnished.classes, skip_unknown=False)
+    furnished.commit(transaction(2, kept, furnished.abox()))
+    assert names(furnished.entities()) == names(before)
+
+
+def test_an_inconsistent_map_is_not_exported():
+    wrong = answers.Picture([*home.TBOX, *turtle(":a a dm:Chair , dm:Kitchen .")], [], 0)
+    with pytest.raises(errors.Inconsistent, match="inconsistent: a cannot be") as caught:
+        answers.export(wrong, "turtle")
+    assert caught.value.explanation is not None
+
+
+def test_check_tells_why_not():
+    good = answers.check([*home.TBOX, *turtle(":a a dm:Chair .")], "semmap")
+    assert (good.consistent, good.text, good.explanation) == (True, "consistent", None)
+    assert good.triples == len(home.TBOX) + 1
+    bad = answers.check([*home.TBOX, *turtle(":a a dm:Chair , dm:Kitchen .")], "semmap")
+    assert not bad.consistent
+    assert bad.text.startswith("inconsistent: a cannot be")
+    assert bad.explanation is not None
+
+
+@pytest.mark.parametrize(("more", "consistent"), [("", True), (", dm:Kitchen", False)])
+def test_owlrl_is_of_the_same_opinion(more, consistent):
+    checked = answers.check([*home.TBOX, *turtle(f":a a dm:Chair {more} .")], "owlrl")
+    assert (checked.consistent, checked.engine) == (consistent, "owlrl")
+    assert checked.text.startswith("consistent" if consistent else "inconsistent: ")

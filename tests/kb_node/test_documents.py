@@ -1,0 +1,65 @@
+import pytest
+
+from nodes.kb_node import documents
+from nodes.kb_node.classes import ClassTable
+from nodes.kb_node.reasoner import Reasoner
+from ontology import vocabulary as v
+from schemas import errors
+from tests.kb_node import home
+from tests.kb_node.home import turtle
+
+
+@pytest.fixture(scope="module")
+def classes():
+    return ClassTable(Reasoner(home.TBOX))
+
+
+def test_a_document_of_known_classes_passes_whole(classes):
+    triples = turtle(
+        ":a a dm:Chair , owl:NamedIndividual ; dm:hasPosition [ a dm:Coordinates ] . <urn:o> a owl:Ontology ."
+    )
+    assert documents.sort_out(triples, classes, skip_unknown=False) == (list(triples), [])
+
+
+def test_all_unknown_classes_are_named(classes):
+    triples = turtle(":c a dm:Chiar . :x a dm:Xylophone . :d a dm:Door . :y a dm:Xylophone .")
+    with pytest.raises(errors.UnknownClass) as caught:
+        documents.sort_out(triples, classes, skip_unknown=False)
+    assert caught.value.text == (
+        "unknown classes 'Chiar' (of c; did you mean Chair?), 'Xylophone' (of x, y);"
+        " --skip-unknown leaves these out"
+    )
+
+
+def test_what_is_skipped_takes_its_own_star_along(classes):
+    kept = turtle(":d a dm:Door ; dm:hasPreferredReference :shared . :shared dm:lexicalReference 'it' .")
+    skipped = turtle(
+        ":x a dm:Xylophone ; dm:hasPosition :x_coordinates ; dm:hasPreferredReference :shared ; dm:near :d ."
+        " :x_coordinates a dm:Coordinates ; dm:float_coordinates_x 1 . :d dm:near :x ."
+    )
+    triples, words = documents.sort_out([*skipped, *kept], classes, skip_unknown=True)
+    assert set(triples) == set(kept)
+    assert words == ["x (unknown class 'Xylophone')"]
+
+
+def test_what_a_skipped_thing_points_to_stays_when_it_is_a_thing_itself(classes):
+    robot = turtle(":robot a dm:Robot ; dm:holds :chair1 .")
+    held = turtle(":chair1 a dm:Chair .")
+    assert documents.sort_out([*robot, *held], classes, skip_unknown=True)[0] == list(held)
+
+
+def test_of_two_classes_only_the_unknown_one_is_skipped(classes):
+    triples = turtle(":c a dm:Chair , dm:Antique ; dm:near :d .")
+    kept, words = documents.sort_out(triples, classes, skip_unknown=True)
+    assert set(kept) == set(turtle(":c a dm:Chair ; dm:near :d ."))
+    assert words == ["c (unknown class 'Antique')"]
+
+
+def test_a_class_that_the_document_declares_is_known(classes):
+    triples = turtle(":s a dm:Sofa . dm:Sofa a owl:Class ; rdfs:subClassOf dm:Seat .")
+    assert documents.sort_out(triples, classes, skip_unknown=False)[1] == []
+
+
+def test_a_literal_as_class_is_unknown(classes):
+    with pytest.raises(errors.UnknownClass):
+        documents.sort_out([(v.entity_iri("a"), v.RDF_TYPE, '"Chair"')], classes, skip_unknown=False)

@@ -1,0 +1,237 @@
+"""The knowledge base as a process of its own, asked over Zenoh on loopback."""
+
+import queue
+import subprocess
+import sys
+from contextlib import contextmanager, suppress
+
+import pytest
+
+from nodes import bus
+from nodes.kb_node import rdf_files
+from nodes.kb_node.seed import seed
+from nodes.supervisor.settings import Settings
+from ontology import vocabulary as v
+from schemas import codec, errors, keys
+from schemas.bridge import BRIDGE, LoadDocument, SnapshotQuery, StarQuery
+from schemas.commands import Check, Export, Get, Infer, List
+from schemas.entities import Entity
+from tests.conftest import free_endpoint
+from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
+
+WAIT_S = 20.0
+
+
+class Bench:
+    """A data folder with a map, and an endpoint at which the test listens for its knowledge base."""
+
+    def __init__(self, folder):
+        tbox = folder / "tbox.ttl"
+        tbox.write_text(TBOX_TURTLE)
+        self.data = folder / "data"
+        seed(self.data, tbox, None)
+        self.endpoint = free_endpoint()
+        settings = Settings(data=str(self.data), tbox=str(tbox), abox=None, world="", listen=self.endpoint)
+        self.settings = folder / "settings.json"
+        self.settings.write_bytes(codec.encode_json(settings))
+
+    def start(self):
+        """The process of a knowledge base."""
+        command = [sys.executable, "-m", "nodes.supervisor.launch", "kb_node", str(self.settings)]
+        return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+    def session(self):
+        """The session that the knowledge base connects to."""
+        return bus.open_session(bus.Network(mode="peer", listen=(self.endpoint,), connect=()))
+
+    def client(self):
+        """Another one's session."""
+        return bus.open_session(bus.Network(connect=(self.endpoint,)))
+
+
+@contextmanager
+def ended(process):
+    """Kill a process at last, if it still runs."""
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    return Bench(tmp_path_factory.mktemp("kb"))
+
+
+@pytest.fixture(scope="module")
+def session(bench):
+    with bench.session() as session, ended(bench.start()) as process:
+        await_answer(session)
+        yield session
+        process.terminate()
+        assert process.wait(WAIT_S) == 0
+
+
+def ask(session, verb, message, **limits):
+    return bus.ask(session, keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+
+
+def await_answer(session):
+    """Wait for a knowledge base. A question to one that was just killed may be lost, so it is asked again."""
+    for _ in range(int(WAIT_S)):
+        with suppress(errors.NoAnswer):
+            return ask(session, "snapshot", SnapshotQuery(), patience_s=1.0, timeout_s=1.0)
+    return pytest.fail("no knowledge base answers")
+
+
+def until(publications, count):
+    """The next `count` publications."""
+    return [publications.get(timeout=WAIT_S) for _ in range(count)]
+
+
+def followed(session, topic):
+    publications = queue.Queue()
+    subscriber = bus.follow(session, topic, lambda key, message: publications.put((key, message)))
+    ask(
+        session, "snapshot", SnapshotQuery()
+    )  # answered after the subscription, which went before it, is known
+    return publications, subscriber
+
+
+def test_a_commit_is_replied_and_published(session):
+    commits, subscriber = followed(session, keys.COMMIT)
+    first = ask(session, "commit", transaction("a", chair("a")))
+    second = ask(session, "commit", transaction("b", chair("b")))
+    assert ask(session, "commit", transaction("a", chair("x"))) == first
+    assert ask(session, "commit", transaction("c", chair("b"))) is None
+    third = ask(session, "commit", transaction("d", retract=chair("b")))
+    assert [message for _, message in until(commits, 3)] == [first, second, third]
+    assert third.seq == second.seq + 1 == first.seq + 2
+    subscriber.undeclare()
+
+
+def test_entities_are_published_under_each_class_and_deleted_at_their_end(session):
+    entities, subscriber = followed(session, keys.ENTITY)
+    commit = ask(session, "commit", transaction("pub1", chair("pub")))
+    seen = dict(until(entities, 4))
+    assert seen.keys() == {keys.entity_key(c, "pub") for c in ("Chair", "Seat", "Object", "Physical_Thing")}
+    assert list(seen.values()) == list(commit.changed) * 4
+    iri = v.entity_iri("pub")
+    door = transaction("pub2", [(iri, v.RDF_TYPE, v.dm("Door"))], [(iri, v.RDF_TYPE, v.dm("Chair"))])
+    ask(session, "commit", door)
+    seen = dict(until(entities, 5))
+    assert {key for key, entity in seen.items() if entity is None} == {
+        keys.entity_key(c, "pub") for c in ("Chair", "Seat")
+    }
+    assert seen[keys.entity_key("Door", "pub")].class_ == "Door"
+    ask(session, "commit", transaction("pub3", retract=[*chair("pub"), (iri, v.RDF_TYPE, v.dm("Door"))]))
+    seen = dict(until(entities, 3))
+    assert seen == {keys.entity_key(c, "pub"): None for c in ("Door", "Object", "Physical_Thing")}
+    subscriber.undeclare()
+
+
+def test_two_clients_see_one_map(bench, session):
+    ask(session, "commit", transaction("two", chair("two")))
+    with bench.client() as other:
+        assert ask(other, "get", Get(name="two")) == ask(session, "get", Get(name="two"))
+        with pytest.raises(errors.NameTaken, match="the name 'two' is taken"):
+            ask(other, "commit", transaction("again", chair("two"), vacant=[v.entity_iri("two")]))
+        ask(other, "commit", transaction("gone", retract=chair("two")))
+    with pytest.raises(errors.UnknownName, match="no entity is named 'two'"):
+        ask(session, "get", Get(name="two"))
+
+
+def test_questions_are_answered(session):
+    ask(session, "commit", transaction("q", chair("q", preferred="queen")))
+    assert [e.name for e in ask(session, "list", List(class_="Chair")) if e.name == "q"] == ["q"]
+    (star,) = ask(session, "star", StarQuery(names=("q",)))
+    assert set(star.own) == set(chair("q", preferred="queen"))
+    assert "q type Seat" in ask(session, "infer", Infer(name="q")).text
+    assert ask(session, "check", Check()).consistent
+    document = ask(session, "export", Export(format="turtle", inferred=True))
+    assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf_files.parse(document.content, "export")
+
+
+def load(number, content, **fields):
+    fields = {"replace": False, "skip_unknown": False, **fields}
+    return LoadDocument(id=number, source="file", content=content.encode(), filename="f.ttl", **fields)
+
+
+def test_documents_are_loaded_whole_or_not_at_all(session):
+    loaded = ask(session, "load", load("l1", PREFIXES + ":l a dm:Chair . :m a dm:Moon .", skip_unknown=True))
+    assert loaded.skipped == ("m (unknown class 'Moon')",)
+    before = ask(session, "snapshot", SnapshotQuery())
+    assert "l" in {e.name for e in before.entities}
+    for content, error in (
+        (PREFIXES + ":n a dm:Chair . :m a dm:Moon .", errors.UnknownClass),
+        (PREFIXES + ":n a dm:Chair . :o a dm:Chair , dm:Kitchen .", errors.Inconsistent),
+        (PREFIXES + ":n a dm:Chair . :o a dm:", errors.BadFile),
+    ):
+        with pytest.raises(error):
+            ask(session, "load", load(f"bad {error.code}", content, replace=True))
+    assert ask(session, "snapshot", SnapshotQuery()) == before
+    replaced = ask(session, "load", load("l2", PREFIXES + ":only a dm:Chair .", replace=True))
+    assert {gone.name for gone in replaced.commit.removed} == {e.name for e in before.entities}
+    assert [e.name for e in ask(session, "snapshot", SnapshotQuery()).entities] == ["only"]
+
+
+@pytest.mark.parametrize(
+    ("verb", "payload", "error", "text"),
+    [
+        ("destroy", b"\x80", errors.UnknownVerb, "unknown verb 'destroy'; there are: check, "),
+        ("commit", b"\xc1", errors.BadRequest, "malformed message: it is no valid MessagePack"),
+        ("commit", b"\x80", errors.BadRequest, "malformed message: id is missing"),
+        (
+            "commit",
+            codec.encode({"id": "", "source": "operator"}),
+            errors.BadRequest,
+            "id must be a text of 1 to",
+        ),
+        (
+            "commit",
+            codec.encode({"id": "x", "source": "operator", "insert": [["a", "b", "c"]]}),
+            errors.BadRequest,
+            "no triple of RDF terms in N-Triples syntax: a b c",
+        ),
+        ("get", codec.encode({"name": "nobody"}), errors.UnknownName, "no entity is named 'nobody'"),
+    ],
+)
+def test_a_bad_request_is_answered_with_an_error(session, verb, payload, error, text):
+    (reply,) = session.get(f"{keys.BRIDGE}/{verb}", payload=payload)
+    with pytest.raises(error, match=text):
+        bus.read_reply(verb, reply, Entity, 1.0)
+
+
+def test_a_second_knowledge_base_on_the_same_data_is_refused(bench, session):
+    ask(session, "snapshot", SnapshotQuery())
+    with ended(bench.start()) as second:
+        _, text = second.communicate(timeout=WAIT_S)
+        assert second.returncode == errors.Refused.exit_status
+        assert "kb_node: another knowledge base is using" in text
+
+
+def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(tmp_path):
+    bench = Bench(tmp_path)
+    acknowledged = {}
+    with bench.session() as session:
+        for life in range(2):
+            with ended(bench.start()) as process:
+                await_answer(session)
+                for i in range(20):
+                    commit = ask(session, "commit", transaction(f"{life}-{i}", chair(f"c{life}-{i}")))
+                    acknowledged[commit.seq] = commit
+                pending = session.get(
+                    f"{keys.BRIDGE}/commit",
+                    payload=codec.encode(transaction("last", chair("last"))),
+                    timeout=1.0,
+                )
+                process.kill()
+                list(pending)
+        with ended(bench.start()):
+            snapshot = await_answer(session)
+            for commit in acknowledged.values():
+                assert ask(session, "commit", transaction(commit.id, chair("other"))) == commit
+    names = {entity.name for entity in snapshot.entities} - {"last"}
+    assert names == {f"c{life}-{i}" for life in range(2) for i in range(20)}
+    assert snapshot.seq - 1 - len(acknowledged) in (0, 1)

@@ -1,0 +1,295 @@
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec import structs
+
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import codec, errors
+from schemas.commits import Commit, Snapshot
+from schemas.entities import Pose
+from tests.kb_node import home
+from tests.kb_node.home import chair, state, transaction, turtle
+from tests.kb_node.test_journal import full_by_page_count
+
+CHAIR1, CHAIR2 = v.entity_iri("chair1"), v.entity_iri("chair2")
+
+
+def test_a_commit_says_what_it_changed(semantic_map):
+    commit = semantic_map.commit(
+        transaction(1, chair(preferred="stool"), agent="ann", reason="tidy", confidence=0.5)
+    )
+    (entity,) = commit.changed
+    assert commit.seq == semantic_map.seq == 1
+    assert (entity.name, entity.class_, entity.preferred_reference) == ("chair1", "Chair", "stool")
+    assert entity.types == ("Chair", "Seat", "Object", "Physical_Thing")
+    assert (entity.provenance.agent, entity.provenance.reason, entity.provenance.confidence) == (
+        "ann",
+        "tidy",
+        0.5,
+    )
+    assert set(commit.inserted) == set(chair(preferred="stool"))
+    assert semantic_map.snapshot() == Snapshot(seq=1, entities=(entity,))
+
+
+def test_what_is_taken_back_is_as_if_it_never_was(semantic_map):
+    semantic_map.commit(transaction(1, chair("chair2")))
+    before = state(semantic_map)
+    semantic_map.commit(transaction(2, chair()))
+    commit = semantic_map.commit(transaction(3, retract=chair()))
+    assert [(gone.name, gone.types) for gone in commit.removed] == [
+        ("chair1", ("Chair", "Seat", "Object", "Physical_Thing"))
+    ]
+    assert commit.changed == ()
+    assert state(semantic_map)[1:] == (before[1], structs.replace(before[2], seq=3))
+
+
+def test_what_changes_nothing_is_no_commit(semantic_map):
+    semantic_map.commit(transaction(1, chair()))
+    assert semantic_map.commit(transaction(2, chair())) is None
+    assert semantic_map.commit(transaction(3, retract=chair("chair2"))) is None
+    assert semantic_map.commit(transaction(4, insert=chair(), retract=chair())) is None
+    assert semantic_map.commit(transaction(5, insert=home.TBOX[:3])) is None
+    assert semantic_map.seq == 1
+
+
+def test_the_same_command_twice_is_answered_with_the_first_commit(semantic_map):
+    first = semantic_map.commit(transaction("same", chair()))
+    assert semantic_map.commit(transaction("same", chair("chair2"))) == first
+    semantic_map.commit(transaction("other", retract=chair()))
+    again = home.reopened(semantic_map)
+    assert again.commit(transaction("same", chair())) == first
+    assert (len(again), again.seq) == (0, 2)
+    home.close(again)
+
+
+HIGH = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_x "high"^^xsd:float ] .'
+NAN = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_y "NaN"^^xsd:float ] .'
+TWICE = "<http://a.org/x#b> a dm:Chair . <http://b.org/x#b> a dm:Chair ."
+IN_A_CHAIR = [*chair(), *turtle(":x dm:isLocatedIn :chair1 .")]
+REFUSED = {
+    "inconsistent": ([*chair(), (CHAIR1, v.RDF_TYPE, v.LOCATION)], {}, errors.Inconsistent),
+    "inferred to be inconsistent": (IN_A_CHAIR, {}, errors.Inconsistent),
+    "ill-typed": (turtle(HIGH), {}, errors.Inconsistent),
+    "not finite": (turtle(NAN), {}, errors.BadRequest),
+    "precondition": (chair(), {"require": [(CHAIR2, v.RDF_TYPE, v.dm("Chair"))]}, errors.PreconditionFailed),
+    "name taken": (chair("chair0"), {"vacant": [v.entity_iri("chair0")]}, errors.NameTaken),
+    "star's name taken": (chair("b"), {"vacant": [v.entity_iri("chair0_coordinates")]}, errors.NameTaken),
+    "name taken elsewhere": (turtle("<http://example.org/x#chair0> a dm:Chair ."), {}, errors.NameTaken),
+    "one name twice": (turtle(TWICE), {}, errors.NameTaken),
+    "no name": (turtle("<http://a.org/my%20chair> a dm:Chair ."), {}, errors.BadRequest),
+    "blank": (turtle("[] a dm:Chair ."), {}, errors.BadRequest),
+    "script": (turtle("<javascript:alert(1)#chair> a dm:Chair ."), {}, errors.BadRequest),
+    "TBox": ((), {"retract": [(v.dm("Chair"), v.RDFS_SUB_CLASS_OF, v.dm("Seat"))]}, errors.Refused),
+}
+
+
+@pytest.mark.parametrize(("insert", "fields", "error"), REFUSED.values(), ids=REFUSED.keys())
+def test_what_is_refused_leaves_everything_as_it_was(semantic_map, insert, fields, error):
+    semantic_map.commit(transaction(0, chair("chair0")))
+    before = state(semantic_map), set(semantic_map.reasoner.inferred())
+    with pytest.raises(error) as caught:
+        semantic_map.commit(transaction(1, insert, **fields))
+    assert type(caught.value) is error
+    assert (caught.value.explanation is not None) == (error is errors.Inconsistent)
+    assert (state(semantic_map), set(semantic_map.reasoner.inferred())) == before
+    again = home.reopened(semantic_map)
+    assert state(again) == before[0]
+    home.close(again)
+
+
+@pytest.mark.parametrize(("insert", "retract"), [(chair("chair1"), ()), ((), chair("chair0"))])
+def test_a_full_disk_leaves_everything_as_it_was(semantic_map, insert, retract):
+    semantic_map.commit(transaction(0, chair("chair0")))
+    before = state(semantic_map), set(semantic_map.reasoner.inferred())
+    wanted = transaction(1, insert, retract, reason="x" * 100_000)
+    could_not = pytest.raises(errors.Refused, match="commit 2 could not be written to")
+    with full_by_page_count(semantic_map._journal), could_not:
+        semantic_map.commit(wanted)
+    assert (state(semantic_map), set(semantic_map.reasoner.inferred())) == before
+    assert semantic_map.commit(wanted).seq == 2
+
+
+def test_a_name_may_pass_from_one_namespace_to_another(semantic_map):
+    other = turtle("<http://zzz.org/x#chair1> a dm:Chair .")
+    semantic_map.commit(transaction(1, other))
+    commit = semantic_map.commit(transaction(2, chair(), retract=other))
+    assert [gone.name for gone in commit.removed] == ["chair1"]
+    assert [entity.iri for entity in commit.changed] == [v.bare(CHAIR1)]
+    commit = semantic_map.commit(transaction(3, other, retract=chair()))
+    assert semantic_map.entity("chair1").iri == "http://zzz.org/x#chair1"
+    expected = state(semantic_map)
+    again = home.reopened(semantic_map)
+    assert state(again) == expected
+    home.close(again)
+
+
+def test_an_entity_may_be_one_by_inference_only(semantic_map):
+    semantic_map.commit(transaction(1, chair()))
+    commit = semantic_map.commit(transaction(2, turtle(":chair1 dm:isLocatedIn :kitchen1 .")))
+    kitchen = semantic_map.entity("kitchen1")
+    assert (kitchen.class_, kitchen.place, kitchen.pose, kitchen.provenance.commit) == (
+        "Location",
+        True,
+        None,
+        2,
+    )
+    assert {entity.name for entity in commit.changed} == {"chair1", "kitchen1"}
+    commit = semantic_map.commit(transaction(3, retract=turtle(":chair1 dm:isLocatedIn :kitchen1 .")))
+    assert [gone.name for gone in commit.removed] == ["kitchen1"]
+
+
+def test_provenance_says_what_last_changed(semantic_map):
+    def marks():
+        entity = semantic_map.entity("chair1")
+        return entity.provenance.commit, entity.pose_provenance.commit, entity.shape_provenance.commit
+
+    first, second = Pose(position_m=(1.0, 2.0, 0.0)), Pose(position_m=(3.0, 2.0, 0.0))
+    node = v.entity_iri("chair1_coordinates")
+    semantic_map.commit(transaction(1, chair()))
+    assert marks() == (1, 1, 1)
+    semantic_map.commit(
+        transaction(
+            2, stars.position(CHAIR1, node, second), stars.position(CHAIR1, node, first), source="scene"
+        )
+    )
+    assert marks() == (2, 2, 1)
+    assert semantic_map.entity("chair1").pose_provenance.source == "scene"
+    semantic_map.commit(transaction(3, stars.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0))))
+    assert marks() == (3, 2, 3)
+    semantic_map.commit(transaction(4, stars.preferred_reference(CHAIR1, v.entity_iri("r"), "stool")))
+    assert marks() == (4, 2, 3)
+    semantic_map.commit(
+        transaction(5, [(CHAIR1, v.RDF_TYPE, v.dm("Door"))], [(CHAIR1, v.RDF_TYPE, v.dm("Chair"))])
+    )
+    assert marks() == (5, 2, 5)
+    semantic_map.commit(transaction(6, chair("chair2")))
+    assert marks() == (5, 2, 5)
+    (shared,) = turtle(':r dm:lexicalReference "seat" .')
+    semantic_map.commit(transaction(7, [shared]))
+    assert marks() == (7, 2, 5)
+
+
+def test_entities_are_listed_by_inferred_class(semantic_map):
+    semantic_map.commit(
+        transaction(1, [*chair("b"), *chair("a"), *turtle(":k a dm:Kitchen . :d a dm:Door .")])
+    )
+    assert [e.name for e in semantic_map.entities()] == ["a", "b", "d", "k"]
+    assert [e.name for e in semantic_map.entities(v.dm("Seat"))] == ["a", "b"]
+    assert [e.name for e in semantic_map.entities(v.LOCATION)] == ["k"]
+    assert list(semantic_map.entities(v.COORDINATES)) == []
+    counts = {row.name: (row.asserted, row.inferred) for row in semantic_map.class_table()}
+    assert (counts["Chair"], counts["Seat"], counts["Physical_Thing"]) == ((2, 2), (0, 2), (0, 4))
+
+
+def test_unknown_names_come_with_the_nearest(semantic_map):
+    semantic_map.commit(transaction(1, chair()))
+    with pytest.raises(errors.UnknownName, match=r"no entity is named 'chiar1'; did you mean chair1\?"):
+        semantic_map.entity("chiar1")
+    with pytest.raises(errors.UnknownName):
+        semantic_map.stars(["chair1", "chair9"])
+
+
+def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_path):
+    semantic_map = home.new_map(
+        tmp_path,
+        [
+            *home.TBOX,
+            *turtle(":sink a dm:Door ."),
+        ],
+    )
+    assert semantic_map.entity("sink").provenance.commit == 0
+    with pytest.raises(errors.Refused, match="sink is part of the TBox, which no command changes"):
+        semantic_map.stars(["sink"])
+    with pytest.raises(
+        errors.Refused, match="the TBox says that sink type Door, and no command changes the TBox"
+    ):
+        semantic_map.commit(transaction(1, retract=turtle(":sink a dm:Door .")))
+    semantic_map.commit(
+        transaction(2, turtle(":sink dm:hasPreferredReference :r . :r dm:lexicalReference 'sink' ."))
+    )
+    semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert again.entity("sink").preferred_reference == "sink"
+    home.close(again)
+
+
+NAMES = st.sampled_from(["chair1", "chair2", "chair3"])
+SEEN = st.sampled_from([0.0, 1.0])
+SAID = ["dm:isLocatedIn :kitchen", "dm:hasSize :s"]
+OPERATIONS = st.lists(
+    st.one_of(
+        st.tuples(st.just("insert"), NAMES, SEEN),
+        st.tuples(st.just("retract"), NAMES, SEEN),
+        st.tuples(st.just("say"), NAMES, st.sampled_from([*SAID, "a dm:Location"])),
+        st.tuples(st.just("unsay"), NAMES, st.sampled_from(SAID)),
+        st.just(("checkpoint", "", "")),
+    ),
+    max_size=8,
+)  # fmt: skip
+
+
+def perform(semantic_map, number, operation):
+    what, name, how = operation
+    if what == "checkpoint":
+        semantic_map.checkpoint()
+        return
+    triples = chair(name, (how, 0.0, 0.0)) if isinstance(how, float) else turtle(f":{name} {how} .")
+    insert, retract = ((), triples) if what in ("retract", "unsay") else (triples, ())
+    before = state(semantic_map)
+    try:
+        semantic_map.commit(transaction(number, insert, retract))
+    except errors.Refused:
+        assert state(semantic_map) == before
+
+
+@settings(max_examples=12, deadline=None)
+@given(OPERATIONS)
+def test_a_restart_gives_the_same_map_with_and_without_checkpoints(tmp_path_factory, operations):
+    semantic_map = home.new_map(tmp_path_factory.mktemp("map"))
+    for number, operation in enumerate(operations):
+        perform(semantic_map, number, operation)
+    expected, classes = state(semantic_map), list(semantic_map.class_table())
+    again = home.reopened(semantic_map)
+    assert (state(again), list(again.class_table())) == (expected, classes)
+    again._journal._db.execute("DELETE FROM checkpoints")
+    from_nothing = home.reopened(again)
+    assert (state(from_nothing), list(from_nothing.class_table())) == (expected, classes)
+    home.close(from_nothing)
+
+
+@settings(max_examples=12, deadline=None)
+@given(OPERATIONS, OPERATIONS)
+def test_a_commit_and_its_reverse_leave_the_map_as_it_was(tmp_path_factory, before, after):
+    semantic_map = home.new_map(tmp_path_factory.mktemp("map"))
+    for number, operation in enumerate(before):
+        perform(semantic_map, number, operation)
+    _, triples, snapshot = state(semantic_map)
+    first = semantic_map.seq
+    for number, operation in enumerate(after):
+        perform(semantic_map, f"after {number}", operation)
+    for commit in reversed(list(semantic_map._journal.commits(after=first))):
+        semantic_map.commit(transaction(f"undo {commit.seq}", commit.retracted, commit.inserted))
+    assert set(semantic_map.abox()) == triples
+    assert [plain(e) for e in semantic_map.entities()] == [plain(e) for e in snapshot.entities]
+    home.close(semantic_map)
+
+
+def plain(entity):
+    """An entity without where the knowledge came from."""
+    nobody = structs.replace(entity.provenance, commit=0, stamp_ns=0)
+    return structs.replace(entity, provenance=nobody, pose_provenance=nobody, shape_provenance=nobody)
+
+
+def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):
+    bad = Commit(
+        seq=1, stamp_ns=1, id="1", source="file", inserted=tuple(turtle(":a a dm:Chair , dm:Kitchen ."))
+    )
+    semantic_map._journal.append(bad)
+    with pytest.raises(errors.Refused, match="commit 1 no longer fits its TBox: a cannot be"):
+        home.reopened(semantic_map)
+
+
+def test_a_commit_crosses_the_wire(semantic_map):
+    commit = semantic_map.commit(transaction(1, chair()))
+    assert codec.decode(codec.encode(commit), Commit) == commit
