@@ -42,7 +42,7 @@ Step = tuple[str, Any, Any, Callable[[Any], None]]
 
 
 def batches(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
-    """The orders in batches that the simulator can make between two heartbeats, what is wide before what is not.
+    """The orders in batches that the simulator can make between two heartbeats, what is wide first.
 
     Within a batch the simulator itself sees to it that supports come before what stands on them.
     """
