@@ -80,6 +80,11 @@ class Keeping:
         elif not self._busy:
             self._start([])
 
+    def lose_scene(self) -> None:
+        """The simulator is silent: forget the scene, unless it is silent over orders of ours."""
+        if self.scene.known and not self._busy:
+            self.scene.forget()
+
     def keep(self) -> None:
         """Do what must be done, unless orders are under way already."""
         if self._busy or not self.scene.known:

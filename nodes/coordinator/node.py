@@ -93,8 +93,8 @@ class Coordinator:
     def _tick(self) -> None:
         if not self._has_map:
             self._fetch_map()
-        if self._keeping.scene.known and not self._health.alive("sim_node"):
-            self._keeping.scene.forget()
+        if not self._health.alive("sim_node"):
+            self._keeping.lose_scene()
         self._keep()
 
     def _keep(self) -> None:
