@@ -6,30 +6,47 @@ asks of the knowledge base goes through the functions that it is given.
 
 from __future__ import annotations
 
+import functools
 import uuid
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.class_names import ClassNames
-from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
-from nodes.coordinator.files.described import Described, pose_of
 from nodes.coordinator.naming import free_name, free_position
-from schemas import errors
+from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, StarQuery
 from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Triple
+from schemas.scene_files import Described, pose_of
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
-    "scene": scene_file.read,
+    "scene": scene_files.read,
     "huric": huric.read,
 }
 _ATTEMPTS = 5
+
+
+D = TypeVar("D", bound="Door")
+C = TypeVar("C", bound=Command)
+
+
+def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
+    """A command that is sent again under the same id is answered with its first result."""
+
+    @functools.wraps(change)
+    def execute(door: D, command: C) -> Changed:
+        if not command.id:
+            return change(door, structs.replace(command, id=_new_id()))
+        return door.done_before(command) or change(door, command)
+
+    return execute
 
 
 class Door:
@@ -66,9 +83,9 @@ class Door:
         self.entities.update({entity.name: entity for entity in commit.changed})
         return True
 
+    @once
     def add(self, command: Add) -> Changed:
         """Put an entity into the map."""
-        command = _with_id(command)
         found = self.classes.spatial(command.class_)
         name = command.name or free_name(found.name, self.entities)
         if name in self.entities:
@@ -84,9 +101,9 @@ class Door:
             notes=self.classes.note(command.class_, found),
         )
 
+    @once
     def update(self, command: Update) -> Changed:
         """Change what is named; what is not named stays."""
-        command = _with_id(command)
         entity = self.entity(command.name)
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
         _require_authority(command, entity, whatever=found or command.ref or command.alt or command.size)
@@ -105,6 +122,7 @@ class Door:
             notes=self.classes.note(command.class_ or "", found) if found else (),
         )
 
+    @once
     def remove(self, command: Remove) -> Changed:
         """Take entities out: all of them, or, if one is unknown, none."""
         if not command.names:
@@ -112,15 +130,16 @@ class Door:
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
         for entity in leaving:
             _require_authority(command, entity, whatever=True)
-        return self._remove(_with_id(command), f"remove {' '.join(e.name for e in leaving)}", leaving)
+        return self._remove(command, f"remove {' '.join(e.name for e in leaving)}", leaving)
 
+    @once
     def clear(self, command: Clear) -> Changed:
         """Take every entity out."""
-        return self._remove(_with_id(command), "clear", list(self.entities.values()))
+        return self._remove(command, "clear", list(self.entities.values()))
 
+    @once
     def load(self, command: Load) -> Changed:
         """Add what a file describes."""
-        command = _with_id(command)
         if command.source == "operator":
             command = structs.replace(command, source="file")
         kind = kind_of(command.content, command.filename)
@@ -160,6 +179,14 @@ class Door:
             return transactions.update(command, self.entity(name), star, None, pose, suffix)
 
         self._commit(build)
+
+    def done_before(self, command: Command) -> Changed | None:
+        """The result of the command with this id, if there was one."""
+        commit: Commit | None = self._ask("commit", Transaction(id=command.id, source=command.source))
+        if commit is None:
+            return None
+        names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
+        return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
     def _load_document(self, command: Load) -> Changed:
         document = LoadDocument(
@@ -236,10 +263,6 @@ class Door:
         if commit is not None:
             self.take(commit)
         return commit
-
-
-def _with_id(command: Any) -> Any:
-    return command if command.id else structs.replace(command, id=_new_id())
 
 
 def _new_id() -> str:

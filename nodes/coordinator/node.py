@@ -25,7 +25,9 @@ from schemas.health import Health
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
 
 _WAIT_S = 20.0
-_COMMIT_TIMEOUT_S = 120.0
+_COMMIT_TIMEOUT_S = 10.0
+_LOAD_TIMEOUT_S = 300.0
+_SIM_TIMEOUT_S = 120.0
 _CHECK_TIMEOUT_S = 660.0
 
 
@@ -91,8 +93,8 @@ class Coordinator:
     def _tick(self) -> None:
         if not self._has_map:
             self._fetch_map()
-        if self._keeping.scene.known and not self._health.alive("sim_node"):
-            self._keeping.scene.forget()
+        if not self._health.alive("sim_node"):
+            self._keeping.lose_scene()
         self._keep()
 
     def _keep(self) -> None:
@@ -224,13 +226,14 @@ class Coordinator:
         return guarded
 
     def _ask_kb(self, verb: str, message: Any) -> Any:
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_COMMIT_TIMEOUT_S)
+        timeout_s = _LOAD_TIMEOUT_S if verb == "load" else _COMMIT_TIMEOUT_S
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=timeout_s)
 
     def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
 
     def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_COMMIT_TIMEOUT_S)
+        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
 
 
 def run(config: CoordinatorConfig) -> None:

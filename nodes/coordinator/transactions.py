@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from nodes.coordinator.files.described import Described, pose_of
 from ontology import stars
 from ontology import vocabulary as v
 from schemas.commands import Add, Command, Update
 from schemas.commits import Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Term, Triple
+from schemas.scene_files import Described, pose_of
 
 
 def transaction(

@@ -168,9 +168,11 @@ def test_a_name_can_be_used_again_after_removal_and_after_changes_of_references(
 
 def test_the_same_command_id_is_executed_once(door):
     first = add(door, name="chair1", id="42")
-    door.remove(c.Remove(names=("chair1",)))
     again = add(door, name="chair1", id="42")
-    assert again.commit == first.commit
+    assert (again.commit, again.names) == (first.commit, first.names)
+    gone = door.remove(c.Remove(names=("chair1",), id="43"))
+    assert door.remove(c.Remove(names=("chair1",), id="43")).commit == gone.commit
+    assert add(door, name="chair1", id="42").commit == first.commit
     assert door.entities == {}
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nodes.kb_node.reasoner.axioms import ANY, Key, Limit, NotCompilable, Role
 from nodes.kb_node.reasoner.individuals import Equals, Individuals
 from nodes.kb_node.reasoner.reasons import Claim, Clash, Edge, Member, Reason, Same, member
-from nodes.kb_node.reasoner.schema import ANY, Key, Limit, NotCompilable, Role
 
 
 class Equality(Individuals):

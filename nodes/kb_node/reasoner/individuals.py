@@ -9,9 +9,10 @@ from collections.abc import Iterable, Iterator
 from itertools import combinations, count
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.axioms import Group, Role
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.schema import Group, Role, Schema
+from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.steps import Steps
 from nodes.kb_node.reasoner.store import NONE, Store
 from nodes.kb_node.reasoner.terms import is_literal
@@ -153,10 +154,10 @@ class Individuals:
                 self.store.file(node, before, self.store.kind[node])
         self.moved.clear()
 
-    def forget(self, node: int) -> None:
-        """Release a node that nothing is said of any more."""
-        value = self.value(node) if self.spellings else None
-        if self.store.release(node) and value in self.spellings:
-            self.spellings[value] = [other for other in self.spellings[value] if other != node]
+    def forget_spelling(self, literal: int) -> None:
+        """A literal that nothing has any more is no spelling of its value."""
+        value = self.value(literal)
+        if value in self.spellings:
+            self.spellings[value] = [other for other in self.spellings[value] if other != literal]
             if not self.spellings[value]:
                 del self.spellings[value]

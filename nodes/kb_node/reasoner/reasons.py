@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.schema import ANY, Role
+from nodes.kb_node.reasoner.axioms import ANY, Role
 
 
 class Edge(NamedTuple):

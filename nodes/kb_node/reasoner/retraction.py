@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.axioms import Chain, Role
 from nodes.kb_node.reasoner.individuals import Equals
 from nodes.kb_node.reasoner.reasons import Reason
-from nodes.kb_node.reasoner.schema import Chain, Role
 from nodes.kb_node.reasoner.store import ASSERTED, NONE, VALUE
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Term, Triple
@@ -40,10 +40,8 @@ class Retraction:
             kind = self._store.kind[node]
             if kind.base is not kind and node not in self._reset and not self._is_borne_out(node):
                 self._reset_all(node)
-        for node in self.touched if self._abox.equals else ():
-            equals = self._abox.equals.get(node)
-            if equals is not None and self._abox.is_literal(node) and self._store.is_bare(node):
-                self._dissolve(equals)
+        if self._abox.spellings:
+            self._forget_spellings()
         for node in self._loosened:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
@@ -56,7 +54,14 @@ class Retraction:
     def release(self) -> None:
         """Forget the nodes that nothing is said of any more."""
         for node in self.touched:
-            self._abox.forget(node)
+            self._store.release(node)
+
+    def _forget_spellings(self) -> None:
+        for node in list(self.touched):
+            if self._abox.is_literal(node) and self._store.is_bare(node):
+                self._abox.forget_spelling(node)
+                if equals := self._abox.equals.get(node):
+                    self._dissolve(equals)
 
     # What goes
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from nodes.kb_node.reasoner.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
-from nodes.kb_node.reasoner.schema import ANY, SAME, Chain, Group, Key, Limit, Role, Schema
+from nodes.kb_node.reasoner.schema import Schema
 
 
 @dataclass(frozen=True, slots=True)

@@ -169,6 +169,15 @@ def sequences(examples):
     )
 
 
+def test_a_spelling_that_goes_while_another_comes():
+    """The old spelling's node must not be joined to the new one's on its way out."""
+    reasoner = Reasoner(asserted_in(BASE))
+    old, new = (triple(f':i0 :ifd "{text}"^^xsd:float') for text in ("1.0", "1.00"))
+    reasoner.apply(insert=[old])
+    reasoner.apply(delete=[old], insert=[new])
+    check_same(reasoner, [*asserted_in(BASE), new], BASE)
+
+
 @sequences(200)
 @given(CHANGES)
 def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
