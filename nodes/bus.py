@@ -245,6 +245,12 @@ def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None)
     )
 
 
+def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
+    """A function that tells whether anybody follows any key of `topic` just now."""
+    publisher = session.declare_publisher(topic.key)
+    return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
+
+
 def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, Any], None]) -> Any:
     """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
 

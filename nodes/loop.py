@@ -38,6 +38,7 @@ class Node:
         self.session = session
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._timers: list[tuple[float, Callable[[], None]]] = []
+        self._idle: list[Callable[[], None]] = []
         self._stopping = False
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
@@ -63,6 +64,10 @@ class Node:
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""
         self._timers.append((period_s, handle))
+
+    def when_idle(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` each time that no event waits: what handlers have put off is done then."""
+        self._idle.append(handle)
 
     def ask(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Any:
         """`bus.ask` on this node's session; the heartbeat waits meanwhile."""
@@ -101,13 +106,13 @@ class Node:
             self._state = "ready"
             self._token = self.session.liveliness().declare_token(keys.live_key(self.name, str(os.getpid())))
             log.info("ready: %s", detail)
+            self._beat_due = 0.0
         self.describe(detail)
+        self.beat()
 
     def describe(self, detail: str) -> None:
-        """What the heartbeat says of the node's state, from now on."""
-        if detail != self._detail:
-            self._detail, self._beat_due = detail, 0.0
-            self.beat()
+        """What the heartbeats say of the node's state, from the next one on."""
+        self._detail = detail
 
     def report(self, text: str) -> None:
         """Log an error and show it in the heartbeat."""
@@ -126,6 +131,9 @@ class Node:
             for i, (period_s, handle) in enumerate(self._timers):
                 if now >= due[i]:
                     due[i] = max(due[i] + period_s, now)
+                    self._guard(handle)
+            if self._events.empty():
+                for handle in self._idle:
                     self._guard(handle)
             self.beat()
             wait_s = max(0.0, min([self._beat_due, *due]) - time.monotonic())

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import functools
 import uuid
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from msgspec import structs
 
@@ -18,6 +18,7 @@ from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.naming import free_name, free_position
+from nodes.coordinator.talking import Ask, Question, Talk, hold, hold_all
 from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, StarQuery
 from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
@@ -37,14 +38,15 @@ D = TypeVar("D", bound="Door")
 C = TypeVar("C", bound=Command)
 
 
-def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
+def once(change: Callable[[D, C], Talk[Changed]]) -> Callable[[D, C], Talk[Changed]]:
     """A command that is sent again under the same id is answered with its first result."""
 
     @functools.wraps(change)
-    def execute(door: D, command: C) -> Changed:
+    def execute(door: D, command: C) -> Talk[Changed]:
         if not command.id:
-            return change(door, structs.replace(command, id=_new_id()))
-        return door.done_before(command) or change(door, command)
+            return (yield from change(door, structs.replace(command, id=_new_id())))
+        done: Changed | None = yield from door.done_before(command)
+        return done or (yield from change(door, command))
 
     return execute
 
@@ -52,7 +54,7 @@ def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
 class Door:
     """Executes the commands that change the map. Owned by the coordinator's thread."""
 
-    def __init__(self, ask: Callable[[str, Any], Any]) -> None:
+    def __init__(self, ask: Ask) -> None:
         """`ask(verb, message)` asks the knowledge base."""
         self._ask = ask
         self.classes = ClassNames()
@@ -83,9 +85,49 @@ class Door:
         self.entities.update({entity.name: entity for entity in commit.changed})
         return True
 
-    @once
     def add(self, command: Add) -> Changed:
         """Put an entity into the map."""
+        return hold(self._add(command), self._ask)
+
+    def update(self, command: Update) -> Changed:
+        """Change what is named; what is not named stays."""
+        return hold(self._update(command), self._ask)
+
+    def change_together(self, commands: Sequence[Add | Update]) -> list[Changed | errors.SemmapError]:
+        """Like `add` and `update` one after the other, with fewer questions to the knowledge base."""
+        return [
+            result
+            for group in _independent(commands)
+            for result in hold_all([self._changing(command) for command in group], self._ask)
+        ]
+
+    def remove(self, command: Remove) -> Changed:
+        """Take entities out: all of them, or, if one is unknown, none."""
+        return hold(self._remove(command), self._ask)
+
+    def clear(self, command: Clear) -> Changed:
+        """Take every entity out."""
+        return hold(self._clear(command), self._ask)
+
+    def load(self, command: Load) -> Changed:
+        """Add what a file describes."""
+        return hold(self._load(command), self._ask)
+
+    def follow(self, name: str, pose: Pose) -> None:
+        """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
+        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
+
+        def build(suffix: str) -> Talk[Transaction]:
+            (star,) = yield from _stars((name,))
+            return transactions.update(command, self.entity(name), star, None, pose, suffix)
+
+        hold(self._commit(build), self._ask)
+
+    def _changing(self, command: Add | Update) -> Talk[Changed]:
+        return self._add(command) if isinstance(command, Add) else self._update(command)
+
+    @once
+    def _add(self, command: Add) -> Talk[Changed]:
         found = self.classes.spatial(command.class_)
         name = command.name or free_name(found.name, self.entities)
         if name in self.entities:
@@ -93,7 +135,12 @@ class Door:
         at = command.at or free_position(self.entities.values(), command.size)
         pose = pose_of(at, command.yaw, command.orientation)
         ref = command.ref or (_label(found) if command.default else None)
-        commit = self._commit(lambda suffix: transactions.add(command, name, found, pose, ref, suffix))
+
+        def build(suffix: str) -> Talk[Transaction]:
+            return transactions.add(command, name, found, pose, ref, suffix)
+            yield  # nothing to ask
+
+        commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"added {found.name} {name} at {_metres(pose)}",
@@ -102,19 +149,18 @@ class Door:
         )
 
     @once
-    def update(self, command: Update) -> Changed:
-        """Change what is named; what is not named stays."""
+    def _update(self, command: Update) -> Talk[Changed]:
         entity = self.entity(command.name)
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
         _require_authority(command, entity, whatever=found or command.ref or command.alt or command.size)
 
-        def build(suffix: str) -> Transaction:
-            (star,) = self._stars((entity.name,))
+        def build(suffix: str) -> Talk[Transaction]:
+            (star,) = yield from _stars((entity.name,))
             return transactions.update(
                 command, self.entity(entity.name), star, found, self._pose(command), suffix
             )
 
-        commit = self._commit(build)
+        commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"updated {entity.name}" if commit else f"{entity.name} is like that already",
@@ -123,28 +169,25 @@ class Door:
         )
 
     @once
-    def remove(self, command: Remove) -> Changed:
-        """Take entities out: all of them, or, if one is unknown, none."""
+    def _remove(self, command: Remove) -> Talk[Changed]:
         if not command.names:
             raise errors.BadRequest("name at least one entity to remove")
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
         for entity in leaving:
             _require_authority(command, entity, whatever=True)
-        return self._remove(command, f"remove {' '.join(e.name for e in leaving)}", leaving)
+        return (yield from self._take_out(command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
     @once
-    def clear(self, command: Clear) -> Changed:
-        """Take every entity out."""
-        return self._remove(command, "clear", list(self.entities.values()))
+    def _clear(self, command: Clear) -> Talk[Changed]:
+        return (yield from self._take_out(command, "clear", list(self.entities.values())))
 
     @once
-    def load(self, command: Load) -> Changed:
-        """Add what a file describes."""
+    def _load(self, command: Load) -> Talk[Changed]:
         if command.source == "operator":
             command = structs.replace(command, source="file")
         kind = kind_of(command.content, command.filename)
         if kind == "abox":
-            return self._load_document(command)
+            return (yield from self._load_document(command))
         described = READERS[kind](command.content, command.filename)
         known, skipped, notes = self._sort_out(described, skip_unknown=command.skip_unknown)
         taken = set() if command.replace else set(self.entities)
@@ -159,36 +202,30 @@ class Door:
             taken.add(name)
             names.append(name)
             insert.update(dict.fromkeys(transactions.describe(name, found, item)))
-        gone = self._stars(tuple(self.entities)) if command.replace and self.entities else ()
-        commit = self._commit(
-            lambda _: transactions.transaction(
+        gone = (yield from _stars(tuple(self.entities))) if command.replace and self.entities else ()
+
+        def build(_: str) -> Talk[Transaction]:
+            return transactions.transaction(
                 command,
                 f"load {command.filename}",
                 retract=[t for star in gone for t in (*star.own, *star.incoming)],
                 insert=insert,
             )
-        )
+            yield  # nothing to ask
+
+        commit = yield from self._commit(build)
         return _loaded(command, commit, tuple(names), skipped, notes)
 
-    def follow(self, name: str, pose: Pose) -> None:
-        """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
-        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
-
-        def build(suffix: str) -> Transaction:
-            (star,) = self._stars((name,))
-            return transactions.update(command, self.entity(name), star, None, pose, suffix)
-
-        self._commit(build)
-
-    def done_before(self, command: Command) -> Changed | None:
+    def done_before(self, command: Command) -> Talk[Changed | None]:
         """The result of the command with this id, if there was one."""
-        commit: Commit | None = self._ask("commit", Transaction(id=command.id, source=command.source))
+        nothing = Transaction(id=command.id, source=command.source)
+        commit: Commit | None = yield Question("commit", nothing)
         if commit is None:
             return None
         names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
         return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
-    def _load_document(self, command: Load) -> Changed:
+    def _load_document(self, command: Load) -> Talk[Changed]:
         document = LoadDocument(
             id=command.id,
             source=command.source,
@@ -199,7 +236,7 @@ class Door:
             replace=command.replace,
             skip_unknown=command.skip_unknown,
         )
-        loaded: Loaded = self._ask("load", document)
+        loaded: Loaded = yield Question("load", document)
         names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
         return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
 
@@ -223,11 +260,15 @@ class Door:
         skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
         return known, skipped, tuple(notes)
 
-    def _remove(self, command: Command, reason: str, leaving: list[Entity]) -> Changed:
+    def _take_out(self, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
         names = tuple(entity.name for entity in leaving)
         if not names:
             return Changed(commit=None, text="the map is empty already")
-        commit = self._commit(lambda _: transactions.remove(command, reason, self._stars(names)))
+
+        def build(_: str) -> Talk[Transaction]:
+            return transactions.remove(command, reason, (yield from _stars(names)))
+
+        commit = yield from self._commit(build)
         return Changed(commit=_seq(commit), text=f"removed {len(names)}: {_few(names)}", names=names)
 
     def _pose(self, command: Update) -> Pose | None:
@@ -239,17 +280,13 @@ class Door:
             raise errors.BadRequest(f"{command.name} has no position yet; give one with --at")
         return pose_of(at, command.yaw, command.orientation, before)
 
-    def _stars(self, names: tuple[str, ...]) -> tuple[Star, ...]:
-        stars: tuple[Star, ...] = self._ask("star", StarQuery(names=names))
-        return stars
-
-    def _commit(self, build: Callable[[str], Transaction]) -> Commit | None:
+    def _commit(self, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
         """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
         suffix = ""
         for attempt in range(_ATTEMPTS):
-            transaction = build(suffix)
+            transaction = yield from build(suffix)
             try:
-                return self._taken(self._ask("commit", transaction))
+                return self._taken((yield Question("commit", transaction)))
             except errors.PreconditionFailed:
                 if attempt == _ATTEMPTS - 1:
                     raise
@@ -263,6 +300,32 @@ class Door:
         if commit is not None:
             self.take(commit)
         return commit
+
+
+def _stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
+    stars: tuple[Star, ...] = yield Question("star", StarQuery(names=names))
+    return stars
+
+
+def _independent(commands: Iterable[Add | Update]) -> Iterator[list[Add | Update]]:
+    """The commands in runs of which no one depends on another: each of an entity of its own.
+
+    An entity without a name or a place gets one that suits the others, so it goes alone.
+    """
+    run: list[Add | Update] = []
+    names: set[str] = set()
+    for command in commands:
+        alone = isinstance(command, Add) and (command.name is None or command.at is None)
+        if run and (alone or command.name in names):
+            yield run
+            run, names = [], set()
+        run.append(command)
+        names.add(command.name or "")
+        if alone:
+            yield run
+            run, names = [], set()
+    if run:
+        yield run
 
 
 def _new_id() -> str:

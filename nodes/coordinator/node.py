@@ -25,6 +25,7 @@ from schemas.health import Health
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
 
 _WAIT_S = 20.0
+_TOGETHER = 64
 _COMMIT_TIMEOUT_S = 10.0
 _LOAD_TIMEOUT_S = 300.0
 _SIM_TIMEOUT_S = 120.0
@@ -42,11 +43,12 @@ class Coordinator:
         self._health = HealthView()
         self._has_map = False
         self._fetching = False
+        self._put_aside: list[tuple[c.Add | c.Update, Future[c.Changed]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
         door = self._door
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
-            c.Add: self._waitable(door.add),
-            c.Update: self._waitable(door.update),
+            c.Add: self._put_off,
+            c.Update: self._put_off,
             c.Remove: door.remove,
             c.Clear: door.clear,
             c.Load: door.load,
@@ -73,6 +75,7 @@ class Coordinator:
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True)
         node.every(0.2, self._tick)
+        node.when_idle(self._change_together)
 
     # Following
 
@@ -191,19 +194,35 @@ class Coordinator:
         query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
         return self._ask_sim("picture", query, Picture)
 
-    def _waitable(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], Any]:
-        """The reply to a command with `wait` is held back until the body stands there."""
+    # Changing
 
-        def handle(command: Any) -> c.Changed | Future[c.Changed]:
-            changed = change(command)
-            if not command.wait:
-                return changed
-            future: Future[c.Changed] = Future()
-            self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
-            self._keep()
-            return future
+    def _put_off(self, command: c.Add | c.Update) -> Future[c.Changed]:
+        """Changes that come at the same time are made together, as soon as no other event waits."""
+        future: Future[c.Changed] = Future()
+        self._put_aside.append((command, future))
+        if len(self._put_aside) >= _TOGETHER:
+            self._change_together()
+        return future
 
-        return handle
+    def _change_together(self) -> None:
+        """Make the changes that were put off, and answer them."""
+        if not self._put_aside:
+            return
+        changes, self._put_aside = self._put_aside, []
+        try:
+            results = self._door.change_together([command for command, _ in changes])
+        except Exception as error:
+            for _, future in changes:
+                future.set_exception(error)
+            return
+        for (command, future), result in zip(changes, results, strict=True):
+            if isinstance(result, errors.SemmapError):
+                future.set_exception(result)
+            elif command.wait:
+                self._waiting.append((result.names[0], time.monotonic() + _WAIT_S, result, future))
+            else:
+                future.set_result(result)
+        self._keep()
 
     def _answer_waiting(self) -> None:
         still = []
@@ -221,6 +240,8 @@ class Coordinator:
         def guarded(command: Any) -> Any:
             if not self._has_map:
                 raise errors.NoAnswer("the knowledge base does not answer yet; see: semmap status")
+            if handle != self._put_off:
+                self._change_together()  # what came before it
             return handle(command)
 
         return guarded

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Set
 
 from msgspec import structs
 
@@ -86,9 +86,7 @@ def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
     return {subject, *_users(reasoner, subject)}
 
 
-def read_star(
-    reasoner: Reasoner, iri: Term, seq: int, leaving: frozenset[Term], tbox: frozenset[Triple]
-) -> Star:
+def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: Set[Term], tbox: frozenset[Triple]) -> Star:
     """The triples about an entity: its own, and what others say of it.
 
     What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox

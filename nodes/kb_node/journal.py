@@ -116,6 +116,25 @@ class Journal:
             self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
         self._digest = digest
 
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """What is appended within becomes durable at its end, with one wait for the disk.
+
+        Raises Refused, with none of it written, when the disk does not take it.
+        """
+        digest = self._digest
+        with self._writing("several commits"):
+            self._db.execute("BEGIN")
+        try:
+            yield
+            with self._writing("several commits"):
+                self._db.execute("COMMIT")
+        except BaseException:
+            self._digest = digest
+            if self._db.in_transaction:
+                self._db.execute("ROLLBACK")
+            raise
+
     def commits(self, after: int = 0) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Refused at the first damaged one."""
         with self._reading():

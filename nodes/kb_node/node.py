@@ -14,7 +14,7 @@ from nodes.kb_node.journal import FILENAME, Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.loop import Node, open_node
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, Loaded, SnapshotQuery, StarQuery
+from schemas.bridge import BRIDGE, LoadDocument, Loaded, Outcome, SnapshotQuery, StarQuery, Transactions
 from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
@@ -31,6 +31,7 @@ class KnowledgeBase:
         tbox = rdf_files.parse(journal.tbox(), f"the TBox in {journal.path}")
         self.map = SemanticMap(journal, tbox, progress=node.beat)
         self._commits = bus.publisher(node.session, keys.COMMIT)
+        self._entities_are_watched = bus.watched(node.session, keys.ENTITY)
         self._published = {entity.name: entity.types for entity in self.map.entities()}
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         functions = {
@@ -51,6 +52,25 @@ class KnowledgeBase:
         if commit is not None and commit.seq > before:
             self._publish(commit)
         return commit
+
+    def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
+        """Several transactions, each by itself: journal (durable, once for all), publish, reply.
+
+        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        """
+        for transaction in several.transactions:
+            terms.require_triples(transaction.insert)
+        before = self.map.seq
+        results = self.map.commit_together(several.transactions)
+        new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
+        for commit in new.values():
+            self._publish(commit)
+        return tuple(
+            Outcome(error=errors.to_message(result))
+            if isinstance(result, errors.SemmapError)
+            else Outcome(commit=result)
+            for result in results
+        )
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit."""
@@ -73,7 +93,7 @@ class KnowledgeBase:
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
-        return self.map.stars(query.names)
+        return self.map.stars(query.names, together=query.together)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
@@ -116,16 +136,22 @@ class KnowledgeBase:
     def _publish(self, commit: Commit) -> None:
         """The commit, and under each of its classes the entity or, where it is no more, a delete."""
         self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
+        if self._entities_are_watched():
+            for gone in commit.removed:
+                self._unpublish(gone.name, self._published.get(gone.name, gone.types))
+            for entity in commit.changed:
+                self._publish_entity(entity)
         for gone in commit.removed:
-            self._unpublish(gone.name, self._published.pop(gone.name, gone.types))
-        for entity in commit.changed:
-            lost = set(self._published.get(entity.name, ())).difference(entity.types)
-            self._unpublish(entity.name, sorted(lost))
-            payload, encoding = codec.encode(entity), codec.encoding_of(entity)
-            for class_name in entity.types:
-                self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
-            self._published[entity.name] = entity.types
+            self._published.pop(gone.name, None)
+        self._published.update((entity.name, entity.types) for entity in commit.changed)
         self._node.describe(self._summary())
+
+    def _publish_entity(self, entity: Entity) -> None:
+        lost = set(self._published.get(entity.name, ())).difference(entity.types)
+        self._unpublish(entity.name, sorted(lost))
+        payload, encoding = codec.encode(entity), codec.encoding_of(entity)
+        for class_name in entity.types:
+            self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
 
     def _unpublish(self, name: str, class_names: Iterable[str]) -> None:
         for class_name in class_names:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 
 from msgspec import structs
 
@@ -67,11 +67,17 @@ class SemanticMap:
         """Every entity, as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
-    def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
-        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
+    def stars(self, names: Iterable[str], *, together: bool = True) -> tuple[Star, ...]:
+        """The triples about some entities, taken together or each alone.
+
+        Raises UnknownName, Refused for the TBox's.
+        """
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
-        return tuple(entities.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris)
+        return tuple(
+            entities.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
+            for iri in iris
+        )
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
@@ -133,6 +139,32 @@ class SemanticMap:
             inserted=inserted,
         )
         return self._apply(commit, self._journal.append)
+
+    def commit_together(
+        self, transactions: Sequence[Transaction]
+    ) -> list[Commit | errors.SemmapError | None]:
+        """Like `commit` for each by itself, in order, but durable together; errors are among the results.
+
+        When the disk does not take them, all are refused and the map is as before.
+        """
+        before, known = self.seq, self._entities.copy()
+        results: list[Commit | errors.SemmapError | None] = []
+        try:
+            with self._journal.together():
+                for transaction in transactions:
+                    try:
+                        results.append(self.commit(transaction))
+                    except errors.SemmapError as error:
+                        results.append(error)
+        except BaseException as error:
+            made = {c.seq: c for c in results if isinstance(c, Commit) and c.seq > before}
+            for _, commit in sorted(made.items(), reverse=True):
+                self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+            self.seq, self._entities = before, known
+            if not isinstance(error, errors.Refused):
+                raise
+            return [error] * len(transactions)
+        return results
 
     @property
     def checkpoint_is_due(self) -> bool:

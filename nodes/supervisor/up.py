@@ -107,8 +107,10 @@ class _Foreground:
     def _require_alive(self) -> None:
         """A node that ended with an error which no restart mends ends the start, with its last words."""
         for node, info in self._supervisor.processes().items():
-            ended = info["statename"] in ("EXITED", "FATAL") and not self._stopping
-            if ended and self._process.poll() is None:
+            # Killed by a signal it is "exited", too, for the moment until it is restarted.
+            gave_up = info["statename"] == "EXITED" and int(info["exitstatus"]) >= 0
+            ended = gave_up or info["statename"] == "FATAL"
+            if ended and not self._stopping and self._process.poll() is None:
                 words = self._supervisor.last_words(node)
                 raise errors.Refused(f"{node} ended: {words} (log: {self._supervisor.log_of(node)})")
 
