@@ -8,7 +8,6 @@ import pytest
 
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.door import Door
-from nodes.kb_node import rdf_files
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import commands as c
@@ -39,7 +38,7 @@ TBOX = b"""
 @pytest.fixture
 def semantic_map(tmp_path: Path):
     journal = Journal.create(tmp_path / "journal.sqlite", TBOX)
-    yield SemanticMap(journal, rdf_files.parse(TBOX, "tbox"))
+    yield SemanticMap(journal)
     journal.close()
 
 
