@@ -14,10 +14,12 @@ from typing import Any, TypeVar
 from msgspec import structs
 
 from nodes.coordinator import transactions
+from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.files import huric, scene_file
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.files.described import Described, pose_of
+from nodes.coordinator.hands import Hands
 from nodes.coordinator.naming import free_name, free_position
 from schemas import errors
 from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
@@ -31,7 +33,6 @@ READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
     "huric": huric.read,
 }
 _ATTEMPTS = 5
-_NO_AUTHORITY = frozenset(("scene", "perception"))
 
 
 D = TypeVar("D", bound="Door")
@@ -59,6 +60,7 @@ class Door:
         self.classes = ClassNames()
         self.entities: dict[str, Entity] = {}
         self.seq = 0
+        self.hands = Hands()
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -109,7 +111,7 @@ class Door:
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
         changes = (found, command.ref, command.alt, command.size)
         if any(change is not None for change in changes):
-            _require_authority(command, [entity])
+            require_authority(command, [entity])
 
         def build(suffix: str) -> Transaction:
             (star,) = self._stars((entity.name,))
@@ -131,13 +133,13 @@ class Door:
         if not command.names:
             raise errors.BadRequest("name at least one entity to remove")
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
-        _require_authority(command, leaving)
+        require_authority(command, leaving)
         return self._remove(command, f"remove {' '.join(e.name for e in leaving)}", leaving)
 
     @once
     def clear(self, command: Clear) -> Changed:
         """Take every entity out."""
-        _require_authority(command, self.entities.values())
+        require_authority(command, self.entities.values())
         return self._remove(command, "clear", list(self.entities.values()))
 
     @once
@@ -148,7 +150,7 @@ class Door:
         if command.tbox:
             return self._load_tbox(command)
         if command.replace:
-            _require_authority(command, self.entities.values())
+            require_authority(command, self.entities.values())
         kind = kind_of(command.content, command.filename)
         if kind == "abox":
             return self._load_document(command)
@@ -190,11 +192,13 @@ class Door:
 
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
-        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
+        hand = self.hands.that_moved(name)
+        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
 
         def build(suffix: str) -> Transaction:
             (star,) = self._stars((name,))
-            return transactions.update(command, self.entity(name), star, None, pose, suffix)
+            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
+            return structs.replace(update, verb=hand.verb)
 
         self._commit(build)
 
@@ -224,8 +228,7 @@ class Door:
     def _load_tbox(self, command: Load) -> Changed:
         if command.replace or command.skip_unknown:
             raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
-        if command.source in _NO_AUTHORITY:
-            raise errors.Refused("only an operator may replace the TBox")
+        require_operator(command, "replace the TBox")
         order = LoadTBox(
             id=command.id,
             source=command.source,
@@ -304,19 +307,6 @@ class Door:
 
 def _new_id() -> str:
     return uuid.uuid4().hex
-
-
-def _require_authority(command: Command, concerned: Iterable[Entity]) -> None:
-    """What an operator or a file said a thing is or is called, the scene and perception do not change."""
-    if command.source not in _NO_AUTHORITY:
-        return
-    for entity in concerned:
-        said_by = {entity.shape_provenance.source, entity.reference_provenance.source}
-        if not said_by <= _NO_AUTHORITY:
-            raise errors.Refused(
-                f"an operator said what {entity.name} is, so only an operator may change or remove it;"
-                " anybody may say where it is"
-            )
 
 
 def _label(found: ClassInfo) -> str:

@@ -81,7 +81,7 @@ class Coordinator:
     # Following
 
     def _on_commit(self, commit: Commit) -> None:
-        if self._has_map and not self._door.take(commit):
+        if self._has_map and (not self._door.take(commit) or commit.tbox):
             self._fetch_map()
         self._keep()
 
@@ -192,6 +192,7 @@ class Coordinator:
         def moved(reply: BodiesMoved) -> c.Moved:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
+            self._door.hands.let_go(command)
             x, y, z = command.at
             return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
 

@@ -214,7 +214,7 @@ def status(client: Client, format: str) -> None:
 @talks
 def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
     """Take a body and put it elsewhere, as a hand would; the map follows when it rests."""
-    print(client.send(_command(commands.Move, name=name, at=at, yaw=yaw)).text)
+    print(client.move(**_given({"name": name, "at": at, "yaw": yaw})).text)
 
 
 @app.command()

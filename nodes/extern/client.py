@@ -240,7 +240,8 @@ class Client:
 
     def move(self, name: str, at: Vector, yaw: float | None = None) -> commands.Moved:
         """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
-        moved: commands.Moved = self.send(commands.Move(name=name, at=at, yaw=yaw))
+        command = codec.convert({"name": name, "at": at, "yaw": yaw, **self._signed}, commands.Move)
+        moved: commands.Moved = self.send(command)
         return moved
 
     def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
