@@ -6,7 +6,23 @@ from typing import Any
 
 from msgspec import Struct
 
-from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
+from schemas.commands import (
+    Check,
+    Checked,
+    Classes,
+    Document,
+    Explain,
+    Export,
+    Get,
+    History,
+    Infer,
+    Inferred,
+    LastSeen,
+    List,
+    LoggedCommit,
+    Sighting,
+    Undo,
+)
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.explanations import Explanation
@@ -35,6 +51,17 @@ class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     skip_unknown: bool
 
 
+class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+
+    id: CommandId
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    content: bytes
+    filename: str
+
+
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The commit, and what was left out and why."""
 
@@ -54,6 +81,10 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "infer": (Infer, Inferred),
     "explain": (Explain, Explanation),
     "export": (Export, Document),
+    "history": (History, tuple[LoggedCommit, ...]),
+    "last-seen": (LastSeen, Sighting),
+    "undo": (Undo, Commit),
+    "load-tbox": (LoadTBox, Commit),
 }
 """Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
 gives None."""
