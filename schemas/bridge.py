@@ -6,10 +6,26 @@ from typing import Any
 
 from msgspec import Struct
 
-from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
+from schemas.commands import (
+    Check,
+    Checked,
+    Classes,
+    Document,
+    Done,
+    Explain,
+    Export,
+    Get,
+    Infer,
+    Inferred,
+    List,
+    Renew,
+    Sparql,
+    Watch,
+)
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.explanations import Explanation
+from schemas.sparql import SparqlResult, Watching
 
 
 class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -54,6 +70,9 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "infer": (Infer, Inferred),
     "explain": (Explain, Explanation),
     "export": (Export, Document),
+    "sparql": (Sparql, SparqlResult),
+    "watch": (Watch, Watching),
+    "renew": (Renew, Done),
 }
 """Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
 gives None."""

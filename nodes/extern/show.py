@@ -131,6 +131,11 @@ def commit_line(commit: Commit) -> str:
     return f"{stamp}  commit {commit.seq}  {who}: {commit.reason}  [{counts}]  {shown}"
 
 
+def plain_table(*columns: str) -> Table:
+    """An empty table."""
+    return _table(*columns)
+
+
 def _table(*columns: str) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in columns:
