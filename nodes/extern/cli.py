@@ -291,7 +291,7 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> No
 @click.option("--inferred", is_flag=True, help="Over what follows, too.")
 @_format(
     type=click.Choice(sparql_formats.FORMATS),
-    help="Default: table for rows, turtle for CONSTRUCT and DESCRIBE.",
+    help="Default: table for rows, else turtle.",
 )
 @click.option("--timeout", type=float, default=5.0, show_default=True, metavar="S", help="Cancelled after.")
 @click.option("--limit", type=int, default=10_000, show_default=True, metavar="N", help="Refused beyond.")
@@ -299,7 +299,7 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> No
 def sparql(client: Client, query: str, **options: Any) -> None:
     """Answer a SPARQL 1.1 query that reads: SELECT, ASK, CONSTRUCT, DESCRIBE.
 
-    QUERY is the query, @FILE or - for stdin. The prefixes dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd: are known.
+    QUERY is the query, @FILE or - for stdin. Known prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
     """
     sparql_cli.ask(client, query, **options)
 

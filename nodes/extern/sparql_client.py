@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import time
 import uuid
 from collections import Counter
 from collections.abc import Iterator
@@ -11,19 +12,19 @@ from collections.abc import Iterator
 import zenoh
 
 from nodes import bus
-from nodes.loop import HEARTBEAT_S
 from schemas import commands, errors, keys
 from schemas.sparql import Row, RowsChanged, Watching
 
 _LEASE_S = 30.0
-_RENEW_S = 10 * HEARTBEAT_S
+_RENEW_S = 5.0
+_ASK_S = 200.0
 
 
 class StandingQuery:
     """The rows of a query as they are, and news of them; use `Client.watch`.
 
-    `changes` waits for the news, renews the lease meanwhile, and when the knowledge base was restarted asks it
-    again, so that what changed in between is told, too.
+    `changes` waits for the news and renews the lease meanwhile; when the knowledge base was restarted, it asks
+    again and tells what changed in between, too.
     """
 
     def __init__(self, session: zenoh.Session, query: str, inferred: bool) -> None:
@@ -46,12 +47,13 @@ class StandingQuery:
     def changes(self) -> Iterator[RowsChanged]:
         """The news, in order, without end. Raises Refused when the query had to be cancelled."""
         rows, seq = Counter(self.rows), self.seq
+        renew_at = time.monotonic() + _RENEW_S
         while True:
             try:
-                news = self._news.get(timeout=_RENEW_S)
+                news = self._news.get(timeout=max(0.0, renew_at - time.monotonic()))
             except queue.Empty:
-                again = self._renew()
-                if again is None:
+                renew_at = time.monotonic() + _RENEW_S
+                if (again := self._renew()) is None:
                     continue
                 news = _difference(rows, seq, again)
                 if not news.appeared and not news.disappeared:
@@ -87,9 +89,6 @@ class StandingQuery:
         except errors.NoAnswer:
             pass  # it may come back, and the lease lasts for several times
         return None
-
-
-_ASK_S = 200.0
 
 
 def _difference(rows: Counter[Row], since: int, now: Watching) -> RowsChanged:

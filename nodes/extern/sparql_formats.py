@@ -101,9 +101,7 @@ def _binding(term: Term) -> dict[str, str]:
 
 def _turtle(result: SparqlResult) -> str:
     if result.kind != "graph":
-        raise errors.BadRequest(
-            "turtle is for graphs, of CONSTRUCT and DESCRIBE; rows come as table, json, csv"
-        )
+        raise errors.BadRequest("turtle is for graphs (CONSTRUCT, DESCRIBE); rows come as table, json or csv")
     lines = "".join(f"{' '.join(map(str, row))} .\n" for row in result.rows).encode()
     triples = ox.parse(lines, ox.RdfFormat.N_TRIPLES)
     document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_PREFIXES)

@@ -1,4 +1,4 @@
-"""A reader: a forked process with a copy of the triples; it evaluates one query at a time and may die of it."""
+"""A reader: a forked process with a copy of the triples, that evaluates a query at a time and may die of it."""
 
 from __future__ import annotations
 

@@ -41,6 +41,8 @@ class SparqlService:
     def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
         """The reply to a command about the map as it is now, after commit `seq`."""
         if self._worker is None or not self._worker.is_alive:
+            if isinstance(command, Renew):
+                raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
             self._worker = _Worker(Start(seq=seq, asserted=tuple(self._asserted())), self._publish)
         if not isinstance(command, Renew) and command.inferred and not self._worker.infers:
             self._worker.infers = True

@@ -4,8 +4,8 @@ A query cannot be interrupted while Oxigraph evaluates it, nor can its memory be
 be ended. Were that the one with the triples, a hanging query would cost loading them again. So this process
 only keeps the triples and follows the commits, and never evaluates; its readers do, which are forked from it:
 that takes some milliseconds at 10 000 entities, shares the memory, and a copy of the triples at one commit is
-what a query wants. A reader that is still alive is brought up to date and asked again, so that a look-up forks
-nothing. What follows is kept by a reasoner here, so that the node's thread only hands on its commits.
+what a query wants. A reader that is still alive is brought up to date and asked again, so that a look-up
+forks nothing. What follows is kept by a reasoner here, so that the node's thread only hands on its commits.
 
 Standing queries have one reader to themselves, which goes through the commits that may touch them one by one.
 When it falls too far behind, or has died, what is left to do is done in one step.
