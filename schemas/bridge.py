@@ -6,11 +6,32 @@ from typing import Any
 
 from msgspec import Struct
 
-from schemas.commands import Check, Checked, Classes, Document, Explain, Export, Get, Infer, Inferred, List
+from schemas.commands import (
+    Check,
+    Checked,
+    Classes,
+    Document,
+    Done,
+    Explain,
+    Export,
+    Get,
+    History,
+    Infer,
+    Inferred,
+    LastSeen,
+    List,
+    LoggedCommit,
+    Renew,
+    Sighting,
+    Sparql,
+    Undo,
+    Watch,
+)
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation
+from schemas.sparql import SparqlResult, Watching
 
 
 class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -51,6 +72,17 @@ class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     skip_unknown: bool
 
 
+class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+
+    id: CommandId
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    content: bytes
+    filename: str
+
+
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The commit, and what was left out and why."""
 
@@ -71,6 +103,13 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "infer": (Infer, Inferred),
     "explain": (Explain, Explanation),
     "export": (Export, Document),
+    "history": (History, tuple[LoggedCommit, ...]),
+    "last-seen": (LastSeen, Sighting),
+    "undo": (Undo, Commit),
+    "load-tbox": (LoadTBox, Commit),
+    "sparql": (Sparql, SparqlResult),
+    "watch": (Watch, Watching),
+    "renew": (Renew, Done),
 }
 """Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
 gives None."""

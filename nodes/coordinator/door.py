@@ -14,14 +14,16 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.coordinator import transactions
+from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
+from nodes.coordinator.hands import Hands
 from nodes.coordinator.naming import free_name, free_position
 from nodes.coordinator.talking import Ask, Question, Talk, hold, hold_all
 from schemas import errors, scene_files
-from schemas.bridge import LoadDocument, Loaded, StarQuery
-from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
+from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
+from schemas.commands import Add, Changed, Classes, Clear, Command, Load, Remove, Undo, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Triple
@@ -60,6 +62,7 @@ class Door:
         self.classes = ClassNames()
         self.entities: dict[str, Entity] = {}
         self.seq = 0
+        self.hands = Hands()
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -113,13 +116,19 @@ class Door:
         """Add what a file describes."""
         return hold(self._load(command), self._ask)
 
+    def undo(self, command: Undo) -> Changed:
+        """Take back a commit."""
+        return hold(self._undo(command), self._ask)
+
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
-        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
+        hand = self.hands.that_moved(name)
+        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
 
         def build(suffix: str) -> Talk[Transaction]:
             (star,) = yield from _stars((name,))
-            return transactions.update(command, self.entity(name), star, None, pose, suffix)
+            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
+            return structs.replace(update, verb=hand.verb)
 
         hold(self._commit(build), self._ask)
 
@@ -152,7 +161,9 @@ class Door:
     def _update(self, command: Update) -> Talk[Changed]:
         entity = self.entity(command.name)
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
-        _require_authority(command, entity, whatever=found or command.ref or command.alt or command.size)
+        changes = (found, command.ref, command.alt, command.size)
+        if any(change is not None for change in changes):
+            require_authority(command, [entity])
 
         def build(suffix: str) -> Talk[Transaction]:
             (star,) = yield from _stars((entity.name,))
@@ -173,18 +184,22 @@ class Door:
         if not command.names:
             raise errors.BadRequest("name at least one entity to remove")
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
-        for entity in leaving:
-            _require_authority(command, entity, whatever=True)
+        require_authority(command, leaving)
         return (yield from self._take_out(command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
     @once
     def _clear(self, command: Clear) -> Talk[Changed]:
+        require_authority(command, self.entities.values())
         return (yield from self._take_out(command, "clear", list(self.entities.values())))
 
     @once
     def _load(self, command: Load) -> Talk[Changed]:
         if command.source == "operator":
             command = structs.replace(command, source="file")
+        if command.tbox:
+            return (yield from self._load_tbox(command))
+        if command.replace:
+            require_authority(command, self.entities.values())
         kind = kind_of(command.content, command.filename)
         if kind == "abox":
             return (yield from self._load_document(command))
@@ -216,6 +231,16 @@ class Door:
         commit = yield from self._commit(build)
         return _loaded(command, commit, tuple(names), skipped, notes)
 
+    @once
+    def _undo(self, command: Undo) -> Talk[Changed]:
+        commit: Commit = yield Question("undo", command)
+        self._taken(commit)
+        first, *settling = commit.undoes
+        text = f"took back commit {first}" + (
+            f" with the {len(settling)} that settled it" if settling else ""
+        )
+        return Changed(commit=commit.seq, text=text, names=commit.names)
+
     def done_before(self, command: Command) -> Talk[Changed | None]:
         """The result of the command with this id, if there was one."""
         nothing = Transaction(id=command.id, source=command.source)
@@ -239,6 +264,24 @@ class Door:
         loaded: Loaded = yield Question("load", document)
         names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
         return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
+
+    def _load_tbox(self, command: Load) -> Talk[Changed]:
+        if command.replace or command.skip_unknown:
+            raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+        require_operator(command, "replace the TBox")
+        order = LoadTBox(
+            id=command.id,
+            source=command.source,
+            agent=command.agent,
+            reason=command.reason or f"load the TBox {command.filename}",
+            content=command.content,
+            filename=command.filename,
+        )
+        commit: Commit = yield Question("load-tbox", order)
+        self._taken(commit)
+        self.classes = ClassNames((yield Question("classes", Classes())))
+        text = f"{len(self.classes.by_name)} classes from {command.filename or 'the file'}"
+        return Changed(commit=commit.seq, text=text, names=commit.names)
 
     def _sort_out(
         self, described: Iterable[Described], *, skip_unknown: bool
@@ -330,14 +373,6 @@ def _independent(commands: Iterable[Add | Update]) -> Iterator[list[Add | Update
 
 def _new_id() -> str:
     return uuid.uuid4().hex
-
-
-def _require_authority(command: Command, entity: Entity, *, whatever: object) -> None:
-    """What an operator or a file said a thing is, the scene and perception do not change."""
-    if whatever and command.source == "perception" and entity.shape_provenance.source in ("operator", "file"):
-        raise errors.Refused(
-            f"{entity.name} was put in by an operator, so only an operator may change what it is"
-        )
 
 
 def _label(found: ClassInfo) -> str:

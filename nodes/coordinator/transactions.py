@@ -22,11 +22,12 @@ def transaction(
     retract: Iterable[Triple] = (),
     insert: Iterable[Triple] = (),
 ) -> Transaction:
-    """A transaction on behalf of `command`."""
+    """A transaction on behalf of `command`. What the scene says no client asked for, so it has no verb."""
     return Transaction(
         id=command.id,
         source=command.source,
         agent=command.agent,
+        verb="" if command.source == "scene" else str(command.__struct_config__.tag),
         reason=command.reason or reason,
         confidence=getattr(command, "confidence", None),
         require=tuple(require),

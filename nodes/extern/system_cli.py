@@ -1,4 +1,4 @@
-"""The verbs that start and stop a system: `up`, `down`, `node`."""
+"""The verbs that start, stop and mend a system: `up`, `down`, `node`, `repair`."""
 
 from __future__ import annotations
 
@@ -83,6 +83,15 @@ def down(data: Path | None) -> None:
 
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopping")
+
+
+@click.command()
+@click.option("--data", type=_path, default=None, help="Folder of the map; no system may run on it.")
+def repair(data: Path | None) -> None:
+    """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    from nodes.kb_node.repair import repair as repair_journal
+
+    click.echo(repair_journal((data or default_data()).resolve()))
 
 
 @click.command()

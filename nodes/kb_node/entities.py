@@ -19,6 +19,7 @@ from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
+_OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
 def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: Provenance) -> Entity | None:
@@ -50,7 +51,15 @@ def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: 
         provenance=provenance,
         pose_provenance=provenance,
         shape_provenance=provenance,
+        reference_provenance=provenance,
     )
+
+
+def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
+    """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
+    iris = {i for c in classes.spatial for i in reasoner.instances(c)}
+    read = (read_entity(reasoner, classes, iri, _OF_THE_TBOX) for iri in sorted(iris))
+    return [entity for entity in read if entity is not None]
 
 
 def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
@@ -61,11 +70,17 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         known.model,
         known.fixed,
     )
+    same_references = (entity.preferred_reference, entity.alternative_references) == (
+        known.preferred_reference,
+        known.alternative_references,
+    )
+    said = entity.provenance
     return structs.replace(
         entity,
-        provenance=entity.provenance if concerned else known.provenance,
-        pose_provenance=known.pose_provenance if entity.pose == known.pose else entity.pose_provenance,
-        shape_provenance=known.shape_provenance if same_shape else entity.shape_provenance,
+        provenance=said if concerned else known.provenance,
+        pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
+        shape_provenance=known.shape_provenance if same_shape else said,
+        reference_provenance=known.reference_provenance if same_references else said,
     )
 
 
