@@ -11,6 +11,7 @@ from schemas.commands import (
     Checked,
     Classes,
     Document,
+    Done,
     Explain,
     Export,
     Get,
@@ -20,12 +21,16 @@ from schemas.commands import (
     LastSeen,
     List,
     LoggedCommit,
+    Renew,
     Sighting,
+    Sparql,
     Undo,
+    Watch,
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.explanations import Explanation
+from schemas.sparql import SparqlResult, Watching
 
 
 class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -85,6 +90,9 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "last-seen": (LastSeen, Sighting),
     "undo": (Undo, Commit),
     "load-tbox": (LoadTBox, Commit),
+    "sparql": (Sparql, SparqlResult),
+    "watch": (Watch, Watching),
+    "renew": (Renew, Done),
 }
 """Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
 gives None."""

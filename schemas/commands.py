@@ -28,6 +28,7 @@ from schemas.entities import (
 from schemas.explanations import Explanation, Triple
 from schemas.moments import When
 from schemas.scenes import Picture
+from schemas.sparql import SparqlResult, Watching
 
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
@@ -287,6 +288,46 @@ class Undo(Command, frozen=True, kw_only=True, tag="undo"):
     commit: Annotated[int, Meta(ge=1)] | None = None
 
 
+# To query
+
+
+QueryText = Annotated[str, Meta(min_length=1, max_length=100_000)]
+RowLimit = Annotated[int, Meta(ge=1, le=1_000_000)]
+TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
+
+
+class Sparql(Command, frozen=True, kw_only=True, tag="sparql"):
+    """A SPARQL 1.1 query over what is asserted or, with `inferred`, also over what follows from it.
+
+    It reads only. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
+    """
+
+    query: QueryText
+    inferred: bool = False
+    timeout: TimeLimit = 5.0
+    limit: RowLimit = 10_000
+
+
+class Watch(Command, frozen=True, kw_only=True, tag="watch"):
+    """A standing SELECT: its rows now, and what changes of them on `semmap/jena/query/<watch>`.
+
+    `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
+    evaluated again when a commit may touch it, and ends `lease` seconds after the last `renew`.
+    """
+
+    query: QueryText
+    inferred: bool = False
+    watch: Name | None = None
+    lease: Annotated[float, Meta(ge=1.0, le=3600.0)] = 30.0
+
+
+class Renew(Command, frozen=True, kw_only=True, tag="renew"):
+    """Keep a standing query for another lease or, with `end`, end it."""
+
+    watch: Name
+    end: bool = False
+
+
 # To run
 
 
@@ -355,6 +396,9 @@ REPLIES: dict[type[Command], Any] = {
     StepOnce: Done,
     Reset: Done,
     TakePicture: Picture,
+    Sparql: SparqlResult,
+    Watch: Watching,
+    Renew: Done,
 }
 
 COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in REPLIES}

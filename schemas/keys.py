@@ -11,6 +11,7 @@ from schemas.commits import Commit
 from schemas.entities import Entity
 from schemas.health import Health
 from schemas.scenes import Poses
+from schemas.sparql import RowsChanged
 
 ROOT = "semmap"
 
@@ -34,16 +35,22 @@ class Topic(NamedTuple):
 ACK = Topic(f"{ROOT}/ack", Any, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
+QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
 CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, ENTITY, POSES, CAMERA, HEALTH)
+TOPICS = (ACK, COMMIT, ENTITY, QUERY, POSES, CAMERA, HEALTH)
 
 
 def entity_key(class_name: str, name: str) -> str:
     """Where the state of one entity is published under one of its classes."""
     return f"{ROOT}/jena/entity/{class_name}/{name}"
+
+
+def query_key(watch: str) -> str:
+    """Where the news of a standing query is published."""
+    return f"{ROOT}/jena/query/{watch}"
 
 
 def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:

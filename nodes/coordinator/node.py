@@ -30,6 +30,7 @@ _COMMIT_TIMEOUT_S = 10.0
 _LOAD_TIMEOUT_S = 300.0
 _SIM_TIMEOUT_S = 120.0
 _CHECK_TIMEOUT_S = 660.0
+_SPARQL_TIMEOUT_S = 180.0
 
 
 class Coordinator:
@@ -67,6 +68,9 @@ class Coordinator:
             c.StepOnce: lambda m: self._ask_sim("step", m, c.Done),
             c.Reset: self._reset,
             c.TakePicture: self._picture,
+            c.Sparql: lambda m: self._later("sparql", m, timeout_s=_SPARQL_TIMEOUT_S),
+            c.Watch: lambda m: self._later("watch", m, timeout_s=_SPARQL_TIMEOUT_S),
+            c.Renew: lambda m: self._later("renew", m),
         }
         handlers = {
             verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))

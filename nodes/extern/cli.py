@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from nodes import bus
-from nodes.extern import show
+from nodes.extern import show, sparql_cli, sparql_formats
 from nodes.extern.client import CONNECT_VARIABLE, Client, connect, read_file
 from nodes.extern.past_cli import history, last_seen, undo
 from nodes.extern.system_cli import down, node, repair, up
@@ -253,15 +253,37 @@ def picture(client: Client, file: Path, camera: str | None, width: int, height: 
 
 @app.command()
 @click.argument("keyexpr", default=keys.COMMIT.key)
+@click.option("--sparql", "query", metavar="QUERY", help="The rows of a SELECT instead, as they come and go.")
+@click.option("--inferred", is_flag=True, help="With --sparql: over what follows, too.")
 @talks
-def watch(client: Client, keyexpr: str) -> None:
+def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
     """Print what is published on a key expression, as it happens; without one, the commits."""
+    if query is not None:
+        sparql_cli.watch(client, query, inferred=inferred)
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:
                 print(show.commit_line(commit), flush=True)
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
+
+
+@app.command()
+@click.argument("query")
+@click.option("--inferred", is_flag=True, help="Over what follows, too.")
+@_format(
+    type=click.Choice(sparql_formats.FORMATS),
+    help="Default: table for rows, else turtle.",
+)
+@click.option("--timeout", type=float, default=5.0, show_default=True, metavar="S", help="Cancelled after.")
+@click.option("--limit", type=int, default=10_000, show_default=True, metavar="N", help="Refused beyond.")
+@talks
+def sparql(client: Client, query: str, **options: Any) -> None:
+    """Answer a SPARQL 1.1 query that reads: SELECT, ASK, CONSTRUCT, DESCRIBE.
+
+    QUERY is the query, @FILE or - for stdin. Known prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
+    """
+    sparql_cli.ask(client, query, **options)
 
 
 @app.command()

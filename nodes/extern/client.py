@@ -23,12 +23,14 @@ from typing import Any, Literal
 import zenoh
 
 from nodes import bus
+from nodes.extern.sparql_client import StandingQuery
 from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
 from schemas.moments import When
 from schemas.scenes import Picture
+from schemas.sparql import SparqlResult
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
@@ -235,6 +237,25 @@ class Client:
         """When, where and by whom an entity was last seen or put, even if it is no more."""
         sighting: commands.Sighting = self.send(commands.LastSeen(name=name))
         return sighting
+
+    # To query
+
+    def sparql(
+        self, query: str, *, inferred: bool = False, timeout: float = 5.0, limit: int = 10_000
+    ) -> SparqlResult:
+        """A SPARQL 1.1 query that reads; `inferred`: over what follows, too. Raises BadRequest, Refused."""
+        fields = {"query": query, "inferred": inferred, "timeout": timeout, "limit": limit}
+        result: SparqlResult = self.send(codec.convert(fields, commands.Sparql))
+        return result
+
+    @contextlib.contextmanager
+    def watch(self, query: str, *, inferred: bool = False) -> Iterator[StandingQuery]:
+        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news."""
+        standing = StandingQuery(self.session, query, inferred)
+        try:
+            yield standing
+        finally:
+            standing.close()
 
     # To run
 

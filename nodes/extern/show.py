@@ -15,8 +15,6 @@ from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 
-_NARROWEST = 80
-
 
 def console() -> Console:
     """A console that does not squeeze tables when its output goes to a file or a pipe."""

@@ -13,6 +13,8 @@ from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, un
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal, NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.news import NewsStand
+from nodes.kb_node.sparql.service import SparqlService
 from nodes.loop import Node, open_node
 from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, LoadDocument, Loaded, LoadTBox, SnapshotQuery, StarQuery
@@ -21,6 +23,7 @@ from schemas.commands import (
     Checked,
     Classes,
     Document,
+    Done,
     Explain,
     Export,
     Get,
@@ -30,12 +33,16 @@ from schemas.commands import (
     LastSeen,
     List,
     LoggedCommit,
+    Renew,
     Sighting,
+    Sparql,
     Undo,
+    Watch,
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
+from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
 C = TypeVar("C", Commit, Commit | None)
@@ -52,6 +59,7 @@ class KnowledgeBase:
         self._commits = bus.publisher(node.session, keys.COMMIT)
         self._published = {entity.name: entity.types for entity in self.map.entities()}
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
         functions = {
             name.removeprefix("on_").replace("_", "-"): getattr(self, name)
             for name in dir(self)
@@ -80,6 +88,7 @@ class KnowledgeBase:
             raise
         if commit is not None and commit.seq > before:
             self._publish(commit)
+            self._sparql.follow(commit)
         return commit
 
     def on_load(self, load: LoadDocument) -> Loaded:
@@ -167,8 +176,21 @@ class KnowledgeBase:
         """Consistency, worked out beside the node's own work."""
         return self._aside.submit(answers.check, [*self.map.tbox, *self.map.abox()], query.engine)
 
+    def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
+        """A query, evaluated beside the node's own work."""
+        return self._sparql.ask(query, self.map.seq)
+
+    def on_watch(self, query: Watch) -> Future[Watching]:
+        """A standing query."""
+        return self._sparql.ask(query, self.map.seq)
+
+    def on_renew(self, renewal: Renew) -> Future[Done]:
+        """A standing query goes on, or ends."""
+        return self._sparql.ask(renewal, self.map.seq)
+
     def close(self) -> None:
         """Leave a checkpoint for a quick start, if the disk takes it."""
+        self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
         with suppress(errors.Refused):
             self.map.checkpoint()

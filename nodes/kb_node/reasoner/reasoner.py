@@ -43,6 +43,11 @@ class Reasoner:
         """How many triples are asserted, the TBox's included."""
         return len(self._engine)
 
+    @property
+    def is_compiled(self) -> bool:
+        """Whether changes are worked out one by one; else everything is, at each change."""
+        return isinstance(self._engine, CompiledEngine)
+
     def apply(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple] = ()) -> Change:
         """One transaction: deletes, then inserts, then checks.
 

@@ -10,16 +10,8 @@ from nodes.kb_node.reasoner.compiled import CompiledEngine
 from nodes.kb_node.reasoner.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, is_literal
 from tests.kb_node.reasoner import proofs
-from tests.kb_node.reasoner.graphs import (
-    CLASSES,
-    DATA_PROPERTIES,
-    EVERYTHING,
-    LITERALS,
-    OBJECT_PROPERTIES,
-    household,
-    triple,
-    triples,
-)  # fmt: skip
+from tests.kb_node.reasoner.facts import ANY_FACT, INDIVIDUALS, facts, prefixed
+from tests.kb_node.reasoner.graphs import EVERYTHING, household, triple, triples
 
 BASE = Closure(triples(EVERYTHING))
 HOME = Closure(household())
@@ -40,22 +32,6 @@ def closure_of(asserted, base):
     return Closure((fact for fact in asserted if fact not in base.facts), base=base)
 
 
-INDIVIDUALS = [f":i{n}" for n in range(7)]
-
-
-def _facts(individuals, classes, object_properties, data_properties, literals):
-    individual = st.sampled_from(individuals)
-    typed = st.builds(lambda s, c: f"{s} a {c}", individual, st.sampled_from(classes))
-    linked = _links(individual, object_properties, individual)
-    valued = _links(individual, data_properties, st.sampled_from(literals))
-    compared = _links(individual, ["owl:sameAs", "owl:differentFrom"], individual)
-    return st.one_of(typed, linked, linked, valued, compared).map(triple)
-
-
-def _links(subjects, predicates, objects):
-    return st.builds(lambda s, p, o: f"{s} {p} {o}", subjects, st.sampled_from(predicates), objects)
-
-
 def _changes(facts):
     return st.lists(
         st.tuples(st.lists(st.integers(0, 200), max_size=3), st.lists(facts, max_size=4)),
@@ -64,25 +40,13 @@ def _changes(facts):
     )
 
 
-def _prefixed(prefix, names):
-    return [f"{prefix}:{name}" for name in names]
-
-
 def _at_home(names):
-    return _prefixed("dm", names.split())
+    return prefixed("dm", names.split())
 
 
-CHANGES = _changes(
-    _facts(
-        INDIVIDUALS,
-        _prefixed("", CLASSES),
-        _prefixed("", OBJECT_PROPERTIES),
-        _prefixed("", DATA_PROPERTIES),
-        LITERALS,
-    )
-)
+CHANGES = _changes(ANY_FACT)
 AT_HOME = _changes(
-    _facts(
+    facts(
         [*INDIVIDUALS, "dm:color_red", "dm:grasping"],
         _at_home("Kitchen Chair Can Drug Tap Sink Person Coordinates Container Wall Food Fridge"),
         _at_home(

@@ -1,0 +1,102 @@
+"""A standing query as a client follows it: its rows, and from then on what appears and disappears."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import time
+import uuid
+from collections import Counter
+from collections.abc import Iterator
+
+import zenoh
+
+from nodes import bus
+from schemas import commands, errors, keys
+from schemas.sparql import Row, RowsChanged, Watching
+
+_LEASE_S = 30.0
+_RENEW_S = 5.0
+_ASK_S = 200.0
+
+
+class StandingQuery:
+    """The rows of a query as they are, and news of them; use `Client.watch`.
+
+    `changes` waits for the news and renews the lease meanwhile; when the knowledge base was restarted, it asks
+    again and tells what changed in between, too.
+    """
+
+    def __init__(self, session: zenoh.Session, query: str, inferred: bool) -> None:
+        """Raises BadRequest, Refused for a query that cannot be watched."""
+        self._session = session
+        self._name = f"q{uuid.uuid4().hex[:12]}"
+        self._command = commands.Watch(query=query, inferred=inferred, watch=self._name, lease=_LEASE_S)
+        self._news: queue.SimpleQueue[RowsChanged] = queue.SimpleQueue()
+        topic = keys.QUERY._replace(key=keys.query_key(self._name))
+        self._subscriber = bus.follow(session, topic, lambda _, news: self._news.put(news))
+        try:
+            self._seen = self._watch()
+        except errors.SemmapError:
+            self._subscriber.undeclare()
+            raise
+        self.variables = self._seen.variables
+        self.rows = self._seen.rows
+        self.seq = self._seen.seq
+
+    def changes(self) -> Iterator[RowsChanged]:
+        """The news, in order, without end. Raises Refused when the query had to be cancelled."""
+        rows, seq = Counter(self.rows), self.seq
+        renew_at = time.monotonic() + _RENEW_S
+        while True:
+            try:
+                news = self._news.get(timeout=max(0.0, renew_at - time.monotonic()))
+            except queue.Empty:
+                renew_at = time.monotonic() + _RENEW_S
+                if (again := self._renew()) is None:
+                    continue
+                news = _difference(rows, seq, again)
+                if not news.appeared and not news.disappeared:
+                    seq = again.seq
+                    continue
+            if news.error:
+                raise errors.Refused(news.error)
+            if news.seq <= seq:
+                continue
+            seq = news.seq
+            rows = rows - Counter(news.disappeared) + Counter(news.appeared)
+            yield news
+
+    def close(self) -> None:
+        """End it."""
+        self._subscriber.undeclare()
+        with contextlib.suppress(errors.SemmapError):
+            renewal = commands.Renew(watch=self._name, end=True)
+            bus.ask(self._session, keys.CMD, "renew", renewal, commands.Done, patience_s=0.0, timeout_s=2.0)
+
+    def _watch(self) -> Watching:
+        watching: Watching = bus.ask(
+            self._session, keys.CMD, "watch", self._command, Watching, timeout_s=_ASK_S
+        )
+        return watching
+
+    def _renew(self) -> Watching | None:
+        """Go on; what it has now, if it is not known there any more and was asked anew."""
+        try:
+            bus.ask(self._session, keys.CMD, "renew", commands.Renew(watch=self._name), commands.Done)
+        except errors.UnknownName:
+            return self._watch()
+        except errors.NoAnswer:
+            pass  # it may come back, and the lease lasts for several times
+        return None
+
+
+def _difference(rows: Counter[Row], since: int, now: Watching) -> RowsChanged:
+    new = Counter(now.rows)
+    return RowsChanged(
+        watch=now.watch,
+        seq=now.seq,
+        since=since,
+        appeared=tuple((new - rows).elements()),
+        disappeared=tuple((rows - new).elements()),
+    )
