@@ -25,17 +25,20 @@ def node(client):
     return next(n for n in client.status().nodes if n.node == "kb_node")
 
 
+def fill(client):
+    """Commits of 40 kB each, more than the journal has room for."""
+    for i in range(20):
+        alt = tuple(f"{i:02}" * 450 + f" {n}" for n in range(20))
+        client.add("Chair", f"big{i}", at=(2.0, i, 0.0), alt=alt)
+
+
 def test_commits_are_refused_until_there_is_space_again(tmp_path):
     with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
         client.add("Chair", "chair1", at=(1.0, 1.0, 0.0))
         before = node(client)
         with full(tmp_path, before.pid):
-            texts = [f"{i:02}" * 450 for i in range(20)]
             with pytest.raises(errors.Refused, match=r"commit \d+ could not be written to .*journal\.sqlite"):
-                for i, text in enumerate(texts):
-                    client.add(
-                        "Chair", f"big{i}", at=(2.0, i, 0.0), alt=tuple(f"{text} {n}" for n in range(20))
-                    )
+                fill(client)
             there = {e.name for e in client.list()}
             assert "chair1" in there
             assert client.check().consistent
