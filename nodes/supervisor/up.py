@@ -107,8 +107,9 @@ class _Foreground:
     def _require_alive(self) -> None:
         """A node that ended with an error which no restart mends ends the start, with its last words."""
         for node, info in self._supervisor.processes().items():
-            ended = info["statename"] in ("EXITED", "FATAL") and not self._stopping
-            if ended and self._process.poll() is None:
+            killed = info["exitstatus"] < 0  # and, unless FATAL, started again in a moment
+            ended = info["statename"] == "FATAL" or (info["statename"] == "EXITED" and not killed)
+            if ended and not self._stopping and self._process.poll() is None:
                 words = self._supervisor.last_words(node)
                 raise errors.Refused(f"{node} ended: {words} (log: {self._supervisor.log_of(node)})")
 
