@@ -44,7 +44,7 @@ format: setup  ## Format the code
 	$(BIN)/ruff check --fix .
 
 schema: setup  ## Write the JSON Schema of scene files anew
-	$(BIN)/python -m nodes.coordinator.files.scene_file > schemas/scene.schema.json
+	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png

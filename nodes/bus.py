@@ -70,6 +70,8 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         where = ", ".join((*network.listen, *network.connect))
         if network.mode == "client" and "Unable to connect" in str(error):
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
+        if "Endpoints must be of the form" in str(error):
+            raise errors.BadRequest(f"'{where}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}") from None
         reason = str(error).split(" at /", 1)[0]
         raise errors.BadRequest(f"cannot open a session at {where}: {reason}") from None
     try:

@@ -15,11 +15,16 @@ from schemas.commands import (
     Explain,
     Export,
     Get,
+    History,
     Infer,
     Inferred,
+    LastSeen,
     List,
+    LoggedCommit,
     Renew,
+    Sighting,
     Sparql,
+    Undo,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
@@ -51,6 +56,17 @@ class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     skip_unknown: bool
 
 
+class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+
+    id: CommandId
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    content: bytes
+    filename: str
+
+
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The commit, and what was left out and why."""
 
@@ -70,6 +86,10 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "infer": (Infer, Inferred),
     "explain": (Explain, Explanation),
     "export": (Export, Document),
+    "history": (History, tuple[LoggedCommit, ...]),
+    "last-seen": (LastSeen, Sighting),
+    "undo": (Undo, Commit),
+    "load-tbox": (LoadTBox, Commit),
     "sparql": (Sparql, SparqlResult),
     "watch": (Watch, Watching),
     "renew": (Renew, Done),

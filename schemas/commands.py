@@ -16,7 +16,9 @@ from schemas.entities import (
     ClassInfo,
     Entity,
     Name,
+    Pose,
     Probability,
+    Provenance,
     Quaternion,
     Size,
     Source,
@@ -24,6 +26,7 @@ from schemas.entities import (
     Vector,
 )
 from schemas.explanations import Explanation, Triple
+from schemas.moments import When
 from schemas.scenes import Picture
 from schemas.sparql import SparqlResult, Watching
 
@@ -100,13 +103,15 @@ class Load(Command, frozen=True, kw_only=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
 
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
-    class that the TBox does not have; without it, one such refuses the whole file.
+    class that the TBox does not have; without it, one such refuses the whole file. With `tbox` the file is
+    a TBox that takes the place of the present one, unless the map does not fit it.
     """
 
     content: bytes
     filename: str = ""
     replace: bool = False
     skip_unknown: bool = False
+    tbox: bool = False
 
 
 class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -125,16 +130,18 @@ class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class List(Command, frozen=True, kw_only=True, tag="list"):
-    """The entities of a class (all, without one), over inferred types."""
+    """The entities of a class (all, without one), over inferred types; with `as_of` those of then."""
 
     class_: ClassName | None = field(name="class", default=None)
     format: ListFormat = "json"
+    as_of: When | None = None
 
 
 class Get(Command, frozen=True, kw_only=True, tag="get"):
-    """One entity."""
+    """One entity; with `as_of` as it was then."""
 
     name: str
+    as_of: When | None = None
 
 
 class Check(Command, frozen=True, kw_only=True, tag="check"):
@@ -223,6 +230,62 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Map and scene are the same, to within the thresholds; None when no simulator runs."""
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
+
+
+# To ask about the past, and to take back
+
+
+class History(Command, frozen=True, kw_only=True, tag="history"):
+    """The newest commits, or those that touched an entity, in order; `since` and `until` are included."""
+
+    name: str | None = None
+    since: When | None = None
+    until: When | None = None
+    limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
+
+
+class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A commit without its triples: who, when, why, how sure, and what it touched."""
+
+    seq: int
+    stamp_ns: int
+    source: Source
+    agent: str
+    verb: str
+    reason: str
+    confidence: Probability | None
+    undoes: tuple[int, ...]
+    tbox: bool
+    inserted: int
+    """How many triples came."""
+    retracted: int
+    """How many went."""
+    changed: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+class LastSeen(Command, frozen=True, kw_only=True, tag="last-seen"):
+    """When, where and by whom an entity was last seen or put somewhere, even if it is no more."""
+
+    name: str
+
+
+class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where an entity was last, and by whose word. `removed` is the commit that took it out since."""
+
+    name: str
+    pose: Pose | None
+    provenance: Provenance
+    removed: Provenance | None
+
+
+class Undo(Command, frozen=True, kw_only=True, tag="undo"):
+    """Take back a commit by another one, unless later ones rest on it; the scene follows.
+
+    Without `commit`: the newest that a client asked for, with the settling that followed it.
+    """
+
+    commit: Annotated[int, Meta(ge=1)] | None = None
 
 
 # To query
@@ -325,6 +388,9 @@ REPLIES: dict[type[Command], Any] = {
     Export: Document,
     Classes: tuple[ClassInfo, ...],
     Status: SystemStatus,
+    History: tuple[LoggedCommit, ...],
+    LastSeen: Sighting,
+    Undo: Changed,
     Move: Moved,
     Pause: Done,
     StepOnce: Done,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from schemas.entities import CommandId, Entity, Probability, Source
+from schemas.entities import CommandId, Entity, Probability, Provenance, Source
 from schemas.explanations import Term, Triple
 
 
@@ -14,13 +14,18 @@ class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
     `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
     a second time changes nothing and is answered with the first commit.
+
+    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
+    settling). `undoes` are the commits that it takes back.
     """
 
     id: CommandId
     source: Source
     agent: str = ""
+    verb: str = ""
     reason: str = ""
     confidence: Probability | None = None
+    undoes: tuple[int, ...] = ()
     require: tuple[Triple, ...] = ()
     vacant: tuple[Term, ...] = ()
     retract: tuple[Triple, ...] = ()
@@ -35,19 +40,42 @@ class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One atomic, checked, durable change. `changed` and `removed` are the entities that it touched."""
+    """One atomic, checked, durable change. `changed` and `removed` are the entities that it touched.
+
+    `verb` and `undoes` are those of the transaction. `tbox`: it replaced the TBox, so the classes are others.
+    """
 
     seq: int
     stamp_ns: int
     id: str
     source: Source
     agent: str = ""
+    verb: str = ""
     reason: str = ""
     confidence: Probability | None = None
+    undoes: tuple[int, ...] = ()
+    tbox: bool = False
     retracted: tuple[Triple, ...] = ()
     inserted: tuple[Triple, ...] = ()
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+
+    @property
+    def provenance(self) -> Provenance:
+        """That of what it changed."""
+        return Provenance(
+            commit=self.seq,
+            stamp_ns=self.stamp_ns,
+            source=self.source,
+            agent=self.agent,
+            reason=self.reason,
+            confidence=self.confidence,
+        )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the entities that it touched."""
+        return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
 class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -102,7 +102,8 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One individual of the map that is somewhere: an object, a person, a wall, or a place.
 
     Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.
-    `pose_provenance` and `shape_provenance` say what last changed its pose, and its class or size.
+    `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
+    `reference_provenance` what it is called.
     """
 
     name: str
@@ -120,6 +121,7 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     provenance: Provenance
     pose_provenance: Provenance
     shape_provenance: Provenance
+    reference_provenance: Provenance
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -12,6 +12,7 @@ from schemas.entities import Name, Pose, Size
 class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A body to be made for an entity, standing at `pose` as of commit `commit`.
 
+    With commit 0 it is for no entity, but of the world's own furniture.
     `model` is a name of the model library or of a file; empty or unknown means a box of `size_m`.
     `size_m` None means the model's own size.
     """

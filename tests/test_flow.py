@@ -12,9 +12,14 @@ from pathlib import Path
 
 import pytest
 
+from nodes import bus
 from nodes.extern.client import connect
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
-from schemas import errors
+from schemas import errors, keys
+from schemas.bridge import SnapshotQuery
+from schemas.commits import Snapshot
+from schemas.entities import Pose
+from schemas.scenes import BodyOrder, Spawn, Spawned
 from tests.conftest import free_endpoint, running, until
 
 NODES = ("coordinator", "kb_node", "sim_node", "recorder")
@@ -212,3 +217,41 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
         until(lambda: client.get("mug").pose.position_m[1] < 0, "the map follows the mug")
         time.sleep(0.5)
         assert client.status().in_agreement
+
+
+def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(tmp_path):
+    world = tmp_path / "world.json"
+    world.write_text('{"entities": [{"class": "Chair", "name": "chair_7", "at": [1, 1, 0]}]}')
+    words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
+    with running(tmp_path / "data", *words) as system, system.client() as client:
+        until(lambda: [e.name for e in client.list()] == ["chair_7"], "the chair becomes an entity")
+        pose = Pose(position_m=(2.0, 0.0, 0.0))
+        order = BodyOrder(name="cup_1", class_="Cup", model="cup", pose=pose, commit=0)
+        bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(order,)), Spawned)
+        until(lambda: {e.name for e in client.list()} == {"chair_7", "cup_1"}, "the cup follows")
+        assert client.get("cup_1").class_ == "Cup"
+
+
+@pytest.mark.long
+def test_a_node_that_hangs_is_killed_and_started_anew(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-record") as system, system.client() as client:
+        pid = system.pid("sim_node")
+        os.kill(pid, signal.SIGSTOP)
+        deadline = time.monotonic() + 90
+        while time.monotonic() < deadline and system.pid("sim_node") == pid:
+            time.sleep(1)
+        assert system.pid("sim_node") != pid
+        until(lambda: client.status().in_agreement, "map and scene agree")
+    assert not Path(f"/proc/{pid}").exists()
+
+
+def test_one_node_by_itself(tmp_path):
+    endpoint = free_endpoint()
+    words = ["node", "kb_node", "--abox", "none", "--data", str(tmp_path), "--listen", endpoint]
+    command = [Path(sys.executable).parent / "semmap", *words]
+    peer = bus.Network(mode="peer", listen=(endpoint,), connect=())
+    with bus.open_session(peer) as session, subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
+        snapshot = bus.ask(session, keys.BRIDGE, "snapshot", SnapshotQuery(), Snapshot, patience_s=60)
+        assert snapshot == Snapshot(seq=1, entities=())
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=10) == 0

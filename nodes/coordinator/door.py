@@ -6,30 +6,49 @@ asks of the knowledge base goes through the functions that it is given.
 
 from __future__ import annotations
 
+import functools
 import uuid
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from msgspec import structs
 
 from nodes.coordinator import transactions
+from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.class_names import ClassNames
-from nodes.coordinator.files import huric, scene_file
+from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
-from nodes.coordinator.files.described import Described, pose_of
+from nodes.coordinator.hands import Hands
 from nodes.coordinator.naming import free_name, free_position
-from schemas import errors
-from schemas.bridge import LoadDocument, Loaded, StarQuery
-from schemas.commands import Add, Changed, Clear, Command, Load, Remove, Update
+from schemas import errors, scene_files
+from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
+from schemas.commands import Add, Changed, Classes, Clear, Command, Load, Remove, Undo, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Triple
+from schemas.scene_files import Described, pose_of
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
-    "scene": scene_file.read,
+    "scene": scene_files.read,
     "huric": huric.read,
 }
 _ATTEMPTS = 5
+
+
+D = TypeVar("D", bound="Door")
+C = TypeVar("C", bound=Command)
+
+
+def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
+    """A command that is sent again under the same id is answered with its first result."""
+
+    @functools.wraps(change)
+    def execute(door: D, command: C) -> Changed:
+        if not command.id:
+            return change(door, structs.replace(command, id=_new_id()))
+        return door.done_before(command) or change(door, command)
+
+    return execute
 
 
 class Door:
@@ -41,6 +60,7 @@ class Door:
         self.classes = ClassNames()
         self.entities: dict[str, Entity] = {}
         self.seq = 0
+        self.hands = Hands()
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -66,9 +86,9 @@ class Door:
         self.entities.update({entity.name: entity for entity in commit.changed})
         return True
 
+    @once
     def add(self, command: Add) -> Changed:
         """Put an entity into the map."""
-        command = _with_id(command)
         found = self.classes.spatial(command.class_)
         name = command.name or free_name(found.name, self.entities)
         if name in self.entities:
@@ -84,12 +104,14 @@ class Door:
             notes=self.classes.note(command.class_, found),
         )
 
+    @once
     def update(self, command: Update) -> Changed:
         """Change what is named; what is not named stays."""
-        command = _with_id(command)
         entity = self.entity(command.name)
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
-        _require_authority(command, entity, whatever=found or command.ref or command.alt or command.size)
+        changes = (found, command.ref, command.alt, command.size)
+        if any(change is not None for change in changes):
+            require_authority(command, [entity])
 
         def build(suffix: str) -> Transaction:
             (star,) = self._stars((entity.name,))
@@ -105,24 +127,30 @@ class Door:
             notes=self.classes.note(command.class_ or "", found) if found else (),
         )
 
+    @once
     def remove(self, command: Remove) -> Changed:
         """Take entities out: all of them, or, if one is unknown, none."""
         if not command.names:
             raise errors.BadRequest("name at least one entity to remove")
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
-        for entity in leaving:
-            _require_authority(command, entity, whatever=True)
-        return self._remove(_with_id(command), f"remove {' '.join(e.name for e in leaving)}", leaving)
+        require_authority(command, leaving)
+        return self._remove(command, f"remove {' '.join(e.name for e in leaving)}", leaving)
 
+    @once
     def clear(self, command: Clear) -> Changed:
         """Take every entity out."""
-        return self._remove(_with_id(command), "clear", list(self.entities.values()))
+        require_authority(command, self.entities.values())
+        return self._remove(command, "clear", list(self.entities.values()))
 
+    @once
     def load(self, command: Load) -> Changed:
         """Add what a file describes."""
-        command = _with_id(command)
         if command.source == "operator":
             command = structs.replace(command, source="file")
+        if command.tbox:
+            return self._load_tbox(command)
+        if command.replace:
+            require_authority(command, self.entities.values())
         kind = kind_of(command.content, command.filename)
         if kind == "abox":
             return self._load_document(command)
@@ -151,15 +179,36 @@ class Door:
         )
         return _loaded(command, commit, tuple(names), skipped, notes)
 
+    @once
+    def undo(self, command: Undo) -> Changed:
+        """Take back a commit."""
+        commit: Commit = self._ask("undo", command)
+        self._taken(commit)
+        first, *settling = commit.undoes
+        text = f"took back commit {first}" + (
+            f" with the {len(settling)} that settled it" if settling else ""
+        )
+        return Changed(commit=commit.seq, text=text, names=commit.names)
+
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
-        command = Update(id=_new_id(), source="scene", name=name, reason=f"{name} came to rest")
+        hand = self.hands.that_moved(name)
+        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
 
         def build(suffix: str) -> Transaction:
             (star,) = self._stars((name,))
-            return transactions.update(command, self.entity(name), star, None, pose, suffix)
+            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
+            return structs.replace(update, verb=hand.verb)
 
         self._commit(build)
+
+    def done_before(self, command: Command) -> Changed | None:
+        """The result of the command with this id, if there was one."""
+        commit: Commit | None = self._ask("commit", Transaction(id=command.id, source=command.source))
+        if commit is None:
+            return None
+        names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
+        return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
     def _load_document(self, command: Load) -> Changed:
         document = LoadDocument(
@@ -175,6 +224,24 @@ class Door:
         loaded: Loaded = self._ask("load", document)
         names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
         return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
+
+    def _load_tbox(self, command: Load) -> Changed:
+        if command.replace or command.skip_unknown:
+            raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+        require_operator(command, "replace the TBox")
+        order = LoadTBox(
+            id=command.id,
+            source=command.source,
+            agent=command.agent,
+            reason=command.reason or f"load the TBox {command.filename}",
+            content=command.content,
+            filename=command.filename,
+        )
+        commit: Commit = self._ask("load-tbox", order)
+        self._taken(commit)
+        self.classes = ClassNames(self._ask("classes", Classes()))
+        text = f"{len(self.classes.by_name)} classes from {command.filename or 'the file'}"
+        return Changed(commit=commit.seq, text=text, names=commit.names)
 
     def _sort_out(
         self, described: Iterable[Described], *, skip_unknown: bool
@@ -238,20 +305,8 @@ class Door:
         return commit
 
 
-def _with_id(command: Any) -> Any:
-    return command if command.id else structs.replace(command, id=_new_id())
-
-
 def _new_id() -> str:
     return uuid.uuid4().hex
-
-
-def _require_authority(command: Command, entity: Entity, *, whatever: object) -> None:
-    """What an operator or a file said a thing is, the scene and perception do not change."""
-    if whatever and command.source == "perception" and entity.shape_provenance.source in ("operator", "file"):
-        raise errors.Refused(
-            f"{entity.name} was put in by an operator, so only an operator may change what it is"
-        )
 
 
 def _label(found: ClassInfo) -> str:

@@ -7,8 +7,9 @@ never older than the orders before it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 from nodes.coordinator.config import CoordinatorConfig
@@ -21,6 +22,7 @@ from schemas.entities import BodyState, Entity
 from schemas.scenes import (
     BodiesMoved,
     Body,
+    BodyOrder,
     Delete,
     Deleted,
     MoveBodies,
@@ -33,8 +35,25 @@ from schemas.scenes import (
 )
 
 Ask = Callable[[str, Any, Any], Future[Any]]
+BATCH = 500
+_USUAL_AREA_M2 = 0.1
 Step = tuple[str, Any, Any, Callable[[Any], None]]
 """Verb, message, type of the reply, what to do with it."""
+
+
+def batches(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
+    """The orders in batches that the simulator can make between two heartbeats, what is wide first.
+
+    Within a batch the simulator itself sees to it that supports come before what stands on them.
+    """
+    if len(orders) > BATCH:
+        orders = sorted(orders, key=lambda order: -_area_m2(order))
+    for start in range(0, len(orders), BATCH):
+        yield tuple(orders[start : start + BATCH])
+
+
+def _area_m2(order: BodyOrder) -> float:
+    return _USUAL_AREA_M2 if order.size_m is None else order.size_m[0] * order.size_m[1]
 
 
 class Keeping:
@@ -60,6 +79,11 @@ class Keeping:
             self.keep()
         elif not self._busy:
             self._start([])
+
+    def lose_scene(self) -> None:
+        """The simulator is silent: forget the scene, unless it is silent over orders of ours."""
+        if self.scene.known and not self._busy:
+            self.scene.forget()
 
     def keep(self) -> None:
         """Do what must be done, unless orders are under way already."""
@@ -128,11 +152,9 @@ class Keeping:
         steps: list[Step] = []
         if actions.delete:
             steps.append(("delete", Delete(names=actions.delete), Deleted, lambda _: None))
-        if actions.spawn:
-            tried = {order.name: order.commit for order in actions.spawn}
-            steps.append(
-                ("spawn", Spawn(bodies=actions.spawn), Spawned, lambda reply: self._spawned(reply, tried))
-            )
+        for batch in batches(actions.spawn):
+            tried = {order.name: order.commit for order in batch}
+            steps.append(("spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)))
         placements = (*actions.place, *refused)
         if placements:
             steps.append(("move", MoveBodies(placements=placements), BodiesMoved, lambda _: None))
@@ -160,7 +182,7 @@ class Keeping:
 
         self._ask(verb, message, kind).add_done_callback(on_done)
 
-    def _spawned(self, reply: Spawned, tried: dict[str, int]) -> None:
+    def _spawned(self, tried: dict[str, int], reply: Spawned) -> None:
         for name in tried:
             self._failed.pop(name, None)
         for name, reason in reply.failed.items():

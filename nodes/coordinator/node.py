@@ -22,10 +22,13 @@ from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity, Pose, orientation_from_yaw
 from schemas.health import Health
+from schemas.moments import When
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
 
 _WAIT_S = 20.0
-_COMMIT_TIMEOUT_S = 120.0
+_COMMIT_TIMEOUT_S = 10.0
+_LOAD_TIMEOUT_S = 300.0
+_SIM_TIMEOUT_S = 120.0
 _CHECK_TIMEOUT_S = 660.0
 _SPARQL_TIMEOUT_S = 180.0
 
@@ -49,6 +52,9 @@ class Coordinator:
             c.Remove: door.remove,
             c.Clear: door.clear,
             c.Load: door.load,
+            c.Undo: door.undo,
+            c.History: lambda m: self._later("history", m),
+            c.LastSeen: lambda m: self._later("last-seen", m),
             c.List: self._list,
             c.Get: self._get,
             c.Check: lambda m: self._later("check", m, timeout_s=_CHECK_TIMEOUT_S),
@@ -79,7 +85,7 @@ class Coordinator:
     # Following
 
     def _on_commit(self, commit: Commit) -> None:
-        if self._has_map and not self._door.take(commit):
+        if self._has_map and (not self._door.take(commit) or commit.tbox):
             self._fetch_map()
         self._keep()
 
@@ -95,8 +101,8 @@ class Coordinator:
     def _tick(self) -> None:
         if not self._has_map:
             self._fetch_map()
-        if self._keeping.scene.known and not self._health.alive("sim_node"):
-            self._keeping.scene.forget()
+        if not self._health.alive("sim_node"):
+            self._keeping.lose_scene()
         self._keep()
 
     def _keep(self) -> None:
@@ -135,18 +141,30 @@ class Coordinator:
 
     def _list(self, query: c.List) -> Future[Any]:
         if query.class_ is not None:
-            query = structs.replace(query, class_=self._door.classes.find(query.class_).name)
-        return then(self._later("list", query), lambda entities: self._formatted(entities, query.format))
+            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
+        return then(self._later("list", query), lambda entities: self._formatted(entities, query))
 
-    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
+    def _formatted(self, entities: tuple[Entity, ...], query: c.List) -> Any:
+        wanted = query.format
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
             iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
             return formats.legacy(entities, iris)
-        return tuple(map(self._with_body, entities))
+        return entities if query.as_of is not None else tuple(map(self._with_body, entities))
+
+    def _class_name(self, word: str, as_of: When | None) -> str:
+        """The class that is meant; then there may have been others than now."""
+        try:
+            return self._door.classes.find(word).name
+        except errors.UnknownClass:
+            if as_of is None:
+                raise
+            return word
 
     def _get(self, query: c.Get) -> Future[Any]:
+        if query.as_of is not None:
+            return self._later("get", query)
         return then(self._later("get", query), self._with_body)
 
     def _with_body(self, entity: Entity) -> Entity:
@@ -178,6 +196,7 @@ class Coordinator:
         def moved(reply: BodiesMoved) -> c.Moved:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
+            self._door.hands.let_go(command)
             x, y, z = command.at
             return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
 
@@ -228,13 +247,14 @@ class Coordinator:
         return guarded
 
     def _ask_kb(self, verb: str, message: Any) -> Any:
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_COMMIT_TIMEOUT_S)
+        timeout_s = _COMMIT_TIMEOUT_S if verb in ("commit", "star", "classes") else _LOAD_TIMEOUT_S
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=timeout_s)
 
     def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
 
     def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_COMMIT_TIMEOUT_S)
+        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
 
 
 def run(config: CoordinatorConfig) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from nodes.coordinator.files.described import Described, pose_of
 from ontology import stars
 from ontology import vocabulary as v
 from schemas.commands import Add, Command, Update
 from schemas.commits import Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Term, Triple
+from schemas.scene_files import Described, pose_of
 
 
 def transaction(
@@ -22,11 +22,12 @@ def transaction(
     retract: Iterable[Triple] = (),
     insert: Iterable[Triple] = (),
 ) -> Transaction:
-    """A transaction on behalf of `command`."""
+    """A transaction on behalf of `command`. What the scene says no client asked for, so it has no verb."""
     return Transaction(
         id=command.id,
         source=command.source,
         agent=command.agent,
+        verb="" if command.source == "scene" else str(command.__struct_config__.tag),
         reason=command.reason or reason,
         confidence=getattr(command, "confidence", None),
         require=tuple(require),

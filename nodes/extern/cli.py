@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import json
 import os
 import shlex
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,9 @@ import click
 from nodes import bus
 from nodes.extern import show, sparql_cli, sparql_formats
 from nodes.extern.client import CONNECT_VARIABLE, Client, connect, read_file
-from nodes.extern.system_cli import down, node, up
+from nodes.extern.past_cli import history, last_seen, undo
+from nodes.extern.system_cli import down, node, repair, up
+from nodes.extern.talking import print_json, print_lines, talks
 from schemas import codec, commands, errors, keys
 from schemas.entities import Entity
 
@@ -41,31 +42,6 @@ def app() -> None:
     """A robot's semantic map: what there is, what it is called, where it stands, and what follows."""
 
 
-def talks(function: Callable[..., None]) -> Callable[..., None]:
-    """A verb that talks to a running system: its first argument is a client."""
-
-    @click.option(
-        "--connect",
-        "where",
-        envvar=CONNECT_VARIABLE,
-        default=bus.DEFAULT_ENDPOINT,
-        show_default=True,
-        show_envvar=True,
-        metavar="EP",
-        help="Zenoh endpoint of the system.",
-    )
-    @functools.wraps(function)
-    def with_client(where: str, **arguments: Any) -> None:
-        shared = click.get_current_context().obj
-        if isinstance(shared, Client):
-            function(shared, **arguments)
-            return
-        with connect(where, agent=f"cli/{os.environ.get('USER', 'user')}") as client:
-            function(client, **arguments)
-
-    return with_client
-
-
 def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda function: functools.reduce(lambda f, decorate: decorate(f), reversed(decorators), function)
 
@@ -82,6 +58,9 @@ _describing = _options(
     click.option("--id", "id", metavar="ID", help="Command id: the same one twice is executed once."),
 )
 _format = functools.partial(click.option, "--format", "format")
+_as_of = click.option(
+    "--as-of", metavar="COMMIT|TIME", help="As it was after a commit, or at a time (ISO 8601)."
+)
 
 
 @app.command()
@@ -92,7 +71,7 @@ _format = functools.partial(click.option, "--format", "format")
 @talks
 def add(client: Client, **fields: Any) -> None:
     """Put an entity into the map."""
-    _say(show.changed(client.add(**_given(fields))))
+    print_lines(show.changed(client.add(**_given(fields))))
 
 
 @app.command()
@@ -102,7 +81,7 @@ def add(client: Client, **fields: Any) -> None:
 @talks
 def update(client: Client, **fields: Any) -> None:
     """Change what is named; what is not named stays."""
-    _say(show.changed(client.update(**_given(fields))))
+    print_lines(show.changed(client.update(**_given(fields))))
 
 
 @app.command()
@@ -110,38 +89,40 @@ def update(client: Client, **fields: Any) -> None:
 @talks
 def remove(client: Client, names: tuple[str, ...]) -> None:
     """Take entities out of map and scene."""
-    _say(show.changed(client.remove(*names)))
+    print_lines(show.changed(client.remove(*names)))
 
 
 @app.command()
 @talks
 def clear(client: Client) -> None:
     """Take every entity out of map and scene; the TBox stays."""
-    _say(show.changed(client.clear()))
+    print_lines(show.changed(client.clear()))
 
 
 @app.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--replace", is_flag=True, help="Instead of the present map.")
 @click.option("--skip-unknown", is_flag=True, help="Leave out what is of an unknown class.")
+@click.option("--tbox", is_flag=True, help="FILE is a TBox that takes the place of the present one.")
 @talks
-def load(client: Client, file: Path, replace: bool, skip_unknown: bool) -> None:
-    """Load an ABox (RDF/XML, Turtle, N-Triples, JSON-LD), a JSON scene or a HuRIC map."""
-    _say(show.changed(client.load(file, replace=replace, skip_unknown=skip_unknown)))
+def load(client: Client, file: Path, replace: bool, skip_unknown: bool, tbox: bool) -> None:
+    """Load an ABox (RDF/XML, Turtle, N-Triples, JSON-LD), a JSON scene or a HuRIC map; or a TBox."""
+    print_lines(show.changed(client.load(file, replace=replace, skip_unknown=skip_unknown, tbox=tbox)))
 
 
 @app.command("list")
 @click.option("--class", "class_", metavar="CLASS", help="Only those of this class, also by inference.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
+@_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str) -> None:
+def list_(client: Client, class_: str | None, format: str, as_of: str | None) -> None:
     """List the entities."""
     if format in ("lu4r", "legacy"):
-        _json(client.list_as(format, class_))  # type: ignore[arg-type]
+        print_json(client.list_as(format, class_, as_of=as_of))  # type: ignore[arg-type]
         return
-    entities = client.list(class_)
+    entities = client.list(class_, as_of=as_of)
     if format == "json":
-        _json(entities)
+        print_json(entities)
         return
     _print_entities(entities)
 
@@ -149,12 +130,13 @@ def list_(client: Client, class_: str | None, format: str) -> None:
 @app.command()
 @click.argument("name")
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@_as_of
 @talks
-def get(client: Client, name: str, format: str) -> None:
+def get(client: Client, name: str, format: str, as_of: str | None) -> None:
     """Show one entity."""
-    entity = client.get(name)
+    entity = client.get(name, as_of=as_of)
     if format == "json":
-        _json(entity)
+        print_json(entity)
     else:
         show.console().print(show.entity_card(entity))
 
@@ -175,7 +157,7 @@ def check(client: Client, engine: Any) -> None:
 @talks
 def infer(client: Client, name: str | None) -> None:
     """What follows that was not said, about one entity or all."""
-    _say(show.inferred(client.infer(name)))
+    print_lines(show.inferred(client.infer(name)))
 
 
 @app.command()
@@ -185,7 +167,7 @@ def infer(client: Client, name: str | None) -> None:
 @talks
 def explain(client: Client, name: str, predicate: str, value: str) -> None:
     """Why something holds: semmap explain fridge1 type Device."""
-    _say(show.explanation(client.explain(name, predicate, value)))
+    print_lines(show.explanation(client.explain(name, predicate, value)))
 
 
 @app.command()
@@ -206,7 +188,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
 def classes(client: Client, format: str) -> None:
     """The class tree, with the number of entities of each class."""
     if format == "json":
-        _json(client.classes())
+        print_json(client.classes())
     else:
         show.console().print(show.class_tree(client.classes()))
 
@@ -218,11 +200,11 @@ def status(client: Client, format: str) -> None:
     """The nodes and the map."""
     status = client.status()
     if format == "json":
-        _json(status)
+        print_json(status)
         return
     show.console().print(show.status_table(status))
     print(show.status_line(status))
-    _say(f"  {problem}" for problem in status.problems)
+    print_lines(f"  {problem}" for problem in status.problems)
 
 
 @app.command()
@@ -232,7 +214,7 @@ def status(client: Client, format: str) -> None:
 @talks
 def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
     """Take a body and put it elsewhere, as a hand would; the map follows when it rests."""
-    print(client.send(_command(commands.Move, name=name, at=at, yaw=yaw)).text)
+    print(client.move(**_given({"name": name, "at": at, "yaw": yaw})).text)
 
 
 @app.command()
@@ -339,7 +321,7 @@ def replay(file: Path) -> None:
     open_viewer(file)
 
 
-for command in (up, down, node):
+for command in (history, last_seen, undo, up, down, node, repair):
     app.add_command(command)
 
 
@@ -390,7 +372,7 @@ def _execute_message(client: Client, message: bytes) -> int:
         _complain(error.text)
         return error.exit_status
     if isinstance(reply, commands.Changed):
-        _say(show.changed(reply))
+        print_lines(show.changed(reply))
     else:
         print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0
@@ -444,15 +426,6 @@ def _write_atomically(file: Path, content: bytes) -> None:
         with contextlib.suppress(OSError, UnboundLocalError):
             Path(temporary.name).unlink()
         raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
-
-
-def _json(message: Any) -> None:
-    print(json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False))
-
-
-def _say(lines: Iterable[str]) -> None:
-    for line in lines:
-        print(line)
 
 
 def _complain(text: str) -> None:

@@ -28,6 +28,7 @@ from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
+from schemas.moments import When
 from schemas.scenes import Picture
 from schemas.sparql import SparqlResult
 
@@ -138,9 +139,17 @@ class Client:
         return self._change(commands.Clear)
 
     def load(
-        self, path: str | Path, *, replace: bool = False, skip_unknown: bool = False
+        self,
+        path: str | Path,
+        *,
+        replace: bool = False,
+        skip_unknown: bool = False,
+        tbox: bool = False,
     ) -> commands.Changed:
-        """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile."""
+        """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile.
+
+        With `tbox` it is a TBox that takes the place of the present one.
+        """
         content = read_file(Path(path))
         return self._change(
             commands.Load,
@@ -148,24 +157,34 @@ class Client:
             filename=Path(path).name,
             replace=replace,
             skip_unknown=skip_unknown,
+            tbox=tbox,
         )
+
+    def undo(self, commit: int | None = None, *, id: str = "") -> commands.Changed:
+        """Take back a commit; without one, the newest that a client asked for, with its settling."""
+        return self._change(commands.Undo, commit=commit, id=id)
 
     # To ask
 
-    def list(self, class_: str | None = None) -> tuple[Entity, ...]:
-        """The entities of a class, over inferred types; all of them without one."""
-        reply = self.send(commands.List(class_=class_))
+    def list(self, class_: str | None = None, *, as_of: When | None = None) -> tuple[Entity, ...]:
+        """The entities of a class, over inferred types; all of them without one.
+
+        `as_of` a commit's number, seconds since 1970 or ISO 8601: those of then.
+        """
+        reply = self.send(commands.List(class_=class_, as_of=as_of))
         entities: tuple[Entity, ...] = codec.convert(reply, tuple[Entity, ...])
         return entities
 
-    def list_as(self, format: Literal["lu4r", "legacy"], class_: str | None = None) -> dict[str, Any]:
+    def list_as(
+        self, format: Literal["lu4r", "legacy"], class_: str | None = None, *, as_of: When | None = None
+    ) -> dict[str, Any]:
         """The entity list in the format of another system."""
-        document: dict[str, Any] = self.send(commands.List(class_=class_, format=format))
+        document: dict[str, Any] = self.send(commands.List(class_=class_, format=format, as_of=as_of))
         return document
 
-    def get(self, name: str) -> Entity:
-        """One entity. Raises UnknownName."""
-        entity: Entity = self.send(commands.Get(name=name))
+    def get(self, name: str, *, as_of: When | None = None) -> Entity:
+        """One entity, or as it was then. Raises UnknownName."""
+        entity: Entity = self.send(commands.Get(name=name, as_of=as_of))
         return entity
 
     def check(self, engine: Literal["semmap", "owlrl"] = "semmap") -> commands.Checked:
@@ -199,6 +218,26 @@ class Client:
         status: commands.SystemStatus = self.send(commands.Status())
         return status
 
+    def history(
+        self,
+        name: str | None = None,
+        *,
+        since: When | None = None,
+        until: When | None = None,
+        limit: int = 100,
+    ) -> tuple[commands.LoggedCommit, ...]:
+        """The newest commits in a span of time, or those that touched an entity; newest last."""
+        query = codec.convert(
+            {"name": name, "since": since, "until": until, "limit": limit}, commands.History
+        )
+        commits: tuple[commands.LoggedCommit, ...] = self.send(query)
+        return commits
+
+    def last_seen(self, name: str) -> commands.Sighting:
+        """When, where and by whom an entity was last seen or put, even if it is no more."""
+        sighting: commands.Sighting = self.send(commands.LastSeen(name=name))
+        return sighting
+
     # To query
 
     def sparql(
@@ -222,7 +261,8 @@ class Client:
 
     def move(self, name: str, at: Vector, yaw: float | None = None) -> commands.Moved:
         """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
-        moved: commands.Moved = self.send(commands.Move(name=name, at=at, yaw=yaw))
+        command = codec.convert({"name": name, "at": at, "yaw": yaw, **self._signed}, commands.Move)
+        moved: commands.Moved = self.send(command)
         return moved
 
     def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:

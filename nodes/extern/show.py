@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterable
 
-from rich import box
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 from rich.tree import Tree
 
+from nodes.extern.tables import author, card, pose_cells, pose_text, provenance_text, table
 from schemas.commands import Changed, Inferred, SystemStatus
 from schemas.commits import Commit
-from schemas.entities import ClassInfo, Entity, Pose
+from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
-
-_NARROWEST = 80
 
 
 def console() -> Console:
@@ -28,37 +24,34 @@ def console() -> Console:
 
 def entity_table(entities: Iterable[Entity]) -> Table:
     """One row an entity."""
-    table = _table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body")
-    for column in table.columns[2:6]:
+    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body")
+    for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
-        table.add_row(e.name, e.class_, *_pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
-    return table
+        rows.add_row(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
+    return rows
 
 
 def entity_card(e: Entity) -> Table:
     """All about one entity."""
-    card = Table(box=None, show_header=False, pad_edge=False)
-    card.add_column(style="dim", no_wrap=True)
-    card.add_column()
-    pose = "none" if e.pose is None else "({}, {}, {}) m, yaw {}°".format(*_pose_cells(e.pose))
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
     rows = {
         "name": e.name,
         "iri": e.iri,
         "class": e.class_,
         "types": ", ".join(e.types),
-        "pose": pose,
+        "pose": pose_text(e.pose),
         "size": _size(e) or "the model's own",
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
         "model": e.body.model if e.body is not None and e.body.model else e.model or "a box",
-        "last change": f"commit {e.provenance.commit} by {e.provenance.source}: {e.provenance.reason}",
+        "last change": provenance_text(e.provenance),
+        "posed": provenance_text(e.pose_provenance),
+        "class and size": provenance_text(e.shape_provenance),
+        "called so": provenance_text(e.reference_provenance),
     }
-    for key, value in rows.items():
-        card.add_row(key, Text(value))
-    return card
+    return card(rows)
 
 
 def class_tree(classes: Iterable[ClassInfo]) -> Tree:
@@ -75,12 +68,12 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
 
 def status_table(status: SystemStatus) -> Table:
     """One row a node."""
-    table = _table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
-    for column in table.columns[5:]:
+    rows = table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
+    for column in rows.columns[5:]:
         column.no_wrap, column.overflow = False, "fold"
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
-        table.add_row(
+        rows.add_row(
             n.node,
             f"[{colour}]{n.state}[/]",
             str(n.pid),
@@ -89,7 +82,7 @@ def status_table(status: SystemStatus) -> Table:
             n.detail,
             n.last_error,
         )
-    return table
+    return rows
 
 
 def status_line(status: SystemStatus) -> str:
@@ -126,33 +119,8 @@ def commit_line(commit: Commit) -> str:
     stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
     counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
     names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
-    who = f"{commit.source}{f'/{commit.agent}' if commit.agent else ''}"
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
-    return f"{stamp}  commit {commit.seq}  {who}: {commit.reason}  [{counts}]  {shown}"
-
-
-def plain_table(*columns: str) -> Table:
-    """An empty table."""
-    return _table(*columns)
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        table.add_column(column, no_wrap=True)
-    return table
-
-
-def _pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
-    if pose is None:
-        return ("-", "-", "-", "-")
-    x, y, z = (_plain(value, 3) for value in pose.position_m)
-    return (x, y, z, _plain(math.degrees(pose.yaw_rad), 0))
-
-
-def _plain(value: float, digits: int) -> str:
-    """Rounded, and never minus zero."""
-    return f"{round(value, digits) + 0.0:.{digits}f}"
+    return f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
 
 
 def _size(e: Entity) -> str:

@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import pyoxigraph as ox
 from rich.table import Table
 
-from nodes.extern import show
+from nodes.extern import tables
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.explanations import Term
@@ -22,7 +22,7 @@ _PREFIXES = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
     """One line a row, with prefixed names."""
-    shown = show.plain_table(*variables)
+    shown = tables.table(*variables)
     for row in rows:
         shown.add_row(*map(spoken, row))
     return shown

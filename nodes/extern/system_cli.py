@@ -1,4 +1,4 @@
-"""The verbs that start and stop a system: `up`, `down`, `node`."""
+"""The verbs that start, stop and mend a system: `up`, `down`, `node`, `repair`."""
 
 from __future__ import annotations
 
@@ -49,20 +49,21 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Zenoh endpoint that the system listens on.",
     )
     @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option("--window", is_flag=True, help="With a window on the scene, where there is a display.")
+    @click.option(
+        "--models", type=_path, default=None, help="Folder of your own models: chair.glb for chair."
+    )
+    @click.option("--camera-hz", type=float, default=0.0, metavar="HZ", help="Publish the cameras' pictures.")
+    @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
+    @click.option("--camera-noise", is_flag=True, help="With the noise of a Kinect's depth.")
     @click.option("--no-sim", is_flag=True, help="Without the simulator.")
     @click.option("--no-record", is_flag=True, help="Without the recorder.")
     @functools.wraps(function)
-    def with_settings(**options: Any) -> None:
-        names = {name: options.pop(name) for name in _NAMES}
-        function(settings=_settings(**names), **options)
+    def with_settings(name: str | None = None, **options: Any) -> None:
+        own = {} if name is None else {"name": name}
+        function(settings=_settings(**options), **own)
 
     return with_settings
-
-
-_NAMES = (
-    "tbox", "abox", "world", "data", "fresh", "truth", "threshold", "angle_threshold",
-    "listen", "connect", "no_sim", "no_record",
-)  # fmt: skip
 
 
 @click.command()
@@ -85,6 +86,15 @@ def down(data: Path | None) -> None:
 
 
 @click.command()
+@click.option("--data", type=_path, default=None, help="Folder of the map; no system may run on it.")
+def repair(data: Path | None) -> None:
+    """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    from nodes.kb_node.repair import repair as repair_journal
+
+    click.echo(repair_journal((data or default_data()).resolve()))
+
+
+@click.command()
 @click.argument("name")
 @settings_options
 def node(name: str, settings: Settings) -> None:
@@ -99,6 +109,7 @@ def node(name: str, settings: Settings) -> None:
 def _settings(
     *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
+    window: bool, models: Path | None, camera_hz: float, camera_size: tuple[int, int], camera_noise: bool,
     no_sim: bool, no_record: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
@@ -118,11 +129,19 @@ def _settings(
         "angle_threshold_deg": angle_threshold,
         "listen": listen,
         "connect": connect,
+        "window": window,
+        "models": None if models is None else str(models.resolve()),
+        "camera_hz": camera_hz,
+        "camera_size": camera_size,
+        "camera_noise": camera_noise,
         "sim": not no_sim,
         "record": not no_record,
         "fresh": fresh,
     }
-    return codec.convert(values, Settings)
+    try:
+        return codec.convert(values, Settings)
+    except errors.BadRequest as error:
+        raise errors.BadRequest(error.text.removeprefix("malformed message: ")) from None
 
 
 def _world_before(data: Path) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import cached_property
+from typing import NamedTuple
 
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
@@ -14,6 +15,17 @@ from schemas.explanations import Term
 
 _CHUNK = re.compile(r"[^/*$?#\s]+")
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
+
+
+class Kind(NamedTuple):
+    """What the classes of an entity say of it. Names are local names of the TBox."""
+
+    class_name: str
+    """The most special spatial class that is asserted, or else the most special one that follows."""
+    types: tuple[str, ...]
+    place: bool
+    fixed: bool
+    model: str
 
 
 class ClassTable:
@@ -34,10 +46,36 @@ class ClassTable:
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
         self.fixed: frozenset[Term] = frozenset(c for c in self.names if self._nearest(c, v.FIXED) == "true")
+        self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     def special_first(self, types: Iterable[Term]) -> list[Term]:
         """Those of `types` that are named classes of the TBox, the most special one first."""
         return sorted((t for t in types if t in self.names), key=lambda c: (-self._depth[c], c))
+
+    def kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
+        """What an individual is that has these classes, some of them asserted; None if it is no entity.
+
+        A map has few combinations of classes, so each is worked out once.
+        """
+        try:
+            return self._kinds[types, asserted]
+        except KeyError:
+            found = self._kinds[types, asserted] = self._kind(types, asserted)
+            return found
+
+    def _kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
+        named = self.special_first(types)
+        spatial = [t for t in named if t in self.spatial]
+        if not spatial:
+            return None
+        said = [t for t in spatial if t in asserted] or spatial
+        return Kind(
+            class_name=self.names[said[0]],
+            types=tuple(self.names[t] for t in named),
+            place=any(t in self.places for t in named),
+            fixed=any(t in self.fixed for t in said),
+            model=self.models[said[0]],
+        )
 
     @cached_property
     def rows(self) -> list[ClassInfo]:

@@ -24,7 +24,7 @@ def sort_out(
     triples = list(triples)
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
-    types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not _is_built_in(o)]
+    types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
     for s, c in unknown:
@@ -37,7 +37,8 @@ def sort_out(
     return _without(gone, [t for t in triples if t not in doubtful]), words
 
 
-def _is_built_in(term: Term) -> bool:
+def is_built_in(term: Term) -> bool:
+    """Is it a term of OWL's own vocabularies, or an anonymous class?"""
     return term.startswith("_:") or (term.startswith("<") and v.bare(term).startswith(_VOCABULARIES))
 
 

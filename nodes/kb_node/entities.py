@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from msgspec import structs
 
@@ -19,6 +19,7 @@ from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
+_OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
 def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: Provenance) -> Entity | None:
@@ -27,30 +28,38 @@ def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: 
     Raises BadRequest for an entity that cannot be named, or whose star makes no sense: a number that is none,
     is not finite or is out of all bounds, a size that is not positive.
     """
-    types = classes.special_first(reasoner.types(iri))
-    spatial = [t for t in types if t in classes.spatial]
-    if not spatial:
+    types = reasoner.types(iri)
+    if types.isdisjoint(classes.spatial):
         return None
-    asserted = {o for _, _, o in reasoner.asserted(iri, v.RDF_TYPE, None)}
-    said = [t for t in spatial if t in asserted] or spatial
-    _require_name(iri, classes.names[said[0]])
-    preferred = _references(reasoner, iri, v.HAS_PREFERRED_REFERENCE)
+    said = _objects(reasoner, iri)
+    kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
+    assert kind is not None
+    _require_name(iri, kind.class_name)
+    preferred = _references(reasoner, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     return Entity(
         name=v.local_name(iri),
-        class_=classes.names[said[0]],
+        class_=kind.class_name,
         iri=v.bare(iri),
-        types=tuple(classes.names[t] for t in types),
-        pose=_pose(reasoner, iri),
-        size_m=_size(reasoner, iri),
+        types=kind.types,
+        pose=_pose(reasoner, iri, said.get(v.HAS_POSITION, ())),
+        size_m=_size(reasoner, iri, said.get(v.HAS_SIZE, ())),
         preferred_reference=min(preferred, default=None),
-        alternative_references=tuple(_references(reasoner, iri, v.HAS_ALTERNATIVE_REFERENCE)),
-        place=any(t in classes.places for t in types),
-        fixed=any(t in classes.fixed for t in said),
-        model=classes.models[said[0]],
+        alternative_references=tuple(_references(reasoner, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
+        place=kind.place,
+        fixed=kind.fixed,
+        model=kind.model,
         provenance=provenance,
         pose_provenance=provenance,
         shape_provenance=provenance,
+        reference_provenance=provenance,
     )
+
+
+def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
+    """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
+    iris = {i for c in classes.spatial for i in reasoner.instances(c)}
+    read = (read_entity(reasoner, classes, iri, _OF_THE_TBOX) for iri in sorted(iris))
+    return [entity for entity in read if entity is not None]
 
 
 def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
@@ -61,11 +70,17 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
         known.model,
         known.fixed,
     )
+    same_references = (entity.preferred_reference, entity.alternative_references) == (
+        known.preferred_reference,
+        known.alternative_references,
+    )
+    said = entity.provenance
     return structs.replace(
         entity,
-        provenance=entity.provenance if concerned else known.provenance,
-        pose_provenance=known.pose_provenance if entity.pose == known.pose else entity.pose_provenance,
-        shape_provenance=known.shape_provenance if same_shape else entity.shape_provenance,
+        provenance=said if concerned else known.provenance,
+        pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
+        shape_provenance=known.shape_provenance if same_shape else said,
+        reference_provenance=known.reference_provenance if same_references else said,
     )
 
 
@@ -83,7 +98,7 @@ def _require_name(iri: Term, class_name: str) -> None:
 
 def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
     """The individuals to whose star a triple about `subject` may belong: itself, and who points to it."""
-    return {subject} | _users(reasoner, subject)
+    return {subject, *_users(reasoner, subject)}
 
 
 def read_star(
@@ -94,13 +109,14 @@ def read_star(
     What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox
     says does not. Raises Refused for an entity that the TBox itself has.
     """
-    own = list(reasoner.asserted(iri, None, None))
-    if not tbox.isdisjoint(own):
+    said = list(reasoner.asserted(iri))
+    if not tbox.isdisjoint(said):
         raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
+    own = list(said)
     nodes: dict[Term, list[Term]] = {}
     for predicate in stars.STAR_PROPERTIES:
-        objects = sorted({o for _, _, o in reasoner.asserted(iri, predicate, None)})
-        private = {o for o in objects if _users(reasoner, o) <= leaving}
+        objects = sorted({o for _, p, o in said if p == predicate})
+        private = {o for o in objects if all(user in leaving for user in _users(reasoner, o))}
         about = {o: list(reasoner.asserted(o, None, None)) for o in private - leaving}
         own += [t for triples in about.values() if tbox.isdisjoint(triples) for t in triples]
         # A position or size that is somebody else's too is not changed: a change makes a new one.
@@ -120,19 +136,30 @@ def read_star(
     )
 
 
-def _users(reasoner: Reasoner, node: Term) -> set[Term]:
+def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     """The individuals in whose star `node` is."""
-    return {s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node)}
+    if any(True for _ in reasoner.asserted(None, None, node)):  # most new nodes have nobody
+        for predicate in stars.STAR_PROPERTIES:
+            for user, _, _ in reasoner.asserted(None, predicate, node):
+                yield user
 
 
-def _pose(reasoner: Reasoner, iri: Term) -> Pose | None:
-    node = _object(reasoner, iri, v.HAS_POSITION)
-    if node is None:
+def _objects(reasoner: Reasoner, subject: Term) -> dict[Term, list[Term]]:
+    """What is asserted of `subject`: predicate to objects, in one look. Costs as much as there is."""
+    objects: dict[Term, list[Term]] = {}
+    for _, p, o in reasoner.asserted(subject):
+        objects.setdefault(p, []).append(o)
+    return objects
+
+
+def _pose(reasoner: Reasoner, iri: Term, nodes: Collection[Term]) -> Pose | None:
+    if not nodes:
         return None
-    position = [_number(reasoner, iri, node, p) for p in v.COORDINATE_XYZ]
+    said = _objects(reasoner, min(nodes))
+    position = [_number(iri, p, said) for p in v.COORDINATE_XYZ]
     if None in position:
         return None
-    orientation = [_number(reasoner, iri, node, p) for p in v.ORIENTATION_WXYZ]
+    orientation = [_number(iri, p, said) for p in v.ORIENTATION_WXYZ]
     if None in orientation:
         return Pose(position_m=tuple(position))  # type: ignore[arg-type]
     try:
@@ -141,11 +168,11 @@ def _pose(reasoner: Reasoner, iri: Term) -> Pose | None:
         raise errors.BadRequest(f"{v.local_name(iri)}: {error}") from None
 
 
-def _size(reasoner: Reasoner, iri: Term) -> tuple[float, float, float] | None:
-    node = _object(reasoner, iri, v.HAS_SIZE)
-    if node is None:
+def _size(reasoner: Reasoner, iri: Term, nodes: Collection[Term]) -> tuple[float, float, float] | None:
+    if not nodes:
         return None
-    size = [_number(reasoner, iri, node, p) for p in v.SIZE_XYZ]
+    said = _objects(reasoner, min(nodes))
+    size = [_number(iri, p, said) for p in v.SIZE_XYZ]
     if None in size:
         return None
     if any(extent <= 0 for extent in size):  # type: ignore[operator]
@@ -153,12 +180,8 @@ def _size(reasoner: Reasoner, iri: Term) -> tuple[float, float, float] | None:
     return tuple(size)  # type: ignore[return-value]
 
 
-def _object(reasoner: Reasoner, subject: Term, predicate: Term) -> Term | None:
-    return min((o for _, _, o in reasoner.asserted(subject, predicate, None)), default=None)
-
-
-def _number(reasoner: Reasoner, iri: Term, node: Term, predicate: Term) -> float | None:
-    term = _object(reasoner, node, predicate)
+def _number(iri: Term, predicate: Term, said: Mapping[Term, Collection[Term]]) -> float | None:
+    term = min(said.get(predicate, ()), default=None)
     if term is None:
         return None
     text = _said(term)
@@ -178,10 +201,9 @@ def _said(term: Term) -> str:
     return v.lexical(term) if term.startswith('"') else v.local_name(term)
 
 
-def _references(reasoner: Reasoner, iri: Term, predicate: Term) -> list[str]:
-    nodes = sorted(o for _, _, o in reasoner.asserted(iri, predicate, None))
-    return [v.lexical(text) for node in nodes for text in sorted(_texts(reasoner, node))]
+def _references(reasoner: Reasoner, nodes: Collection[Term]) -> list[str]:
+    return [v.lexical(text) for node in sorted(nodes) for text in sorted(_texts(reasoner, node))]
 
 
 def _texts(reasoner: Reasoner, node: Term) -> Iterator[Term]:
-    return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE, None) if o.startswith('"'))
+    return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE) if o.startswith('"'))

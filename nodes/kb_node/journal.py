@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import logging
 import sqlite3
-from collections.abc import Iterator
+import threading
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -25,27 +27,46 @@ log = logging.getLogger(__name__)
 
 FILENAME = "journal.sqlite"
 _SCHEMA = """
-CREATE TABLE meta (key TEXT PRIMARY KEY, value BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
+CREATE TABLE meta (key TEXT PRIMARY KEY, value BLOB NOT NULL) STRICT;
+CREATE TABLE tboxes (seq INTEGER PRIMARY KEY, value BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 CREATE TABLE commits (
     seq INTEGER PRIMARY KEY, command_id TEXT NOT NULL, body BLOB NOT NULL, digest BLOB NOT NULL
 ) STRICT;
 CREATE UNIQUE INDEX commits_by_command ON commits (command_id);
+CREATE TABLE touches (name TEXT, seq INTEGER, PRIMARY KEY (name, seq)) STRICT, WITHOUT ROWID;
 CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 """
-_FORMAT = b"2"
+_FORMAT = b"3"
 _ANEW = "start anew with --fresh (it is kept)"
+_PAGE = 256
 
 
 class InUse(errors.Refused):
     """Another process has the journal open."""
 
 
+class NotWritten(errors.Refused):
+    """The disk did not take it; nothing was written."""
+
+
+class Damaged(errors.Refused):
+    """A commit is not as it was written. `last_good` is the number of the one before."""
+
+    def __init__(self, path: Path, seq: int) -> None:
+        super().__init__(
+            f"{path}: commit {seq} is damaged; the last good one is {seq - 1};"
+            f" go on from there with: semmap repair --data {path.parent} (the damaged file is kept)"
+        )
+        self.last_good = seq - 1
+
+
 class Marks(Struct, frozen=True, array_like=True):
-    """The commits that last changed an entity at all, its pose, and its class or size."""
+    """The commits that last changed an entity at all, its pose, its class or size, what it is called."""
 
     any: int
     pose: int
     shape: int
+    references: int
 
 
 class Checkpoint(Struct, frozen=True, kw_only=True):
@@ -60,20 +81,21 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
 
 
 class Journal:
-    """An open journal. One process at a time: a second one is refused."""
+    """An open journal. One process at a time: a second one is refused. Any thread may read."""
 
     def __init__(self, path: Path) -> None:
         """Open the journal at `path`. Raises InUse, Refused when it is damaged or of another version."""
         self.path = path
+        self._lock = threading.RLock()
+        self._digest: bytes | None = None  # that of the last commit, once it is known
         with self._reading():
-            self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0)
+            self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         try:
             with self._reading():
                 self._db.execute("PRAGMA locking_mode=EXCLUSIVE")
                 self._db.execute("PRAGMA journal_mode=WAL")
                 self._db.execute("PRAGMA synchronous=FULL")
                 form = self._row("SELECT value FROM meta WHERE key='format'")
-                self._digest = self._digest_of(None)
             if form != (_FORMAT,):
                 raise errors.Refused(f"{path} was written by another version of semmap; {_ANEW}")
         except errors.Refused:
@@ -88,8 +110,8 @@ class Journal:
             try:
                 db.executescript(_SCHEMA)
                 with db:
-                    rows = [("format", _FORMAT, _chain(b"", _FORMAT)), ("tbox", tbox, _chain(b"", tbox))]
-                    db.executemany("INSERT INTO meta VALUES (?, ?, ?)", rows)
+                    db.execute("INSERT INTO meta VALUES ('format', ?)", (_FORMAT,))
+                    db.execute("INSERT INTO tboxes VALUES (0, ?, ?)", (tbox, _chain(b"", tbox)))
             finally:
                 db.close()
         except sqlite3.Error as error:
@@ -98,44 +120,101 @@ class Journal:
 
     def close(self) -> None:
         """Release the file."""
-        self._db.close()
+        with self._lock:
+            self._db.close()
 
-    def tbox(self) -> bytes:
-        """The TBox (N-Triples) that the commits were checked against. Raises Refused when it is damaged."""
+    @property
+    def last(self) -> int:
+        """The number of the last commit; 0 before the first."""
         with self._reading():
-            row = self._row("SELECT value, digest FROM meta WHERE key='tbox'")
+            (seq,) = self._row("SELECT max(seq) FROM commits") or (None,)
+        return seq or 0
+
+    def tbox(self, seq: int) -> bytes:
+        """The TBox (N-Triples) that holds after commit `seq`. Raises Refused when it is damaged."""
+        query = "SELECT value, digest FROM tboxes WHERE seq <= ? ORDER BY seq DESC LIMIT 1"
+        with self._reading():
+            row = self._row(query, (seq,))
         if row is None or _chain(b"", row[0]) != row[1]:
             raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_ANEW}")
         return bytes(row[0])
 
-    def append(self, commit: Commit) -> None:
-        """Make `commit` durable. Raises Refused, with nothing written, when the disk does not take it."""
+    def append(self, commit: Commit, tbox: bytes | None = None) -> None:
+        """Make `commit` durable, with the TBox (N-Triples) that holds from now on if it is another.
+
+        Raises NotWritten when the disk does not take it.
+        """
+        if self._digest is None:
+            with self._reading():
+                self._digest = self._digest_of(self.last)
         body = codec.encode(commit)
         digest = _chain(self._digest, body)
         with self._writing(f"commit {commit.seq}"):
             self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
+            touches = [(name, commit.seq) for name in commit.names]
+            self._db.executemany("INSERT INTO touches VALUES (?, ?)", touches)
+            if tbox is not None:
+                row = (commit.seq, tbox, _chain(b"", tbox))
+                self._db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
 
     def commits(self, after: int = 0) -> Iterator[Commit]:
-        """The commits later than `after`, in order. Raises Refused at the first damaged one."""
+        """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
+        return (codec.decode(body, Commit) for body in self._bodies(after))
+
+    def verify(self, progress: Callable[[], None] = lambda: None) -> None:
+        """Read every commit and TBox. Raises Damaged at the first damaged commit, Refused for a TBox."""
+        for _ in self._bodies(0):
+            progress()
         with self._reading():
-            before = self._digest_of(after)
-            rows = self._db.execute(
-                "SELECT seq, body, digest FROM commits WHERE seq > ? ORDER BY seq", (after,)
-            )
-            for expected, (seq, body, digest) in enumerate(rows, start=after + 1):
-                if seq != expected or _chain(before, body) != digest:
-                    raise errors.Refused(
-                        f"{self.path}: commit {expected} is damaged; the last good one is {expected - 1}"
-                    )
-                before = digest
-                yield codec.decode(body, Commit)
+            rows = self._db.execute("SELECT seq FROM tboxes").fetchall()
+        for (seq,) in rows:
+            self.tbox(seq)
+
+    def is_whole(self) -> bool:
+        """Can SQLite read all of the file, and do its indexes fit its tables?"""
+        try:
+            with self._reading():
+                return self._row("PRAGMA integrity_check(1)") == ("ok",)
+        except errors.Refused:
+            return False
+
+    def commit(self, seq: int) -> Commit:
+        """The commit with that number, which must be there. Raises Damaged."""
+        for body in self._bodies(seq - 1, size=1):
+            return codec.decode(body, Commit)
+        raise Damaged(self.path, seq)
 
     def commit_of(self, command_id: str) -> Commit | None:
         """The commit that a command made, if it made one."""
         with self._reading():
             row = self._row("SELECT seq FROM commits WHERE command_id = ?", (command_id,))
-            return None if row is None else next(self.commits(after=row[0] - 1))
+        return None if row is None else self.commit(row[0])
+
+    def touching(self, name: str, after: int = 0, until: int | None = None) -> list[int]:
+        """The numbers of the commits that touched an entity, in order."""
+        query = "SELECT seq FROM touches WHERE name = ? AND seq > ? AND seq <= ? ORDER BY seq"
+        with self._reading():
+            rows = self._db.execute(query, (name, after, self.last if until is None else until))
+            return [seq for (seq,) in rows]
+
+    def last_touches(self, until: int) -> list[tuple[str, int]]:
+        """Each entity's name with the last commit up to `until` that touched it."""
+        query = "SELECT name, max(seq) FROM touches WHERE seq <= ? GROUP BY name"
+        with self._reading():
+            return self._db.execute(query, (until,)).fetchall()
+
+    def seq_at(self, stamp_ns: int) -> int:
+        """The last commit up to a time, as far as the clock ran forward; 0 before the first."""
+        return bisect_right(range(1, self.last + 1), stamp_ns, key=self.stamp_of)
+
+    def stamp_of(self, seq: int) -> int:
+        """When a commit was made [ns since 1970]."""
+        with self._reading():
+            row = self._row("SELECT body FROM commits WHERE seq = ?", (seq,))
+        if row is None:
+            raise Damaged(self.path, seq)
+        return codec.decode(row[0], _Stamp).stamp_ns
 
     def checkpoint(self, checkpoint: Checkpoint) -> None:
         """Keep `checkpoint` as the place to start from, and of the older ones the last.
@@ -164,16 +243,41 @@ class Journal:
         row: tuple[Any, ...] | None = self._db.execute(query, values).fetchone()
         return row
 
-    def _digest_of(self, seq: int | None) -> bytes:
-        """That of commit `seq`, or of the last one; empty before the first."""
-        which = "ORDER BY seq DESC LIMIT 1" if seq is None else "WHERE seq = ?"
-        row = self._row(f"SELECT digest FROM commits {which}", () if seq is None else (seq,))
+    def _digest_of(self, seq: int) -> bytes:
+        """That of a commit; empty before the first."""
+        row = self._row("SELECT digest FROM commits WHERE seq = ?", (seq,))
         return b"" if row is None else bytes(row[0])
+
+    def _bodies(self, after: int, size: int = _PAGE) -> Iterator[bytes]:
+        with self._reading():
+            before = self._digest_of(after)
+        seq = after
+        while rows := self._page(seq, size):
+            for number, body, digest in rows:
+                seq += 1
+                if number != seq or _chain(before, body) != digest:
+                    raise Damaged(self.path, seq)
+                before = digest
+                yield body
+
+    def _page(self, after: int, size: int) -> list[tuple[int, bytes, bytes]]:
+        """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
+        query = "SELECT seq, body, digest FROM commits WHERE seq > ? ORDER BY seq LIMIT ?"
+        try:
+            with self._lock:
+                return self._db.execute(query, (after, size)).fetchall()
+        except sqlite3.ProgrammingError:
+            raise
+        except sqlite3.DatabaseError:
+            if size == 1:
+                raise Damaged(self.path, after + 1) from None
+            return self._page(after, 1)
 
     @contextmanager
     def _reading(self) -> Iterator[None]:
         try:
-            yield
+            with self._lock:
+                yield
         except sqlite3.OperationalError as error:
             if "locked" in str(error):
                 raise InUse(f"another knowledge base is using {self.path}") from None
@@ -181,14 +285,31 @@ class Journal:
         except sqlite3.ProgrammingError:
             raise
         except sqlite3.DatabaseError as error:
-            raise errors.Refused(f"{self.path} is damaged: {error}; {_ANEW}") from None
+            raise errors.Refused(
+                f"{self.path} is damaged: {error}; go on from the last good commit with:"
+                f" semmap repair --data {self.path.parent} (the damaged file is kept)"
+            ) from None
 
     @contextmanager
     def _writing(self, what: str) -> Iterator[None]:
+        """One transaction of the file: all of it or nothing."""
         try:
-            yield
+            with self._lock:
+                self._db.execute("BEGIN IMMEDIATE")
+                try:
+                    yield
+                    self._db.execute("COMMIT")
+                finally:
+                    if self._db.in_transaction:
+                        self._db.execute("ROLLBACK")
         except sqlite3.Error as error:
-            raise errors.Refused(f"{what} could not be written to {self.path}: {error}") from None
+            raise NotWritten(f"{what} could not be written to {self.path}: {error}") from None
+
+
+class _Stamp(Struct):
+    """The part of a commit that tells when it was made."""
+
+    stamp_ns: int
 
 
 def _chain(before: bytes, body: bytes) -> bytes:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from typing import TypeVar
 
 from nodes import bus
-from nodes.kb_node import answers, documents, rdf_files, terms
+from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal import FILENAME, Journal, NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.loop import Node, open_node
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, Loaded, SnapshotQuery, StarQuery
+from schemas.bridge import BRIDGE, LoadDocument, Loaded, LoadTBox, SnapshotQuery, StarQuery
 from schemas.commands import (
     Check,
     Checked,
@@ -26,11 +27,16 @@ from schemas.commands import (
     Explain,
     Export,
     Get,
+    History,
     Infer,
     Inferred,
+    LastSeen,
     List,
+    LoggedCommit,
     Renew,
+    Sighting,
     Sparql,
+    Undo,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
@@ -39,6 +45,7 @@ from schemas.explanations import Explanation
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+C = TypeVar("C", Commit, Commit | None)
 
 
 class KnowledgeBase:
@@ -46,14 +53,17 @@ class KnowledgeBase:
 
     def __init__(self, node: Node, journal: Journal) -> None:
         self._node = node
-        tbox = rdf_files.parse(journal.tbox(), f"the TBox in {journal.path}")
-        self.map = SemanticMap(journal, tbox, progress=node.beat)
+        self._journal = journal
+        self._past = past.Past(journal)
+        self.map = SemanticMap(journal, progress=node.beat)
         self._commits = bus.publisher(node.session, keys.COMMIT)
         self._published = {entity.name: entity.types for entity in self.map.entities()}
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
         functions = {
-            name.removeprefix("on_"): getattr(self, name) for name in dir(self) if name.startswith("on_")
+            name.removeprefix("on_").replace("_", "-"): getattr(self, name)
+            for name in dir(self)
+            if name.startswith("on_")
         }
         node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
@@ -65,8 +75,17 @@ class KnowledgeBase:
         return self._commit(transaction)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
+        return self._published_if_new(lambda: self.map.commit(transaction))
+
+    def _published_if_new(self, change: Callable[[], C]) -> C:
+        """What `change` commits; published unless it is the answer to an old command."""
         before = self.map.seq
-        commit = self.map.commit(transaction)
+        try:
+            commit = change()
+        except NotWritten as error:
+            self._node.report(error.text)
+            self._node.describe(f"{self._summary()}; the disk takes no commits")
+            raise
         if commit is not None and commit.seq > before:
             self._publish(commit)
             self._sparql.follow(commit)
@@ -81,6 +100,7 @@ class KnowledgeBase:
             id=load.id,
             source=load.source,
             agent=load.agent,
+            verb="load",
             reason=load.reason,
             retract=tuple(self.map.abox()) if load.replace else (),
             insert=tuple(t for t in kept if t not in self.map.tbox),
@@ -99,12 +119,18 @@ class KnowledgeBase:
         """The class table."""
         return tuple(self.map.class_table())
 
-    def on_list(self, query: List) -> tuple[Entity, ...]:
-        """The entities of a class."""
+    def on_list(self, query: List) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
+        """The entities of a class, now or as of then."""
+        if query.as_of is not None:
+            return self._aside.submit(
+                self._past.entities, query.as_of, query.class_, tuple(self.map.classes.iris)
+            )
         return answers.entities_of(self.map, query.class_)
 
-    def on_get(self, query: Get) -> Entity:
-        """One entity."""
+    def on_get(self, query: Get) -> Entity | Future[Entity]:
+        """One entity, now or as of then."""
+        if query.as_of is not None:
+            return self._aside.submit(self._past.entity, query.name, query.as_of)
         return self.map.entity(query.name)
 
     def on_infer(self, query: Infer) -> Inferred:
@@ -118,6 +144,33 @@ class KnowledgeBase:
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""
         return self._aside.submit(answers.export, answers.picture(self.map, query.inferred), query.format)
+
+    def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
+        """Commits of the past."""
+        return self._aside.submit(self._past.history, query)
+
+    def on_last_seen(self, query: LastSeen) -> Future[Sighting]:
+        """Where an entity was last."""
+        return self._aside.submit(self._past.last_seen, query.name)
+
+    def on_undo(self, command: Undo) -> Commit:
+        """A commit that takes back another one."""
+        return self._published_if_new(lambda: undo.undo(self.map, self._journal, command))
+
+    def on_load_tbox(self, load: LoadTBox) -> Commit:
+        """Another TBox, in one commit."""
+        tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
+        transaction = Transaction(
+            id=load.id,
+            source=load.source,
+            agent=load.agent,
+            verb="load",
+            reason=load.reason,
+            retract=tuple(t for t in before if t not in imports and self.map.has(t)),
+            insert=tuple(t for t in imports if not self.map.has(t)),
+        )
+        return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

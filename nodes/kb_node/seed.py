@@ -7,10 +7,10 @@ import uuid
 from datetime import datetime
 from pathlib import Path
 
-from nodes.kb_node import documents, rdf_files
+from nodes.kb_node import documents, rdf_files, tboxes
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import FILENAME, InUse, Journal
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
 from schemas import errors
@@ -30,20 +30,10 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     if path.exists() and not fresh:
         return f"going on with the map in {data} (--fresh begins anew and keeps the old one aside)"
     tbox_triples = read_triples(tbox, "t")
-    try:
-        reasoner = Reasoner(tbox_triples)
-    except Inconsistent as error:
-        raise errors.Inconsistent(
-            f"the TBox {tbox} is inconsistent: {error.explanation.text}", explanation=error.explanation
-        ) from None
-    classes = ClassTable(reasoner)
-    if not classes.spatial:
-        raise errors.BadFile(
-            f"{tbox} has no class of things in space: is it a TBox (an OWL ontology with classes)?"
-        )
-    abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *_imports(tbox_triples)]
+    reasoner = tboxes.compiled(tbox_triples, str(tbox))
+    abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tboxes.imports(tbox_triples)]
     if abox is not None:
-        kept, _ = documents.sort_out(read_triples(abox, "a"), classes, skip_unknown=False)
+        kept, _ = documents.sort_out(read_triples(abox, "a"), ClassTable(reasoner), skip_unknown=False)
         abox_triples += kept
     source = abox.name if abox is not None else "nothing"
     transaction = Transaction(
@@ -57,9 +47,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         _require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
         size = _make(new, tbox_triples, reasoner, transaction)
-        set_aside(data)
-        new.rename(path)
-        _sync(data)
+        put_in_place(new, path)
     except errors.SemmapError as error:
         raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
@@ -69,17 +57,17 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
     """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
-    _remove(path)
+    remove(path)
     try:
         journal = Journal.create(path, rdf_files.serialise(tbox, "ntriples"))
         try:
-            semantic_map = SemanticMap(journal, tbox, reasoner=reasoner)
+            semantic_map = SemanticMap(journal, reasoner=reasoner)
             semantic_map.commit(transaction)
             semantic_map.checkpoint()
         finally:
             journal.close()
     except errors.SemmapError:
-        _remove(path)
+        remove(path)
         raise
     return len(semantic_map)
 
@@ -95,6 +83,14 @@ def _require_unused(path: Path) -> None:
             return
 
 
+def put_in_place(new: Path, path: Path) -> Path | None:
+    """Let the journal `new` take the place of the one at `path`; where that is kept now, if there was one."""
+    kept = set_aside(path.parent)
+    new.rename(path)
+    _sync(path.parent)
+    return kept
+
+
 def _sync(folder: Path) -> None:
     """Make a renaming in `folder` durable."""
     descriptor = os.open(folder, os.O_RDONLY)
@@ -104,14 +100,16 @@ def _sync(folder: Path) -> None:
         os.close(descriptor)
 
 
-def set_aside(data: Path) -> None:
-    """Move a present journal out of the way, for whoever may want it back."""
+def set_aside(data: Path) -> Path | None:
+    """Move a present journal out of the way, for whoever may want it back; where to."""
     present = [p for p in data.glob(f"{FILENAME}*") if p.is_file()]
-    if present:
-        kept = data / KEPT / f"{datetime.now():%Y-%m-%dT%H-%M-%S.%f}"
-        kept.mkdir(parents=True, exist_ok=True)
-        for p in present:
-            p.rename(kept / p.name)
+    if not present:
+        return None
+    kept = data / KEPT / f"{datetime.now():%Y-%m-%dT%H-%M-%S.%f}"
+    kept.mkdir(parents=True, exist_ok=True)
+    for p in present:
+        p.rename(kept / p.name)
+    return kept
 
 
 def read_triples(path: Path, label_prefix: str = "") -> list[Triple]:
@@ -123,12 +121,7 @@ def read_triples(path: Path, label_prefix: str = "") -> list[Triple]:
     return rdf_files.parse(content, str(path), label_prefix=label_prefix)
 
 
-def _imports(tbox: list[Triple]) -> list[Triple]:
-    """`owl:imports` of the TBox: it is resolved to the loaded file, never to the network."""
-    ontologies = sorted(s for s, p, o in tbox if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY)
-    return [(v.ABOX_ONTOLOGY, v.OWL_IMPORTS, iri) for iri in ontologies]
-
-
-def _remove(path: Path) -> None:
+def remove(path: Path) -> None:
+    """Delete a journal that is not used yet."""
     for p in path.parent.glob(f"{path.name}*"):
         p.unlink()

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 
 from msgspec import structs
 
-from nodes.kb_node import entities
+from nodes.kb_node import entities, rdf_files, tboxes
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, Marks
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
@@ -18,7 +18,6 @@ from schemas.entities import ClassInfo, Entity, Provenance
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
-_OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
 class SemanticMap:
@@ -27,23 +26,24 @@ class SemanticMap:
     def __init__(
         self,
         journal: Journal,
-        tbox: Iterable[Triple],
         *,
         reasoner: Reasoner | None = None,
         progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """Rebuild the map from `journal`; `reasoner` is one that holds the TBox and no more, if there is one.
+        """Rebuild the map from `journal`; `reasoner` is one that holds its TBox and no more, if there is one.
 
         Raises Refused when the journal is damaged.
         """
         self._journal = journal
-        self.tbox = frozenset(tbox)
+        journal.verify(progress)
+        start = journal.last_checkpoint()
+        self.tbox = self._tbox_of(start.seq)
         self.reasoner = reasoner or Reasoner(self.tbox)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self.seq = 0
         self._checkpointed = 0
-        self._replay(progress)
+        self._replay(start, progress)
 
     # Asking
 
@@ -109,10 +109,11 @@ class SemanticMap:
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
-        self._require(transaction)
+        held = self._held(transaction)
+        self._require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
-        retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and self.has(t))
-        inserted = tuple(t for t in wanted if not self.has(t))
+        retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
+        inserted = tuple(t for t in wanted if t not in held)
         if not retracted and not inserted:
             return None
         for triple in retracted:
@@ -120,18 +121,27 @@ class SemanticMap:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
-        commit = Commit(
-            seq=self.seq + 1,
-            stamp_ns=time.time_ns(),
-            id=transaction.id,
-            source=transaction.source,
-            agent=transaction.agent,
-            reason=transaction.reason,
-            confidence=transaction.confidence,
-            retracted=retracted,
-            inserted=inserted,
-        )
-        return self._apply(commit, self._journal.append)
+        return self._apply(self._signed(transaction, retracted, inserted), self._journal.append)
+
+    def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
+        """Let another TBox hold, in one commit with the transaction's changes of the ABox.
+
+        Raises Inconsistent, BadFile for what is no TBox, Refused when the map does not fit it or the disk
+        does not take it. Then everything is as before.
+        """
+        if (known := self._journal.commit_of(transaction.id)) is not None:
+            return known
+        new = frozenset(tbox)
+        retracted = (*transaction.retract, *sorted(self.tbox - new))
+        inserted = (*transaction.insert, *sorted(new - self.tbox))
+        commit = self._signed(transaction, retracted, inserted, tbox=True)
+        before = self.classes
+
+        def make_durable(commit: Commit) -> None:
+            tboxes.require_fit(self.abox(), before, self.classes)
+            self._journal.append(commit, rdf_files.serialise(new, "ntriples"))
+
+        return self._switch(commit, new, make_durable)
 
     @property
     def checkpoint_is_due(self) -> bool:
@@ -148,54 +158,119 @@ class SemanticMap:
         marks: dict[Term, Marks] = {}
         commits: dict[int, Provenance] = {}
         for e in self._entities.values():
-            since = (e.provenance, e.pose_provenance, e.shape_provenance)
+            since = (e.provenance, e.pose_provenance, e.shape_provenance, e.reference_provenance)
             marks[v.iri(e.iri)] = Marks(*(p.commit for p in since))
             commits.update((p.commit, p) for p in since)
         triples = tuple(self.abox())
         self._journal.checkpoint(Checkpoint(seq=self.seq, triples=triples, marks=marks, commits=commits))
         self._checkpointed = self.seq
 
-    def _require(self, transaction: Transaction) -> None:
+    def _held(self, transaction: Transaction) -> set[Triple]:
+        """Those of the transaction's triples that are asserted already."""
+        named = {*transaction.require, *transaction.retract, *transaction.insert}
+        present = {s for s in {s for s, _, _ in named} if self._is_subject(s)}
+        return {t for t in named if t[0] in present and self.has(t)}
+
+    def _is_subject(self, term: Term) -> bool:
+        return any(True for _ in self.reasoner.asserted(term))
+
+    def _require(self, transaction: Transaction, held: Container[Triple]) -> None:
         for triple in transaction.require:
-            if not self.has(triple):
+            if triple not in held:
                 raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
         for term in transaction.vacant:
-            if any(True for _ in self.reasoner.asserted(term, None, None)):
+            if self._is_subject(term):
                 raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")
 
-    def _replay(self, progress: Callable[[], None]) -> None:
-        start = self._journal.last_checkpoint()
+    def _replay(self, start: Checkpoint, progress: Callable[[], None]) -> None:
         self.reasoner.apply(insert=start.triples)
         self.seq = self._checkpointed = start.seq
-        of_the_tbox = {
-            i for c in self.classes.spatial for i in self.reasoner.instances(c)
-        } - start.marks.keys()
-        self._show(filter(None, (self._read(iri, _OF_THE_TBOX) for iri in sorted(of_the_tbox))))
+        said_by_the_tbox = entities.of_the_tbox(self.reasoner, self.classes)
+        self._show(e for e in said_by_the_tbox if v.iri(e.iri) not in start.marks)
         for iri, marks in start.marks.items():
             if (entity := self._read(iri, start.commits[marks.any])) is not None:
-                pose, shape = start.commits[marks.pose], start.commits[marks.shape]
-                self._show([structs.replace(entity, pose_provenance=pose, shape_provenance=shape)])
+                entity = structs.replace(
+                    entity,
+                    pose_provenance=start.commits[marks.pose],
+                    shape_provenance=start.commits[marks.shape],
+                    reference_provenance=start.commits[marks.references],
+                )
+                self._show([entity])
         for commit in self._journal.commits(after=start.seq):
             try:
-                self._apply(commit, lambda _: None)
+                if commit.tbox:
+                    self._switch(commit, self._tbox_of(commit.seq), lambda _: None)
+                else:
+                    self._apply(commit, lambda _: None)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             progress()
 
+    def _tbox_of(self, seq: int) -> frozenset[Triple]:
+        return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
+
+    def _signed(
+        self,
+        transaction: Transaction,
+        retracted: tuple[Triple, ...],
+        inserted: tuple[Triple, ...],
+        *,
+        tbox: bool = False,
+    ) -> Commit:
+        """The next commit, by the transaction's author."""
+        return Commit(
+            seq=self.seq + 1,
+            stamp_ns=time.time_ns(),
+            id=transaction.id,
+            source=transaction.source,
+            agent=transaction.agent,
+            verb=transaction.verb,
+            reason=transaction.reason,
+            confidence=transaction.confidence,
+            undoes=transaction.undoes,
+            tbox=tbox,
+            retracted=retracted,
+            inserted=inserted,
+        )
+
+    def _switch(
+        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], None]
+    ) -> Commit:
+        """Like `_apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
+        before = self.tbox, self.reasoner, self.classes
+        abox = {*self.abox(), *commit.inserted}.difference(commit.retracted, tbox)
+        try:
+            self.tbox, self.reasoner = tbox, tboxes.compiled(tbox)
+            self.classes = ClassTable(self.reasoner)
+            self._change(insert=abox)
+            concerned = {v.iri(entity.iri) for entity in self._entities.values()}
+            concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
+            commit = self._with_effects(commit, set(), concerned)
+            make_durable(commit)
+        except BaseException:
+            self.tbox, self.reasoner, self.classes = before
+            raise
+        return self._taken(commit)
+
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         owners = self._owners(commit)
+        change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            change = self.reasoner.apply(delete=commit.retracted, insert=commit.inserted)
-        except Inconsistent as error:
-            raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
-        try:
-            owners |= self._owners(commit)
             commit = self._with_effects(commit, owners, change.touched)
             make_durable(commit)
         except BaseException:
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
             raise
+        return self._taken(commit)
+
+    def _change(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple]) -> Change:
+        try:
+            return self.reasoner.apply(delete=delete, insert=insert)
+        except Inconsistent as error:
+            raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
+
+    def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
         for gone in commit.removed:
             del self._entities[gone.name]
@@ -203,25 +278,20 @@ class SemanticMap:
         return commit
 
     def _owners(self, commit: Commit) -> set[Term]:
-        """Whose stars the commit's triples belong to."""
+        """Whose stars the commit's triples belong to, before it and after it.
+
+        Who comes to own a node only by the commit is itself a subject of its triples.
+        """
         subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
         return {owner for s in subjects for owner in entities.owners(self.reasoner, s)}
 
     def _with_effects(self, commit: Commit, owners: set[Term], touched: Iterable[Term]) -> Commit:
         """`commit` with the entities that it changed and those that it removed."""
-        provenance = Provenance(
-            commit=commit.seq,
-            stamp_ns=commit.stamp_ns,
-            source=commit.source,
-            agent=commit.agent,
-            reason=commit.reason,
-            confidence=commit.confidence,
-        )
         changed: dict[str, Entity] = {}
         removed: list[Departed] = []
         for iri in sorted(owners.union(touched)):
             known = self._known(iri)
-            entity = self._read(iri, provenance)
+            entity = self._read(iri, commit.provenance)
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []
                 continue

@@ -162,7 +162,7 @@ class Recorder:
         if not self._arranged and self._map.entities:
             self._arranged = True
             self._recording.arrange(bounds_of(self._stage.poses))
-        self._node.ready(f"commit {self._map.seq}, into {self._recording.path}, {self._live}")
+        self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
 
     def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])

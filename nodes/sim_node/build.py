@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import mujoco
 
 from nodes.sim_node.bodies import BodyRecord, frame_of
@@ -26,10 +28,35 @@ _WIDTH = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): (1, 1),
     int(mujoco.mjtJoint.mjJNT_HINGE): (1, 1),
 }
+_BATCH = 50
 _FRICTION = (0.8, 0.01, 0.004)
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
+
+
+def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model, Pose]]) -> None:
+    """Add bodies, each at its pose.
+
+    To add one costs time in proportion to all that the specification holds already, so many are put
+    together in small ones of their own, which are then attached.
+    """
+    if len(newcomers) < _BATCH:
+        for record, model, pose in newcomers:
+            add_body(spec, record, model, pose)
+        return
+    plain = [newcomer for newcomer in newcomers if not any(part.mesh for part in newcomer[1].parts)]
+    for start in range(0, len(plain), _BATCH):
+        batch = mujoco.MjSpec()
+        for record, model, pose in plain[start : start + _BATCH]:
+            add_body(batch, record, model, pose)
+        names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
+        spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
+        for element, name in names:
+            element.name = name
+    for record, model, pose in newcomers:
+        if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
+            add_body(spec, record, model, pose)
 
 
 def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) -> None:

@@ -13,7 +13,7 @@ from nodes.sim_node.models.files import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world import World
+from nodes.sim_node.world_file import open_world
 from schemas import codec, keys
 from schemas.commands import Done, Pause, Reset, StepOnce
 from schemas.scenes import (
@@ -48,7 +48,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = World(config.world, models=Models(config.models))
+        self._world = open_world(config.world, Models(config.models))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)

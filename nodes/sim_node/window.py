@@ -5,10 +5,6 @@ from __future__ import annotations
 import threading
 import warnings
 
-import glfw
-import mujoco
-import mujoco.viewer
-
 from nodes.sim_node.world import World
 from schemas.errors import BadRequest
 
@@ -18,13 +14,13 @@ class Window:
 
     def __init__(self, world: World) -> None:
         """Raises BadRequest where there is no display."""
+        _require_display()
+        from mujoco import viewer  # loads GLFW, which only those need who have a display
+
         self._world = world
         self._shown = world.model
-        _require_display()
         before = set(threading.enumerate())
-        self._viewer = mujoco.viewer.launch_passive(
-            world.model, world.data, show_left_ui=False, show_right_ui=False
-        )
+        self._viewer = viewer.launch_passive(world.model, world.data, show_left_ui=False, show_right_ui=False)
         self._threads = set(threading.enumerate()) - before
 
     def refresh(self) -> None:
@@ -48,6 +44,8 @@ class Window:
 
 def _require_display() -> None:
     """Ask first: without a display the viewer's thread dies and its caller waits for ever."""
+    import glfw
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if not glfw.init():

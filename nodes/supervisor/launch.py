@@ -46,10 +46,16 @@ def _coordinator(settings: Settings) -> None:
 
 
 def _sim_node(settings: Settings) -> None:
-    from nodes.sim_node.config import SimConfig
+    from nodes.sim_node.config import CameraConfig, SimConfig
     from nodes.sim_node.node import run
 
-    run(SimConfig(world=Path(settings.world), network=settings.network("sim_node")))
+    width, height = settings.camera_size
+    cameras = CameraConfig(
+        rate_hz=settings.camera_hz, width=width, height=height, noise=settings.camera_noise, segments=True
+    )
+    models = Path(settings.models) if settings.models is not None else None
+    network = settings.network("sim_node")
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
 
 
 def _recorder(settings: Settings) -> None:

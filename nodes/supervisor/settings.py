@@ -39,6 +39,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sim: bool = True
     record: bool = True
     fresh: bool = False
+    window: bool = False
+    models: str | None = None
+    """Folder of a person's own model files."""
+    camera_hz: Annotated[float, Meta(ge=0.0, le=60.0)] = 0.0
+    camera_size: tuple[Annotated[int, Meta(ge=16, le=4096)], Annotated[int, Meta(ge=16, le=4096)]] = (
+        640,
+        480,
+    )
+    camera_noise: bool = False
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
 

@@ -130,6 +130,7 @@ class _Foreground:
         self._say(f"zenoh        {self._settings.reachable}")
         self._say(f"data         {self._settings.data}")
         if self._settings.record:
+            self._say(f"recording    {self._settings.data}/recordings")
             self._say(f"live view    rerun --connect rerun+http://{self._settings.live_view}/proxy")
         self._say(f"try          semmap list{connect}")
         self._say("stop         Ctrl-C")

@@ -2,56 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.door import Door
-from nodes.kb_node import rdf_files
-from nodes.kb_node.journal import Journal
-from nodes.kb_node.semantic_map import SemanticMap
 from schemas import commands as c
 from schemas import errors
 from schemas.commits import Commit
 from schemas.entities import Pose, orientation_from_yaw
-
-TBOX = b"""
-@prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
-@prefix owl: <http://www.w3.org/2002/07/owl#> .
-@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
-@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
-:Physical_Thing a owl:Class . :Property a owl:Class .
-:Location a owl:Class ; rdfs:subClassOf :Physical_Thing ; owl:disjointWith :Object .
-:Kitchen a owl:Class ; rdfs:subClassOf :Location .
-:Object a owl:Class ; rdfs:subClassOf :Physical_Thing .
-:Furniture a owl:Class ; rdfs:subClassOf :Object .
-:Chair a owl:Class ; rdfs:subClassOf :Furniture ; rdfs:label "chair"@en .
-:Living_Room_Table a owl:Class ; rdfs:subClassOf :Furniture .
-:Color a owl:Class ; rdfs:subClassOf :Property .
-:Coordinates a owl:Class ; rdfs:subClassOf :Property .
-:hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
-  rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
-:float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
-"""
-
-
-@pytest.fixture
-def semantic_map(tmp_path: Path):
-    journal = Journal.create(tmp_path / "journal.sqlite", TBOX)
-    yield SemanticMap(journal, rdf_files.parse(TBOX, "tbox"))
-    journal.close()
-
-
-@pytest.fixture
-def door(semantic_map):
-    answers = {
-        "commit": semantic_map.commit,
-        "star": lambda query: semantic_map.stars(query.names),
-    }
-    door = Door(lambda verb, message: answers[verb](message))
-    door.classes = ClassNames(semantic_map.class_table())
-    return door
 
 
 def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> c.Changed:
@@ -168,9 +125,11 @@ def test_a_name_can_be_used_again_after_removal_and_after_changes_of_references(
 
 def test_the_same_command_id_is_executed_once(door):
     first = add(door, name="chair1", id="42")
-    door.remove(c.Remove(names=("chair1",)))
     again = add(door, name="chair1", id="42")
-    assert again.commit == first.commit
+    assert (again.commit, again.names) == (first.commit, first.names)
+    gone = door.remove(c.Remove(names=("chair1",), id="43"))
+    assert door.remove(c.Remove(names=("chair1",), id="43")).commit == gone.commit
+    assert add(door, name="chair1", id="42").commit == first.commit
     assert door.entities == {}
 
 
@@ -228,3 +187,35 @@ def test_a_missed_commit_is_noticed(door):
     add(door)
     assert door.take(Commit(seq=1, stamp_ns=0, id="a", source="operator"))
     assert not door.take(Commit(seq=3, stamp_ns=0, id="c", source="operator"))
+
+
+def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0))
+    door.follow("chair1", Pose(position_m=(1.5, 1.0, 0.0)))
+    add(door, name="chair2")
+    assert door.undo(c.Undo()).text == "took back commit 3"
+    reply = door.undo(c.Undo())
+    assert (reply.text, reply.names) == ("took back commit 1 with the 1 that settled it", ("chair1",))
+    assert door.entities == {}
+    with pytest.raises(errors.Refused, match="nothing to undo"):
+        door.undo(c.Undo())
+
+
+def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0))
+    door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
+    door.follow("chair1", Pose(position_m=(3.0, 1.0, 0.0)))
+    posed = door.entity("chair1").pose_provenance
+    assert (posed.source, posed.agent, posed.reason) == ("scene", "ann", "chair1 was moved by hand")
+    door.follow("chair1", Pose(position_m=(3.5, 1.0, 0.0)))
+    assert door.entity("chair1").pose_provenance.reason == "chair1 came to rest"
+    door.undo(c.Undo())
+    assert door.entity("chair1").pose.position_m == (1.0, 1.0, 0.0)
+    assert door.entity("chair1").pose_provenance.source == "operator"
+
+
+def test_an_undo_sent_again_is_answered_with_its_result(door):
+    add(door, name="chair1")
+    add(door, name="chair2")
+    assert door.undo(c.Undo(id="u")).commit == door.undo(c.Undo(id="u")).commit == 3
+    assert set(door.entities) == {"chair1"}

@@ -30,6 +30,7 @@ def entity(name: str, pose: Pose | None, *, posed=1, source="operator", shaped=1
         provenance=provenance(max(posed, shaped)),
         pose_provenance=provenance(posed, source),
         shape_provenance=provenance(shaped),
+        reference_provenance=provenance(shaped),
     )
 
 

@@ -50,14 +50,14 @@ TBOX = rdf_files.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 
 def new_map(folder: Path, tbox=TBOX) -> SemanticMap:
     """An empty map with a new journal in `folder`."""
-    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf_files.serialise(tbox, "ntriples")), tbox)
+    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf_files.serialise(tbox, "ntriples")))
 
 
 def reopened(semantic_map: SemanticMap) -> SemanticMap:
     """The same map after a restart."""
     path = semantic_map._journal.path
     semantic_map._journal.close()
-    return SemanticMap(Journal(path), semantic_map.tbox)
+    return SemanticMap(Journal(path))
 
 
 def close(semantic_map: SemanticMap) -> None:

@@ -57,7 +57,7 @@ def test_what_was_appended_is_there_again(path):
     journal = Journal(path)
     assert list(journal.commits()) == [commit(1), commit(2), commit(3)]
     assert list(journal.commits(after=2)) == [commit(3)]
-    assert journal.tbox() == b"tbox"
+    assert journal.tbox(0) == b"tbox"
     assert journal.commit_of("id2") == commit(2)
     assert journal.commit_of("id9") is None
     journal.append(commit(4))
@@ -110,10 +110,10 @@ def test_a_missing_or_forged_commit_is_named(path, statement, named):
 
 def test_a_damaged_tbox_is_noticed(path):
     write(path)
-    edit(path, "UPDATE meta SET value = x'00' WHERE key = 'tbox'")
+    edit(path, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
     journal = Journal(path)
     with pytest.raises(errors.Refused, match=r"the TBox in it is damaged; start anew with --fresh"):
-        journal.tbox()
+        journal.tbox(0)
     journal.close()
 
 

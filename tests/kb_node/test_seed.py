@@ -1,7 +1,6 @@
 import pytest
 
 from nodes.kb_node.journal import FILENAME, Journal
-from nodes.kb_node.rdf_files import parse
 from nodes.kb_node.seed import KEPT, seed
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
@@ -35,7 +34,7 @@ def data(tmp_path):
 def read(data):
     """The names in the map, and the map's triples, as a knowledge base finds them at its start."""
     journal = Journal(data / FILENAME)
-    semantic_map = SemanticMap(journal, parse(journal.tbox(), "tbox"))
+    semantic_map = SemanticMap(journal)
     journal.close()
     return [entity.name for entity in semantic_map.entities()], set(semantic_map.abox())
 

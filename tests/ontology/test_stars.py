@@ -23,7 +23,7 @@ def test_what_describes_an_entity_is_named_after_it():
         "chair1_alternative_reference_1",
         "chair1_alternative_reference_2",
     }
-    assert len(triples) == len(set(triples)) == 21
+    assert len(triples) == len(set(triples)) == 20
 
 
 def test_a_suffix_ends_the_names_of_what_describes_it():

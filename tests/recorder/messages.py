@@ -24,6 +24,7 @@ def entity(name, class_="Chair", at=None, **others):
         provenance=SINCE,
         pose_provenance=SINCE,
         shape_provenance=SINCE,
+        reference_provenance=SINCE,
     )
 
 

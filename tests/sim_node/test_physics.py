@@ -45,7 +45,7 @@ def flat():
 def test_two_hundred_things_at_rest_do_not_drift(flat):
     before = poses(flat)
     assert len(before) == 200
-    flat._wake(before)
+    flat._engine.wake(before)
     flat.step(60.0)
     drift = [distance_m(now, before[name]) for name, now in poses(flat).items()]
     assert max(drift) < 0.001

@@ -55,6 +55,18 @@ def test_sleepers_sleep_on_when_others_come():
     assert world.poses().poses[: len(before)] == before
 
 
+def test_sleepers_sleep_on_through_two_changes_at_once():
+    world = World()
+    world.spawn([order("table1", "table", pose(0, 0)), order("cup1", "cup", pose(0, 0, 0.75))])
+    world.step(2.0)
+    before = world.poses().poses
+    fridges = [order(f"fridge{i}", "", pose(5, 5 + 0.1 * i), size_m=(0.6, 0.6, 1.8)) for i in range(2)]
+    world.spawn(fridges)  # the second becomes a ghost, which takes a second compilation
+    world.spawn([order("far", "can", pose(-5, 5))])
+    world.step(0.01)
+    assert world.poses().poses[: len(before)] == before
+
+
 def test_many_deleted_at_once_leave_the_rest_as_it_was():
     world = World()
     world.spawn([order(f"can{i}", "can", pose(i * 0.2, 0, 0.3)) for i in range(40)])

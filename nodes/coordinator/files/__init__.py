@@ -1,1 +1,1 @@
-"""Files that describe what stands where, told apart by their content: ABoxes, JSON scenes, HuRIC maps."""
+"""Files that say what stands where, told apart by content; JSON scenes are schemas/scene_files.py."""

@@ -28,6 +28,8 @@ def _kind_of_json(content: bytes, filename: str) -> Kind:
     try:
         document = json.loads(content)
     except (ValueError, RecursionError) as error:
+        if content.lstrip(_BLANK)[:1] == b"[":
+            return "abox"  # Turtle may begin with a bracket, too
         raise BadFile(f"{filename or 'the file'} is no valid JSON: {error}") from None
     if isinstance(document, dict) and "entities" in document:
         return "scene"

@@ -30,8 +30,14 @@ class Reason(NamedTuple):
 class Closure:
     """A graph and all that follows from it, until a contradiction is met."""
 
-    def __init__(self, triples: Iterable[Triple] = (), base: Closure | None = None) -> None:
-        """Close a graph; `base` is a closure to start from, which stays as it is."""
+    def __init__(
+        self, triples: Iterable[Triple] = (), base: Closure | None = None, mentions: Iterable[Term] = ()
+    ) -> None:
+        """Close a graph.
+
+        `base` is a closure to start from, which stays as it is; `mentions` are terms that are asked about
+        and need not be in the graph.
+        """
         base = base or _empty()
         self.clash: Reason | None = base.clash
         self.facts: dict[Triple, Reason | None] = base.facts.copy()
@@ -42,6 +48,8 @@ class Closure:
         self._datatypes: list[Term] = list(base._datatypes)
         self._compared: list[Term] = list(base._compared)
         self._agenda: deque[Triple] = deque()
+        for term in mentions:
+            self._meet(term)
         self.insert(triples)
 
     def insert(self, triples: Iterable[Triple]) -> None:

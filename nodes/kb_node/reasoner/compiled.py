@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.proof import Prover
 from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
-from nodes.kb_node.reasoner.schema import NotCompilable, Schema
+from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
@@ -149,6 +150,9 @@ class CompiledEngine:
         closure = self._schema.closure
         if triple in closure.facts:
             return self._prover.prove(closure.leaves(triple), triple)
-        if next(self._view.asserted(*triple), None) or not self._view.holds(triple):
+        if next(self._view.asserted(*triple), None):
             return self._prover.prove([triple], triple)
+        s, p, o = triple
+        if not self._view.holds(triple) or (p == SAME_AS and s == o):
+            return self._prover.prove((), triple)  # an axiomatic triple, or eq-ref
         return self._prover.prove(Support(self._abox, self._told_by).of_triple(triple), triple)

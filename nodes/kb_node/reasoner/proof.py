@@ -104,16 +104,16 @@ def _renamed(proof: _Proof, names: dict[Term, Term]) -> tuple[tuple[Triple, ...]
 
 def _shrink(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:
     """A minimal set of the triples from which the goal follows, and the steps."""
-    closure = Closure(triples)
+    closure = Closure(triples, mentions=goal or ())
     if not _reached(closure, goal):
         raise ValueError(f"{goal} does not follow")
     support = closure.leaves(goal)
     for triple in support:
         if triple in closure.leaves(goal):
-            fewer = Closure(other for other in closure.leaves(goal) if other != triple)
+            fewer = Closure((t for t in closure.leaves(goal) if t != triple), mentions=goal or ())
             if _reached(fewer, goal):
                 closure = fewer
-    closure = Closure(closure.leaves(goal))
+    closure = Closure(closure.leaves(goal), mentions=goal or ())
     return tuple(closure.leaves(goal)), _steps(closure, goal)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.general import GeneralEngine
-from nodes.kb_node.reasoner.schema import NotCompilable
 from nodes.kb_node.reasoner.split import is_schema
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.schema import Role
+from nodes.kb_node.reasoner.axioms import ANY, Role
 
 
 class Edge(NamedTuple):
@@ -29,6 +29,11 @@ class Same(NamedTuple):
 
 
 Claim = Edge | Member | Same
+
+
+def member(node: int, cls: int) -> tuple[Claim, ...]:
+    """That a node belongs to a class, unless that says nothing."""
+    return () if cls == ANY else (Member(node, cls),)
 
 
 class Reason:

@@ -7,14 +7,15 @@ are asked in turn. Then everything that was reset runs forward again, as if it w
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
-from nodes.kb_node.reasoner.abox import ABox, Equals
+from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.axioms import Chain, Role
+from nodes.kb_node.reasoner.individuals import Equals
 from nodes.kb_node.reasoner.reasons import Reason
-from nodes.kb_node.reasoner.schema import Chain, Role
 from nodes.kb_node.reasoner.store import ASSERTED, NONE, VALUE
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Triple
+from schemas.explanations import Term, Triple
 
 
 class Retraction:
@@ -30,49 +31,54 @@ class Retraction:
         self.touched: set[int] = set()
         """Nodes that lost something: an asserted class, an edge."""
 
-    def delete(self, triples: Iterable[Triple]) -> list[Triple]:
+    def delete(self, triples: Sequence[Triple]) -> list[Triple]:
         """Take triples back, and what rests on them; those that were there."""
-        triples = list(triples)
-        classes_first = sorted(triples, key=lambda triple: triple[1] != TYPE)
-        done = [triple for triple in classes_first if self._take_back(triple)]
+        types = [triple for triple in triples if triple[1] == TYPE and self._take_type(*triple)]
+        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple)]
         while self._suspects:
             node, _ = self._suspects.popitem()
-            if node not in self._reset and not self._is_borne_out(node):
+            kind = self._store.kind[node]
+            if kind.base is not kind and node not in self._reset and not self._is_borne_out(node):
                 self._reset_all(node)
-        for node in self.touched:
-            equals = self._abox.equals.get(node)
-            if equals is not None and self._abox.is_literal(node) and self._store.is_bare(node):
-                self._dissolve(equals)
+        if self._abox.spellings:
+            self._forget_spellings()
         for node in self._loosened:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
+        kinds, made_by = self._store.kind, self._abox.steps.made_by
         for subject, predicate, object_ in self._dropped:
-            self._derive_anew(subject, predicate, object_)
-        return done
+            if made_by(predicate) or kinds[subject].values or kinds[object_].values:
+                self._derive_anew(subject, predicate, object_)
+        return types + edges
 
     def release(self) -> None:
         """Forget the nodes that nothing is said of any more."""
         for node in self.touched:
-            self._abox.forget(node)
+            self._store.release(node)
+
+    def _forget_spellings(self) -> None:
+        for node in list(self.touched):
+            if self._abox.is_literal(node) and self._store.is_bare(node):
+                self._abox.forget_spelling(node)
+                if equals := self._abox.equals.get(node):
+                    self._dissolve(equals)
 
     # What goes
 
-    def _take_back(self, triple: Triple) -> bool:
-        s, p, o = triple
-        store, schema = self._store, self._abox.schema
-        subject, object_ = store.find(s), store.find(o)
-        if subject is None:
+    def _take_type(self, s: Term, _: Term, o: Term) -> bool:
+        store = self._store
+        subject, cls = store.find(s), self._abox.schema.find_class(o)
+        if subject is None or cls is None or cls not in store.kind[subject].given:
             return False
-        if p == TYPE:
-            cls = schema.find_class(o)
-            if cls is None or cls not in store.kind[subject].given:
-                return False
-            self._abox.set(subject, self._abox.kinds.without(store.kind[subject], cls))
-            self.touched.add(subject)
-            self._suspects[subject] = None
-            return True
-        predicate = schema.find_property(p)
-        if predicate is None or object_ is None:
+        self._abox.set(subject, self._abox.kinds.without(store.kind[subject], cls))
+        self.touched.add(subject)
+        self._suspects[subject] = None
+        return True
+
+    def _take_edge(self, s: Term, p: Term, o: Term) -> bool:
+        store, numbers = self._store, self._store.numbers
+        subject, object_, predicate = numbers.get(s), numbers.get(o), self._abox.schema.find_property(p)
+        if subject is None or object_ is None or predicate is None:
             return False
         edge = store.edge(subject, predicate, object_)
         if edge == NONE or store.source[edge] != ASSERTED:

@@ -10,81 +10,15 @@ Compiled from the schema's closure, which already holds all that the scm-* rules
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.axioms import ANY, Axioms, Chain, Group, Key, Limit, NotCompilable, Role
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.rules import NUMBERS
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 from schemas.explanations import Term, Triple
-
-Role = tuple[int, bool]
-"""A property's number, and whether it is read backwards."""
-
-ANY = -1
-"""In the place of a class: everything."""
-SAME, DIFFERENT = 0, 1
-"""The numbers of owl:sameAs and owl:differentFrom among the properties."""
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """How the individuals related to one by a role are found: along which of its edges."""
-
-    out: tuple[int, ...]
-    into: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """At most one value: of `role`, for members of `owner`, among members of `filler` (or ANY)."""
-
-    role: Role
-    owner: int
-    filler: int
-
-
-@dataclass(frozen=True, slots=True)
-class Key:
-    """Members of a class that agree on all properties are one individual (prp-key)."""
-
-    owner: int
-    properties: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Chain:
-    """x first y and y second z make x result z (prp-spo2, prp-trp); each is a property's number."""
-
-    first: int
-    second: int
-    result: int
-
-
-@dataclass
-class Axioms:
-    """What is said of one property; classes are numbers, ANY where there is no restriction."""
-
-    term: Term
-    domain: int = 0
-    range: int = 0
-    some: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): relating to a filler makes a member."""
-    only: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): what members relate to is a filler."""
-    none: list[tuple[int, int]] = field(default_factory=list)
-    """(restriction, filler): members relate to no filler."""
-    limits: list[Limit] = field(default_factory=list)
-    keys: list[Key] = field(default_factory=list)
-    exclusive: set[Role] = field(default_factory=set)
-    """Roles that never hold beside this property between the same two individuals."""
-    irreflexive: bool = False
-
-
-class NotCompilable(Exception):
-    """The graph uses the vocabulary in a way that the compiled engine does not know (OWL Full)."""
 
 
 class Schema:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TypeVar
 
-from nodes.kb_node.reasoner.schema import Axioms, Schema
+from nodes.kb_node.reasoner.axioms import Axioms
+from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.terms import TYPE, iri
 from schemas.explanations import Term, Triple
 

@@ -174,7 +174,7 @@ def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Ste
     """Tell a proof: what is the case or cannot be, and the asserted facts that make it so."""
     speaker = _Speaker(support)
     if goal is not None and not steps:
-        return f"{speaker.say(goal)} (asserted)."
+        return f"{speaker.say(goal)} ({'asserted' if support else 'always'})."
     subject, headline = _headline(goal, steps, speaker)
     clauses: list[str] = []
     for triple in support:

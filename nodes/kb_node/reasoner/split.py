@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.rules import ANNOTATIONS
-from nodes.kb_node.reasoner.schema import NotCompilable
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     NIL,

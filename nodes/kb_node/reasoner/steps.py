@@ -4,24 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from nodes.kb_node.reasoner.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
-from nodes.kb_node.reasoner.schema import ANY, SAME, Chain, Group, Key, Limit, Role, Schema
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """The kinds of subject and object afterwards, and what else must be looked at."""
-
-    subject: Kind
-    object: Kind
-    clash: tuple[Role, int, int] | None
-    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
-    limits: tuple[tuple[bool, Limit], ...]
-    """Limits that the edge now counts for, and whether their owner is the subject."""
-    keys: tuple[tuple[bool, Key], ...]
-    """Keys that now identify the subject (or else the object)."""
-    special: bool
-    """Whether there is anything beyond the kinds."""
+from nodes.kb_node.reasoner.schema import Schema
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +24,28 @@ class EdgeRules:
     """Chains that the edge may end."""
     by_value: bool
     """Whether it matters that two literals are spellings of one value."""
-
     of_values: bool
     """Whether all there is to check is that the subject has no other edge with the predicate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The kinds of subject and object afterwards, and what else must be looked at."""
+
+    subject: Kind
+    object: Kind
+    clash: tuple[Role, int, int] | None
+    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
+    limits: tuple[tuple[bool, Limit], ...]
+    """Limits that the edge now counts for, and whether their owner is the subject."""
+    keys: tuple[tuple[bool, Key], ...]
+    """Keys that now identify the subject (or else the object)."""
+    special: bool
+    """Whether there is anything beyond the kinds."""
+    of_values: bool
+    """Whether there is not after all, when the subject has no other edge with the predicate."""
+    rules: EdgeRules | None
+    """What a new edge of the property is checked for besides; None for nothing."""
 
 
 class Steps:
@@ -53,21 +57,20 @@ class Steps:
     def __init__(self, schema: Schema, kinds: Kinds) -> None:
         self._schema = schema
         self._kinds = kinds
-        self._steps: dict[tuple[int, Kind, Kind], Step] = {}
+        self.known: dict[tuple[int, Kind, Kind], Step] = {}
         self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
         """What an edge of a property makes of two kinds."""
-        found = self._steps.get((prop, subject, object_))
+        found = self.known.get((prop, subject, object_))
         if found is None:
-            if len(self._steps) >= self.LIMIT:
-                self._steps.clear()
-            found = self._steps[prop, subject, object_] = self._work_out(prop, subject, object_)
+            if len(self.known) >= self.LIMIT:
+                self.known.clear()
+            found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
         return found
 
-    def rules(self, prop: int) -> EdgeRules | None:
-        """The edge rules of a property; None when it has none."""
+    def _rules_of(self, prop: int) -> EdgeRules | None:
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
@@ -92,7 +95,8 @@ class Steps:
         wider_subject, wider_object = self._added(prop, subject, object_)
         if wider_subject is not subject or wider_object is not object_:
             return self.step(prop, wider_subject, wider_object)
-        clash, limits, keys = None, [], []
+        clash, keys = None, []
+        limits: list[tuple[bool, Limit]] = []
         for role in self._schema.roles(prop):
             q, backwards = role
             owner, filler = (object_, subject) if backwards else (subject, object_)
@@ -109,8 +113,17 @@ class Steps:
                 and _in(limit.filler, filler)
             ]
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
-        special = bool(clash or limits or keys or object_.clash)
-        return Step(subject, object_, clash, tuple(limits), tuple(keys), special)
+        others = bool(clash or keys or object_.clash)
+        of_values = not others and self._are_of_values(prop, limits)
+        rules = self._rules_of(prop)
+        return Step(
+            subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
+        )
+
+    def _are_of_values(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
+        """Whether limits are kept if the subject has no other edge with the predicate."""
+        alone = Group((prop,), ())
+        return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
 
     def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
         """The kinds with what domains, ranges and restrictions add at once."""
@@ -155,8 +168,7 @@ class Steps:
         others = irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
-        alone = Group((prop,), ())
-        of_values = not others and all(at and self.group(limit.role) == alone for at, limit in limits)
+        of_values = not others and self._are_of_values(prop, limits)
         return EdgeRules(
             irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value, of_values
         )

@@ -41,6 +41,10 @@ class Adjacency:
     def link(self, node: int, edge: int, predicate: int) -> None:
         """Put an edge, whose predicate is set already, into the list of a node."""
         head = first = self.heads[node]
+        if head == NONE:
+            self.heads[node] = edge
+            self.before[edge] = self.after[edge] = self.group[edge] = NONE
+            return
         column, group = self.predicate, self.group
         while first != NONE and column[first] != predicate:
             first = group[first]
@@ -130,7 +134,8 @@ class Store:
         found = self.numbers.get(term)
         if found is not None:
             return found
-        kind = self._kinds.literal(term) if is_literal(term) else self._kinds.individual(term)
+        kinds = self._kinds
+        kind = kinds.literal(term) if is_literal(term) else kinds.individual(term)
         if self._free_nodes:
             node = self._free_nodes.pop()
             self.terms[node], self.kind[node] = term, kind

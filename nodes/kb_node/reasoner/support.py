@@ -10,9 +10,9 @@ from math import inf
 from typing import TypeVar
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.axioms import ANY, Role
 from nodes.kb_node.reasoner.kinds import bits
 from nodes.kb_node.reasoner.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.schema import ANY, Role
 from nodes.kb_node.reasoner.schema_support import Found, SchemaSupport, union
 from nodes.kb_node.reasoner.store import ASSERTED, DERIVED
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri

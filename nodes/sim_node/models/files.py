@@ -9,7 +9,6 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import trimesh
 
 from nodes.sim_node import build
 from nodes.sim_node.bodies import Floats
@@ -86,6 +85,8 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
 
 
 def _mesh_parts(path: Path) -> list[Part]:
+    import trimesh  # takes a second, which a start without such files need not wait
+
     scene = trimesh.load_scene(path)
     up = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) if path.suffix == ".glb" else np.eye(3)  # glTF: y up
     parts = []

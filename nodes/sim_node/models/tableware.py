@@ -29,13 +29,14 @@ from nodes.sim_node.models.parts import (
 
 
 def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Hollow, with a handle towards +y."""
+    """With a handle towards +y. It looks hollow, and collides as if it were full."""
     radius = min(0.5 * x, 0.4 * y)
     shift = -(y / 2 - radius)
     wall = 0.1 * radius
     body = [
-        column(0.8 * radius, 0, 2 * wall, shade(colour, 0.85)),
-        *ring((0.85 * radius, radius), wall, z, wall, colour),
+        *seen(column(0.8 * radius, 0, 2 * wall, shade(colour, 0.85))),
+        *seen(ring((0.85 * radius, radius), wall, z, wall, colour)),
+        *felt(column(0.9 * radius, 0, z, colour)),
     ]
     grip = y / 2 - (shift + radius)
     handle = [
@@ -52,23 +53,25 @@ def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def glass(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A plain tumbler, wider at the top."""
+    """A plain tumbler, wider at the top. It looks hollow, and collides as if it were full."""
     radius = min(x, y) / 2
     wall = 0.08 * radius
     return [
-        column(0.75 * radius, 0, 0.08 * z, shade(colour, 0.8)),
-        *ring((0.78 * radius, radius), 0.04 * z, z, wall, colour),
+        *seen(column(0.75 * radius, 0, 0.08 * z, shade(colour, 0.8))),
+        *seen(ring((0.78 * radius, radius), 0.04 * z, z, wall, colour)),
+        *felt(column(0.85 * radius, 0, z, colour)),
     ]
 
 
 def bowl(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A foot and two flaring rings."""
+    """A foot and two flaring rings; hollow to the touch too."""
     radius = min(x, y) / 2
     wall = min(0.006, 0.1 * radius)
     return [
         column(0.5 * radius, 0, 0.15 * z, colour),
-        *ring((0.48 * radius, 0.82 * radius), 0.04 * z, 0.5 * z, wall, shade(colour, 0.9)),
-        *ring((0.8 * radius, radius), 0.45 * z, z, wall, colour),
+        *seen(ring((0.48 * radius, 0.82 * radius), 0.04 * z, 0.5 * z, wall, shade(colour, 0.9))),
+        *seen(ring((0.8 * radius, radius), 0.45 * z, z, wall, colour)),
+        *felt(ring((0.55 * radius, 0.98 * radius), 0.1 * z, z, wall, colour, count=8)),
     ]
 
 
@@ -77,7 +80,8 @@ def plate(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     return [
         column(0.65 * radius, 0, 0.5 * z, shade(colour, 0.92)),
-        *ring((0.65 * radius, radius), 0.1 * z, z, 0.004, colour, count=16),
+        *seen(ring((0.65 * radius, radius), 0.1 * z, z, 0.004, colour, count=16)),
+        *felt(column(0.95 * radius, 0.4 * z, 0.7 * z, colour)),
     ]
 
 

@@ -179,3 +179,37 @@ def test_a_schema_that_does_not_fit_the_map_is_refused():
     change = reasoner.apply(insert=triples(":a rdfs:subClassOf :c ."))
     assert "<http://example.org/x>" in change.touched
     assert reasoner.types("<http://example.org/x>") >= {"<http://example.org/c>"}
+
+
+def test_what_always_holds_is_explained_by_nothing():
+    for turtle in (":x owl:sameAs :x", "rdfs:label a owl:AnnotationProperty"):
+        explanation = Reasoner().explain(triple(turtle))
+        assert explanation.support == ()
+        assert explanation.text.endswith("(always).")
+
+
+def test_another_spelling_of_a_value_holds_and_is_explained():
+    reasoner = Reasoner(triples(':x :p "1.0"^^xsd:float .'))
+    other = triple(':x :p "1.00"^^xsd:float')
+    assert reasoner.holds(other)
+    assert reasoner.explain(other).support == (triple(':x :p "1.0"^^xsd:float'),)
+
+
+def test_what_does_not_hold_is_not_explained():
+    assert Reasoner().explain(triple(":x :p :y")) is None
+
+
+def test_graphs_beyond_the_compiled_engine_are_reasoned_over_all_the_same():
+    reasoner = Reasoner(triples(":a rdfs:subClassOf :b . :x a :a ."))
+    reasoner.apply(insert=triples(":a owl:sameAs :c . :y a :c ."))
+    assert reasoner.holds(triple(":y a :b"))
+    proofs.check(reasoner.explain(triple(":y a :b")), list(reasoner.asserted()))
+    reasoner.apply(delete=triples(":a owl:sameAs :c ."))
+    assert not reasoner.holds(triple(":y a :b"))
+    assert reasoner.holds(triple(":x a :b"))
+
+
+def test_a_circle_of_a_transitive_property_is_explained():
+    facts = triples(":p a owl:TransitiveProperty . :x :p :y . :y :p :x .")
+    explanation = Reasoner(facts).explain(triple(":x :p :x"))
+    assert set(explanation.support) == set(facts)

@@ -11,9 +11,10 @@ from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.sparql.consequences import Consequences, inferred
 from nodes.kb_node.sparql.dataset import INFERRED, Dataset, Delta
 from tests.kb_node.reasoner import graphs
-from tests.kb_node.reasoner.test_reasoner import TBOX, _facts
+from tests.kb_node.reasoner.facts import ANY_FACT
 
 HOUSEHOLD = graphs.household()
+TBOX = graphs.triples(graphs.EVERYTHING)
 NAMES = ["room1", "room2", "flat1", "shelf1", "cup1", "cup2", "door1", "person1"]
 CLASSES = ["Kitchen", "Apartment", "Shelf", "Cup", "Door", "Person", "Physical_Thing", "Location"]
 PROPERTIES = [
@@ -70,7 +71,7 @@ SETTINGS = settings(deadline=None, derandomize=True, suppress_health_check=list(
 
 
 @settings(SETTINGS, max_examples=60)
-@given(_commits(_facts()))
+@given(_commits(ANY_FACT))
 def test_with_every_construct_of_the_language(commits):
     _follow(TBOX, commits)
 

@@ -1,0 +1,113 @@
+"""The reasoner alone: single changes to maps of several sizes, memory, a crowded room, and owlrl beside it."""
+
+from __future__ import annotations
+
+import gc
+import random
+from typing import NamedTuple
+
+import owlrl
+import psutil
+import rdflib
+
+from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from ontology import stars
+from ontology import vocabulary as v
+from schemas.explanations import Triple
+
+_CHUNK = 1000
+_PARTS = 10_000
+
+
+class Engine(NamedTuple):
+    """One size. Memory is resident: what the map added to the process, and the whole process, an entity."""
+
+    entities: int
+    load_s: float
+    add: Figures
+    move: Figures
+    refuse: Figures
+    remove: Figures
+    kb_per_entity: float
+    process_kb_per_entity: float
+
+
+def measure(size: int, repeat: int) -> Engine:
+    """A map of `size` entities, and `repeat` single changes of each sort. Run it in a process of its own."""
+    random_ = random.Random(size)
+    reasoner = Reasoner(tbox())
+    gc.collect()
+    before, load_s = _resident_kb(), 0.0
+    for first in range(0, size, _CHUNK):
+        chunk = entities(min(_CHUNK, size - first), random_, f"m{first}_")
+        triples = [triple for star in chunk for triple in star]
+        load_s += timed(lambda triples=triples: reasoner.apply(insert=triples))  # type: ignore[misc]
+    del triples
+    gc.collect()
+    after = _resident_kb()
+    gc.freeze()
+    new = list(entities(repeat, random_))
+    add = each(new, lambda star: reasoner.apply(insert=star))
+    moves = [_position(star, random_) for star in new]
+    move = each(moves, lambda change: reasoner.apply(delete=change[0], insert=change[1]))
+    refuse = each(
+        [_kitchen(star) for star in entities(repeat, random_, "r")], lambda s: _refused(reasoner, s)
+    )
+    gone = [[t for t in star if t not in old] + now for star, (old, now) in zip(new, moves, strict=True)]
+    remove = each(gone, lambda star: reasoner.apply(delete=star))
+    return Engine(size, load_s, add, move, refuse, remove, (after - before) / size, after / size)
+
+
+def room(repeat: int) -> tuple[Figures, Figures]:
+    """A kitchen with 10 000 parts: add one, remove it."""
+    reasoner = Reasoner(tbox())
+    kitchen = v.entity_iri("kitchen")
+    reasoner.apply(insert=[(kitchen, v.RDF_TYPE, v.dm("Kitchen"))])
+    part_of = [(v.entity_iri(f"part{i}"), v.dm("isDirectPartOf"), kitchen) for i in range(_PARTS + repeat)]
+    reasoner.apply(insert=part_of[:_PARTS])
+    gc.freeze()
+    new = [[triple] for triple in part_of[_PARTS:]]
+    return (
+        each(new, lambda part: reasoner.apply(insert=part)),
+        each(new, lambda part: reasoner.apply(delete=part)),
+    )
+
+
+def against_owlrl(size: int, repeat: int) -> Figures:
+    """owlrl: the closure of a map of `size` entities and one more, and its list of contradictions."""
+    random_ = random.Random(size)
+    stars_ = list(entities(size + repeat, random_))
+    known = [*tbox(), *(t for star in stars_[:size] for t in star)]
+    graphs = [_graph([*known, *star]) for star in stars_[size:]]
+    return each(graphs, lambda graph: owlrl.DeductiveClosure(owlrl.OWLRL_Semantics).expand(graph))
+
+
+def _graph(triples: list[Triple]) -> rdflib.Graph:
+    lines = "".join(f"{s} {p} {o} .\n" for s, p, o in triples)
+    return rdflib.Graph().parse(data=lines, format="nt")
+
+
+def _position(star: list[Triple], random_: random.Random) -> tuple[list[Triple], list[Triple]]:
+    """What goes and what comes when the entity of a star moves."""
+    coordinates = next(o for _, p, o in star if p == v.HAS_POSITION)
+    old = [t for t in star if t[0] == coordinates and t[1] in v.COORDINATE_XYZ]
+    new = stars.position(star[0][0], coordinates, pose(random_))
+    return old, [t for t in new if t[1] in v.COORDINATE_XYZ]
+
+
+def _kitchen(star: list[Triple]) -> list[Triple]:
+    """An entity that is a kitchen besides."""
+    return [*star, (star[0][0], v.RDF_TYPE, v.dm("Kitchen"))]
+
+
+def _refused(reasoner: Reasoner, star: list[Triple]) -> None:
+    try:
+        reasoner.apply(insert=star)
+    except Inconsistent:
+        return
+    raise AssertionError("an entity and a kitchen in one was accepted")
+
+
+def _resident_kb() -> float:
+    return float(psutil.Process().memory_info().rss) / 1024

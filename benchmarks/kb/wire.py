@@ -1,0 +1,127 @@
+"""The whole system over Zenoh: `semmap up` in processes of its own, this process its one client."""
+
+from __future__ import annotations
+
+import queue
+import random
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import psutil
+
+from benchmarks.kb.made import CLASSES, Figures, each, pose
+from nodes import bus
+from nodes.extern.client import Client, connect
+from schemas import commands, keys
+from schemas.errors import SemmapError
+from tests.conftest import free_endpoint
+
+IN_FLIGHT = 32
+
+
+class Wire(NamedTuple):
+    """What a client sees. Times of single commands are with one request in flight."""
+
+    entities: int
+    start_s: float
+    """From `semmap up` to a system that is ready, all processes and their imports included."""
+    add: Figures
+    move: Figures
+    sustained_moves_per_s: float
+    list_all: Figures
+    sparql: Figures | None
+    memory_kb: dict[str, float]
+
+
+def measure(folder: Path, size: int, *, sim: bool, repeat: int) -> Wire:
+    """Serve the journal in `folder`, of `size` entities named `e<i>`, and send it commands."""
+    random_ = random.Random(size)
+    with _running(folder, sim=sim) as (client, start_s):
+        if sim:
+            _settle(client)
+        names = [f"e{random_.randrange(size)}" for _ in range(repeat)]
+        for name in names[:20]:
+            client.update(name, at=pose(random_).position_m)
+        add = each(range(repeat), lambda i: _add(client, f"new{i}", i, random_))
+        move = each(names, lambda name: client.update(name, at=pose(random_).position_m))
+        moves_per_s = _sustained(client, [f"e{i % size}" for i in range(4 * repeat)], random_)
+        list_all = each(range(5), lambda _: client.list())
+        return Wire(size, start_s, add, move, moves_per_s, list_all, _sparql(client, repeat), _memory(client))
+
+
+def _add(client: Client, name: str, i: int, random_: random.Random) -> None:
+    class_name = CLASSES[i % len(CLASSES)]
+    client.add(class_name, name, at=pose(random_).position_m, size=(0.5, 0.5, 0.5), ref=class_name.lower())
+
+
+def _sustained(client: Client, names: list[str], random_: random.Random) -> float:
+    """Moves a second, all durable, `IN_FLIGHT` at a time, none refused."""
+    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+    def send(name: str) -> None:
+        command = commands.Update(name=name, at=pose(random_).position_m)
+        bus.ask_later(client.session, keys.CMD, "update", command, commands.Changed, answers.put)
+
+    def receive() -> None:
+        answer = answers.get(timeout=bus.TIMEOUT_S)
+        if isinstance(answer, SemmapError):
+            raise answer
+
+    started = time.perf_counter()
+    for i, name in enumerate(names):
+        if i >= IN_FLIGHT:
+            receive()
+        send(name)
+    for _ in names[-IN_FLIGHT:]:
+        receive()
+    return len(names) / (time.perf_counter() - started)
+
+
+def _sparql(client: Client, repeat: int) -> Figures | None:
+    """One look-up by name, if this version answers SPARQL."""
+    ask: Callable[[str], Any] | None = getattr(client, "sparql", None)
+    if ask is None:
+        return None
+    iri = client.get("e1").iri
+    return each(range(repeat), lambda _: ask(f"SELECT ?class WHERE {{ <{iri}> a ?class }}"))
+
+
+def _settle(client: Client) -> None:
+    """Wait until every entity has its body."""
+    while not client.status().in_agreement:
+        time.sleep(0.5)
+
+
+def _memory(client: Client) -> dict[str, float]:
+    """Resident kB of each node."""
+    nodes = client.status().nodes
+    return {n.node: psutil.Process(n.pid).memory_info().rss / 1024 for n in nodes}
+
+
+@contextmanager
+def _running(folder: Path, *, sim: bool) -> Iterator[tuple[Client, float]]:
+    """A client of `semmap up` on a port of its own, and how long the start took [s]; stopped at the end."""
+    endpoint = free_endpoint()
+    words = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
+    command = [Path(sys.executable).with_name("semmap"), "up", *words, *([] if sim else ["--no-sim"])]
+    started = time.perf_counter()
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        try:
+            assert process.stdout is not None
+            said = []
+            for line in process.stdout:
+                said.append(line)
+                if line.startswith("stop "):
+                    break
+            else:
+                raise RuntimeError("the system did not start:\n" + "".join(said))
+            took_s = time.perf_counter() - started
+            with connect(endpoint) as client:
+                yield client, took_s
+        finally:
+            process.terminate()

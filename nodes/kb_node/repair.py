@@ -1,0 +1,64 @@
+"""A journal that is damaged: going on from the last good commit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nodes.kb_node import seed
+from nodes.kb_node.journal import FILENAME, InUse, Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from schemas import errors
+
+
+def repair(data: Path) -> str:
+    """Make the journal of folder `data` sound again, up to its last good commit; say what was done.
+
+    The damaged one is moved to `data/kept/<time>/`. Raises BadFile when there is none, Refused when it is in
+    use or holds nothing to go on from.
+    """
+    path = data / FILENAME
+    if not path.exists():
+        raise errors.BadFile(f"there is no map in {data}")
+    new = path.with_name(f"new-{FILENAME}")
+    try:
+        damaged = Journal(path)
+    except InUse:
+        raise
+    except errors.Refused as error:
+        raise errors.Refused(
+            f"{error.text.partition('; ')[0]}; start anew with --fresh (it is kept)"
+        ) from None
+    try:
+        if _is_sound(damaged):
+            return f"nothing is damaged: the map goes on from commit {damaged.last}"
+        good, reason = _copy(damaged, new)
+    finally:
+        damaged.close()
+    kept = seed.put_in_place(new, path)
+    return f"the map goes on from commit {good} ({reason}); the damaged file is kept in {kept}"
+
+
+def _is_sound(journal: Journal) -> bool:
+    try:
+        journal.verify()
+    except errors.Refused:
+        return False
+    return journal.is_whole()
+
+
+def _copy(damaged: Journal, new: Path) -> tuple[int, str]:
+    """A sound journal at `new` with the good commits: the last one's number, and what the next one lacked."""
+    seed.remove(new)
+    journal = Journal.create(new, damaged.tbox(0))
+    good, reason = 0, "all of them are good"
+    try:
+        try:
+            for commit in damaged.commits():
+                journal.append(commit, damaged.tbox(commit.seq) if commit.tbox else None)
+                good = commit.seq
+        except errors.Refused as error:
+            reason = error.text.partition("; ")[0].removeprefix(f"{damaged.path}: ")
+        SemanticMap(journal).checkpoint()
+    finally:
+        journal.close()
+    return good, reason

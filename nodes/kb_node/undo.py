@@ -1,0 +1,159 @@
+"""Taking back a commit by another one: which commits go with it, and does anything rest on them?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from nodes.kb_node.journal import Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Undo
+from schemas.commits import Commit, Transaction
+from schemas.explanations import Triple
+
+
+def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
+    """Take back what `command` says. Raises as `reversal` does, and Inconsistent."""
+    if (known := journal.commit_of(command.id)) is not None:
+        return known
+    transaction = reversal(semantic_map, journal, command)
+    (first, *_) = transaction.undoes
+    try:
+        commit = semantic_map.commit(transaction)
+    except errors.Inconsistent as error:
+        raise errors.Inconsistent(
+            f"commit {first} cannot be undone: {error.text}", explanation=error.explanation
+        ) from None
+    if commit is None:
+        raise errors.Refused(f"nothing is left of commit {first} that could be taken back")
+    return commit
+
+
+def reversal(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Transaction:
+    """The transaction that takes back a commit with the settling that followed it.
+
+    Raises Refused when there is nothing to take back, later commits rest on it, or its author outranks
+    who wants it undone.
+    """
+    target = _newest_asked(journal) if command.commit is None else _named(journal, command.commit)
+    _require_authority(command, target)
+    if target.tbox:
+        raise errors.Refused(
+            f"commit {target.seq} replaced the TBox; load the one before again: semmap load --tbox FILE"
+        )
+    later = _later(journal, target)
+    for commit in _in_force(later):
+        if target.seq in commit.undoes:
+            raise errors.Refused(f"commit {target.seq} was taken back by commit {commit.seq} already")
+    settling = [commit for commit in _in_force(later) if _is_settling(commit)]
+    undone = [target, *reversed(settling)]
+    retract, insert = _net(undone)
+    if _is_disturbed(semantic_map, retract, insert):
+        raise errors.Refused(_what_rests_on(target, [c for c in later if c not in undone]))
+    return Transaction(
+        id=command.id,
+        source=command.source,
+        agent=command.agent,
+        verb="undo",
+        reason=command.reason or f"undo {target.seq}: {target.reason}",
+        undoes=tuple(commit.seq for commit in undone),
+        require=retract,
+        retract=retract,
+        insert=insert,
+    )
+
+
+def _newest_asked(journal: Journal) -> Commit:
+    """The newest commit that a client asked for and that was not taken back."""
+    backwards = (journal.commit(seq) for seq in range(journal.last, 0, -1))
+    for commit in _in_force(backwards):
+        if commit.verb and not commit.undoes:
+            return commit
+    raise errors.Refused("there is nothing to undo: no client has changed the map, or all was undone already")
+
+
+def _named(journal: Journal, seq: int) -> Commit:
+    if seq > journal.last:
+        raise errors.Refused(f"there is no commit {seq} yet; the last one is {journal.last}")
+    return journal.commit(seq)
+
+
+def _require_authority(command: Undo, target: Commit) -> None:
+    if command.source in ("scene", "perception") and target.source in ("operator", "file"):
+        raise errors.Refused(f"commit {target.seq} is an operator's, so only an operator may take it back")
+
+
+def _later(journal: Journal, target: Commit) -> list[Commit]:
+    """The commits after `target` that concern it, newest first.
+
+    They are those that touched one of its entities, and what the system did by itself right after it: what
+    stood on a table fell when the table went.
+    """
+    seqs = {seq for name in target.names for seq in journal.touching(name, after=target.seq)}
+    found = {seq: journal.commit(seq) for seq in seqs}
+    for seq in range(target.seq + 1, journal.last + 1):
+        commit = found.get(seq) or journal.commit(seq)
+        if commit.verb:
+            break
+        found[seq] = commit
+    return [found[seq] for seq in sorted(found, reverse=True)]
+
+
+def _in_force(newest_first: Iterable[Commit]) -> Iterator[Commit]:
+    """Those that were not taken back."""
+    undone: set[int] = set()
+    for commit in newest_first:
+        if commit.seq not in undone:
+            undone.update(commit.undoes)
+            yield commit
+
+
+def _is_settling(commit: Commit) -> bool:
+    """Did the system by itself only take over where bodies came to rest?"""
+    shaped = any(entity.shape_provenance.commit == commit.seq for entity in commit.changed)
+    return not commit.verb and commit.source == "scene" and not commit.removed and not shaped
+
+
+def _net(commits: Iterable[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
+    """What commits, in order, inserted and retracted taken together."""
+    inserted: dict[Triple, None] = {}
+    retracted: dict[Triple, None] = {}
+    for commit in commits:
+        for triple in commit.retracted:
+            if triple in inserted:
+                del inserted[triple]
+            else:
+                retracted[triple] = None
+        for triple in commit.inserted:
+            if triple in retracted:
+                del retracted[triple]
+            else:
+                inserted[triple] = None
+    return tuple(inserted), tuple(retracted)
+
+
+def _is_disturbed(
+    semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
+) -> bool:
+    """Is something no longer as it was left, or was more said of the individuals that were brought in?"""
+    mine = set(inserted)
+    changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
+    brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
+    asserted = semantic_map.reasoner.asserted
+    about = (t for s in brought for pattern in ((s, None, None), (None, None, s)) for t in asserted(*pattern))
+    return (
+        not all(map(semantic_map.has, inserted))
+        or any(map(semantic_map.has, retracted))
+        or any(t not in mine for t in about)
+    )
+
+
+def _what_rests_on(target: Commit, others: list[Commit]) -> str:
+    if not others:
+        return f"it is too late to undo commit {target.seq}: what it said was changed since"
+    newest = others[0]
+    return (
+        f"it is too late to undo commit {target.seq} ({target.reason}): commit {newest.seq} ({newest.reason})"
+        f" rests on it; undo that one first: semmap undo {newest.seq}"
+    )

@@ -1,0 +1,51 @@
+"""A door before a real map, without the wire between."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.door import Door
+from nodes.kb_node.journal import Journal
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.undo import undo
+
+TBOX = b"""
+@prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
+@prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+:Physical_Thing a owl:Class . :Property a owl:Class .
+:Location a owl:Class ; rdfs:subClassOf :Physical_Thing ; owl:disjointWith :Object .
+:Kitchen a owl:Class ; rdfs:subClassOf :Location .
+:Object a owl:Class ; rdfs:subClassOf :Physical_Thing .
+:Furniture a owl:Class ; rdfs:subClassOf :Object .
+:Chair a owl:Class ; rdfs:subClassOf :Furniture ; rdfs:label "chair"@en .
+:Living_Room_Table a owl:Class ; rdfs:subClassOf :Furniture .
+:Color a owl:Class ; rdfs:subClassOf :Property .
+:Coordinates a owl:Class ; rdfs:subClassOf :Property .
+:hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
+  rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
+:float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
+"""
+
+
+@pytest.fixture
+def semantic_map(tmp_path: Path):
+    journal = Journal.create(tmp_path / "journal.sqlite", TBOX)
+    yield SemanticMap(journal)
+    journal.close()
+
+
+@pytest.fixture
+def door(semantic_map):
+    answers = {
+        "commit": semantic_map.commit,
+        "star": lambda query: semantic_map.stars(query.names),
+        "undo": lambda command: undo(semantic_map, semantic_map._journal, command),
+    }
+    door = Door(lambda verb, message: answers[verb](message))
+    door.classes = ClassNames(semantic_map.class_table())
+    return door

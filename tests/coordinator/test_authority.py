@@ -1,0 +1,68 @@
+"""Precedence: who may change what was said by whom."""
+
+import pytest
+
+from schemas import commands as c
+from schemas import errors
+from tests.coordinator.test_door import add
+
+AT = (4.0, 5.0, 0.0)
+SCENE = b'{"entities": [{"class": "Chair", "name": "new"}]}'
+CHANGES = {
+    "class": lambda d, s: d.update(c.Update(name="chair1", class_="Furniture", source=s)),
+    "size": lambda d, s: d.update(c.Update(name="chair1", size=(1.0, 1.0, 1.0), source=s)),
+    "reference": lambda d, s: d.update(c.Update(name="chair1", ref="stool", source=s)),
+    "no references": lambda d, s: d.update(c.Update(name="chair1", alt=(), source=s)),
+    "existence": lambda d, s: d.remove(c.Remove(names=("chair1",), source=s)),
+    "all existence": lambda d, s: d.clear(c.Clear(source=s)),
+    "another map": lambda d, s: d.load(c.Load(content=SCENE, filename="s.json", replace=True, source=s)),
+}
+changes = pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys())
+
+
+@changes
+@pytest.mark.parametrize("source", ["scene", "perception"])
+def test_what_an_operator_said_only_an_operator_changes(door, source, change):
+    add(door, name="chair1", alt=("seat",))
+    before = door.entity("chair1")
+    with pytest.raises(errors.Refused, match="an operator said what chair1 is, so only an operator may"):
+        change(door, source)
+    assert door.entity("chair1") == before
+    change(door, "operator")
+    assert door.entities.get("chair1") != before
+
+
+@pytest.mark.parametrize("source", ["scene", "perception"])
+def test_anybody_may_say_where_it_is(door, source):
+    add(door, name="chair1")
+    door.update(c.Update(name="chair1", at=AT, source=source, agent="camera", confidence=0.5))
+    chair1 = door.entity("chair1")
+    assert (chair1.pose.position_m, chair1.pose_provenance.source) == (AT, source)
+    assert (chair1.pose_provenance.agent, chair1.pose_provenance.confidence) == ("camera", 0.5)
+
+
+@changes
+def test_what_perception_said_perception_changes(door, change):
+    add(door, name="chair1", alt=("seat",), source="perception")
+    before = door.entity("chair1")
+    change(door, "perception")
+    assert door.entities.get("chair1") != before
+
+
+@changes
+def test_an_operator_s_word_on_a_thing_that_perception_brought_in_counts(door, change):
+    add(door, name="chair1", alt=("seat",), source="perception")
+    door.update(c.Update(name="chair1", ref="my chair"))
+    door.update(c.Update(name="chair1", at=AT, source="perception"))
+    with pytest.raises(errors.Refused, match="only an operator may"):
+        change(door, "perception")
+
+
+def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(door):
+    add(door, name="chair1")
+    with pytest.raises(errors.Refused, match="only an operator may replace the TBox"):
+        door.load(c.Load(content=b"x", tbox=True, source="perception"))
+    with pytest.raises(errors.Refused, match="commit 1 is an operator's"):
+        door.undo(c.Undo(source="perception"))
+    with pytest.raises(errors.BadRequest, match="takes the place"):
+        door.load(c.Load(content=b"x", tbox=True, replace=True))

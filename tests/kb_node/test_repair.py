@@ -1,0 +1,113 @@
+"""Damaged journals: refused with the commit's number, and mended up to the last good one."""
+
+import random
+
+import pytest
+
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.repair import repair
+from nodes.kb_node.semantic_map import SemanticMap
+from schemas import errors
+from tests.kb_node import home
+from tests.kb_node.home import chair, state, transaction
+from tests.kb_node.test_journal import edit, flip
+from tests.kb_node.test_tboxes import NEW_CLASSES, replace
+
+
+@pytest.fixture
+def data(tmp_path):
+    """A folder with a map of 8 commits, of which the fifth replaced the TBox."""
+    semantic_map = home.new_map(tmp_path)
+    for i in range(1, 9):
+        if i == 5:
+            replace(semantic_map, i, NEW_CLASSES)
+        else:
+            semantic_map.commit(transaction(i, chair(f"chair{i}"), reason="x" * 2000))
+    home.close(semantic_map)
+    return tmp_path
+
+
+def opened(data):
+    journal = Journal(data / FILENAME)
+    try:
+        semantic_map = SemanticMap(journal)
+        return state(semantic_map), list(journal.commits())
+    finally:
+        journal.close()
+
+
+def attempt(function, data):
+    """What a function gives, or the words with which it refuses."""
+    try:
+        return function(data)
+    except errors.Refused as error:
+        return error.text
+
+
+@pytest.mark.parametrize("broken", [1, 5, 8])
+def test_it_goes_on_from_the_last_good_commit(data, broken):
+    _, commits = opened(data)
+    flip(data / FILENAME, "commits", broken)
+    damaged = (data / FILENAME).read_bytes()
+    with pytest.raises(errors.Refused, match=f"commit {broken} is damaged; .* semmap repair --data {data} "):
+        opened(data)
+    said = repair(data)
+    assert said.startswith(f"the map goes on from commit {broken - 1} (commit {broken} is damaged); ")
+    (kept,) = (data / "kept").iterdir()
+    assert (kept / FILENAME).read_bytes() == damaged
+    (seq, _, snapshot), mended = opened(data)
+    assert (seq, mended) == (broken - 1, commits[: broken - 1])
+    assert {e.name for e in snapshot.entities} == {e.name for c in mended for e in c.changed}
+    assert repair(data) == f"nothing is damaged: the map goes on from commit {broken - 1}"
+
+
+def test_a_repaired_map_takes_commits_again(data):
+    flip(data / FILENAME, "commits", 7)
+    repair(data)
+    journal = Journal(data / FILENAME)
+    semantic_map = SemanticMap(journal)
+    assert semantic_map.commit(transaction("new", chair("chair9"))).seq == 7
+    journal.close()
+    assert opened(data)[0][0] == 7
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_flipped_bytes_are_noticed_or_do_no_harm(data, seed):
+    expected, commits = opened(data)
+    path = data / FILENAME
+    content = bytearray(path.read_bytes())
+    chance = random.Random(seed)
+    start = chance.randrange(4096, len(content) - 64)  # page 1 tells SQLite what file it is: see below
+    for i in range(start, start + chance.choice([1, 16, 64])):
+        content[i] ^= chance.randrange(1, 256)
+    path.write_bytes(content)
+    found = attempt(opened, data)
+    assert found == (expected, commits) or "is damaged" in found
+    if "start anew with --fresh" not in attempt(repair, data):
+        (seq, _, _), mended = opened(data)
+        assert mended == commits[:seq]
+
+
+def test_what_cannot_be_mended_says_how_to_go_on(data):
+    (data / FILENAME).write_bytes(b"not a database " * 99)
+    with pytest.raises(errors.Refused, match=r"file is not a database; start anew with --fresh"):
+        repair(data)
+
+
+def test_a_damaged_tbox_is_where_the_good_commits_end(data):
+    edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 5")
+    with pytest.raises(errors.Refused, match="the TBox in it is damaged"):
+        opened(data)
+    assert repair(data).startswith("the map goes on from commit 4 (the TBox in it is damaged)")
+    edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
+    with pytest.raises(errors.Refused, match="the TBox in it is damaged; start anew with --fresh"):
+        repair(data)
+
+
+def test_nothing_and_what_is_in_use_are_refused(data, tmp_path_factory):
+    with pytest.raises(errors.BadFile, match="there is no map in"):
+        repair(tmp_path_factory.mktemp("empty"))
+    journal = Journal(data / FILENAME)
+    with pytest.raises(errors.Refused, match="another knowledge base is using"):
+        repair(data)
+    journal.close()

@@ -1,0 +1,197 @@
+import pytest
+
+from nodes.kb_node.undo import undo
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Undo
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+from tests.kb_node.test_past import A, B, C, move
+
+CHAIR1 = v.entity_iri("chair1")
+ids = iter(range(1000, 9999))
+
+
+def add(semantic_map, *names, verb="add", **fields):
+    triples = [t for name in names for t in chair(name)]
+    return semantic_map.commit(transaction(next(ids), triples, verb=verb, **fields))
+
+
+def order(semantic_map, name, before, after):
+    return semantic_map.commit(move(next(ids), name, before, after, verb="update"))
+
+
+def settle(semantic_map, name, before, after):
+    return semantic_map.commit(move(next(ids), name, before, after, source="scene"))
+
+
+def take_back(semantic_map, commit=None, **fields):
+    return undo(semantic_map, semantic_map._journal, Undo(id=str(next(ids)), commit=commit, **fields))
+
+
+def triples(semantic_map):
+    return set(semantic_map.abox())
+
+
+def test_a_commit_is_taken_back_by_another_one(semantic_map):
+    add(semantic_map, "chair1")
+    before = triples(semantic_map), semantic_map.entity("chair1").pose
+    order(semantic_map, "chair1", A, B)
+    commit = take_back(semantic_map, 2, agent="ann")
+    assert (commit.seq, commit.undoes, commit.verb, commit.agent) == (3, (2,), "undo", "ann")
+    assert commit.reason.startswith("undo 2: ")
+    (chair1,) = semantic_map.entities()
+    assert (triples(semantic_map), chair1.pose) == before
+    assert semantic_map.entity("chair1").pose_provenance.commit == 3
+    take_back(semantic_map, 1)
+    assert list(semantic_map.entities()) == []
+
+
+def test_what_was_removed_comes_back(semantic_map):
+    add(semantic_map, "chair1", "chair2")
+    before = triples(semantic_map)
+    semantic_map.commit(transaction("gone", (), [*chair("chair1"), *chair("chair2")], verb="clear"))
+    assert {e.name for e in take_back(semantic_map).changed} == {"chair1", "chair2"}
+    assert triples(semantic_map) == before
+
+
+def test_bare_undo_takes_back_what_a_client_asked_for_one_after_the_other(semantic_map):
+    add(semantic_map, "chair0", verb="", source="file")
+    add(semantic_map, "chair1")
+    settle(semantic_map, "chair1", A, B)
+    add(semantic_map, "chair2")
+    settle(semantic_map, "chair2", A, B)
+    settle(semantic_map, "chair2", B, C)
+    assert take_back(semantic_map).undoes == (4, 5, 6)
+    assert take_back(semantic_map).undoes == (2, 3)
+    assert [e.name for e in semantic_map.entities()] == ["chair0"]
+    with pytest.raises(errors.Refused, match="there is nothing to undo"):
+        take_back(semantic_map)
+
+
+def test_what_stood_on_a_table_comes_back_with_it(semantic_map):
+    add(semantic_map, "table1", "cup1")
+    order(semantic_map, "table1", A, B)
+    settle(semantic_map, "cup1", A, C)
+    assert take_back(semantic_map).undoes == (2, 3)
+    assert semantic_map.entity("cup1").pose.position_m == A
+
+
+def test_settling_after_an_undo_goes_with_the_next(semantic_map):
+    add(semantic_map, "chair1")
+    order(semantic_map, "chair1", A, B)
+    settle(semantic_map, "chair1", B, C)
+    take_back(semantic_map)
+    settle(semantic_map, "chair1", A, B)
+    assert take_back(semantic_map).undoes == (1, 5)
+    assert list(semantic_map.entities()) == []
+
+
+def test_what_the_scene_brought_in_is_no_settling(semantic_map):
+    add(semantic_map, "chair1")
+    add(semantic_map, "chair2", verb="", source="scene")
+    assert take_back(semantic_map).undoes == (1,)
+    assert [e.name for e in semantic_map.entities()] == ["chair2"]
+
+
+def test_undoing_an_undo_does_it_again(semantic_map):
+    add(semantic_map, "chair1")
+    done = triples(semantic_map)
+    first = take_back(semantic_map)
+    assert take_back(semantic_map, first.seq).undoes == (2,)
+    assert triples(semantic_map) == done
+    assert take_back(semantic_map).undoes == (1,)
+
+
+def test_the_same_command_twice_undoes_once(semantic_map):
+    add(semantic_map, "chair1")
+    add(semantic_map, "chair2")
+    journal = semantic_map._journal
+    assert undo(semantic_map, journal, Undo(id="same")) == undo(semantic_map, journal, Undo(id="same"))
+    assert [e.name for e in semantic_map.entities()] == ["chair1"]
+
+
+def says(text):
+    return lambda semantic_map: semantic_map.commit(transaction(next(ids), turtle(text), verb="update"))
+
+
+RESTS = {
+    "moved since": lambda m: order(m, "chair1", A, B),
+    "removed since": lambda m: m.commit(transaction(next(ids), (), chair("chair1"), reason="gone")),
+    "given a size since": lambda m: m.commit(
+        transaction(next(ids), stars.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0)))
+    ),
+    "spoken of since": says(":chair2 dm:isLocatedIn :kitchen1 . :kitchen1 dm:near :chair1 ."),
+    "shared since": says(":chair2 dm:hasPosition :chair1_coordinates ."),
+}
+
+
+@pytest.mark.parametrize("rest", RESTS.values(), ids=RESTS.keys())
+def test_what_later_commits_rest_on_stays(semantic_map, rest):
+    add(semantic_map, "chair2")
+    add(semantic_map, "chair1", reason="a chair")
+    rest(semantic_map)
+    before = semantic_map.seq, triples(semantic_map)
+    with pytest.raises(errors.Refused, match="it is too late to undo commit 2"):
+        take_back(semantic_map, 2)
+    assert (semantic_map.seq, triples(semantic_map)) == before
+    take_back(semantic_map, 3)
+    take_back(semantic_map, 2)
+    assert [e.name for e in semantic_map.entities()] == ["chair2"]
+
+
+def test_the_refusal_names_the_commit_that_rests_on_it(semantic_map):
+    add(semantic_map, "chair1", reason="a chair")
+    order(semantic_map, "chair1", A, B)
+    with pytest.raises(
+        errors.Refused,
+        match=r"commit 1 \(a chair\): commit 2 \(\) rests on it; undo that one first: semmap undo 2",
+    ):
+        take_back(semantic_map, 1)
+
+
+def test_other_changes_of_the_same_entity_are_no_hindrance(semantic_map):
+    add(semantic_map, "chair1")
+    order(semantic_map, "chair1", A, B)
+    says(":chair1 dm:hasPreferredReference :r . :r dm:lexicalReference 'stool' .")(semantic_map)
+    take_back(semantic_map, 2)
+    chair1 = semantic_map.entity("chair1")
+    assert (chair1.pose.position_m, chair1.preferred_reference) == (A, "stool")
+
+
+def test_what_would_be_inconsistent_is_refused_with_the_explanation(semantic_map):
+    add(semantic_map, "chair1")
+    semantic_map.commit(transaction("no chair", (), chair("chair1")))
+    says(":x dm:isLocatedIn :chair1 .")(semantic_map)
+    with pytest.raises(errors.Inconsistent, match="commit 2 cannot be undone: chair1 cannot be") as caught:
+        take_back(semantic_map, 2)
+    assert caught.value.explanation is not None
+
+
+@pytest.mark.parametrize(
+    ("commit", "fields", "text"),
+    [
+        (9, {}, "there is no commit 9 yet; the last one is 3"),
+        (2, {}, "commit 2 was taken back by commit 3 already"),
+        (1, {"source": "perception"}, "commit 1 is an operator's, so only an operator may take it back"),
+        (1, {"source": "scene"}, "commit 1 is an operator's"),
+    ],
+)
+def test_what_cannot_be_undone(semantic_map, commit, fields, text):
+    add(semantic_map, "chair1")
+    order(semantic_map, "chair1", A, B)
+    take_back(semantic_map)
+    with pytest.raises(errors.Refused, match=text):
+        take_back(semantic_map, commit, **fields)
+
+
+def test_an_undo_survives_a_restart(semantic_map):
+    add(semantic_map, "chair1")
+    take_back(semantic_map)
+    expected = home.state(semantic_map)
+    again = home.reopened(semantic_map)
+    assert home.state(again) == expected
+    with pytest.raises(errors.Refused, match="nothing to undo"):
+        take_back(again)
+    home.close(again)
