@@ -46,8 +46,8 @@ from schemas.sparql import RowsChanged, SparqlResult, Watching
 
 READERS: Final = 4
 """How many queries are evaluated at once."""
-BACKLOG: Final = 5_000
-"""How many commits a reader may be behind."""
+BACKLOG: Final = 50_000
+"""How many changed triples a reader may be behind."""
 STANDING: Final = 64
 """How many standing queries there may be."""
 STANDING_ROWS: Final = 10_000
@@ -73,6 +73,7 @@ class Worker:
         self._dataset = Dataset(start.seq, start.asserted)
         self._consequences: Consequences | None = None
         self._log: deque[Delta] = deque()
+        self._log_size = 0
         self._idle: list[Reader] = []
         self._busy: dict[Connection, tuple[Reader, int]] = {}
         self._outdated: set[Reader] = set()
@@ -193,9 +194,11 @@ class Worker:
         for standing in self._standing.values():
             if standing.is_touched(delta):
                 self._looks.append(Look(standing, since=delta.seq - 1, seq=delta.seq))
-        if len(self._log) > BACKLOG:
+        self._log_size += len(delta.everything)
+        if self._log_size > BACKLOG:
             self._outdate_readers()
             self._log.clear()
+            self._log_size = 0
 
     def _since(self, seq: int, until: int) -> Iterator[Delta]:
         """The commits after `seq`, up to `until`."""
