@@ -128,7 +128,7 @@ class KnowledgeBase:
         """An RDF document in one commit."""
         label = f"f{uuid.uuid4().hex[:8]}"
         triples = rdf_files.parse(load.content, load.filename, label_prefix=label)
-        kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
+        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
         transaction = Transaction(
             id=load.id,
             source=load.source,
@@ -136,9 +136,10 @@ class KnowledgeBase:
             verb="load",
             reason=load.reason,
             retract=tuple(self.map.abox()) if load.replace else (),
-            insert=tuple(t for t in kept if t not in self.map.tbox),
+            insert=tuple(t for t in sorted_out.triples if t not in self.map.tbox),
         )
-        return Loaded(commit=self._commit(transaction), skipped=tuple(skipped))
+        commit = self._commit(transaction)
+        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
         """Every entity, as of the last commit."""
