@@ -15,7 +15,8 @@ SYNTAXES = ["rdfxml", "turtle", "ntriples", "jsonld"]
 @pytest.fixture
 def furnished(semantic_map):
     said = turtle(
-        ":chair1 dm:isLocatedIn :kitchen1 ; dm:hasSize [ a dm:3Three_Dim_Size ; dm:float_size_x \"1.50\"^^xsd:float ] ."
+        ":chair1 dm:isLocatedIn :kitchen1 ;"
+        ' dm:hasSize [ a dm:3Three_Dim_Size ; dm:float_size_x "1.50"^^xsd:float ] .'
         ":chair2 a dm:Chair , owl:NamedIndividual ; dm:hasAlternativeReference :ref ."
         ':ref dm:lexicalReference "<&>" , "è"@it .'
     )
