@@ -93,7 +93,9 @@ def ask(
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
 
-    `meanwhile` is called again and again while the answer takes its time. Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
+    `meanwhile` is called again and again while the answer takes its time.
+
+    Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
     that does takes longer than `timeout_s`.
     """
     key = f"{prefix}/{verb}"

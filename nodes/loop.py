@@ -72,7 +72,7 @@ class Node:
     def ask(
         self, prefix: str, verb: str, message: Any, kind: Any, *, beating: bool = False, **limits: float
     ) -> Any:
-        """`bus.ask` on this node's session; the heartbeat waits meanwhile, unless it is `beating` (slower)."""
+        """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
         return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
 
