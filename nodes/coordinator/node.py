@@ -300,8 +300,9 @@ class Coordinator:
         return guarded
 
     def _ask_kb(self, verb: str, message: Any) -> Any:
-        timeout_s = _COMMIT_TIMEOUT_S if verb in ("commit", "star", "classes") else _LOAD_TIMEOUT_S
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=timeout_s)
+        long = verb in ("load", "load-tbox", "undo")
+        timeout_s = _LOAD_TIMEOUT_S if long else _COMMIT_TIMEOUT_S
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], beating=long, timeout_s=timeout_s)
 
     def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)

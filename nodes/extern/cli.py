@@ -17,6 +17,7 @@ import click
 from nodes import bus
 from nodes.extern import show, sparql_cli, sparql_formats
 from nodes.extern.client import CONNECT_VARIABLE, Client, connect, read_file
+from nodes.extern.loading import progress
 from nodes.extern.past_cli import history, last_seen, undo
 from nodes.extern.system_cli import down, node, repair, up
 from nodes.extern.talking import print_json, print_lines, talks
@@ -107,7 +108,9 @@ def clear(client: Client) -> None:
 @talks
 def load(client: Client, file: Path, replace: bool, skip_unknown: bool, tbox: bool) -> None:
     """Load an ABox (RDF/XML, Turtle, N-Triples, JSON-LD), a JSON scene or a HuRIC map; or a TBox."""
-    print_lines(show.changed(client.load(file, replace=replace, skip_unknown=skip_unknown, tbox=tbox)))
+    with progress(client):
+        reply = client.load(file, replace=replace, skip_unknown=skip_unknown, tbox=tbox)
+    print_lines(show.changed(reply))
 
 
 @app.command("list")
