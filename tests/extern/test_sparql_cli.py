@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from schemas import errors
+from schemas import errors, keys
 from tests.conftest import running, until
 
 CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"
