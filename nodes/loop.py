@@ -69,9 +69,12 @@ class Node:
         """Call `handle()` each time that no event waits: what handlers have put off is done then."""
         self._idle.append(handle)
 
-    def ask(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Any:
-        """`bus.ask` on this node's session; the heartbeat waits meanwhile."""
-        return bus.ask(self.session, prefix, verb, message, kind, **limits)
+    def ask(
+        self, prefix: str, verb: str, message: Any, kind: Any, *, beating: bool = False, **limits: float
+    ) -> Any:
+        """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
+        meanwhile = self.beat if beating else None
+        return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
 
     def ask_later(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Future[Any]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread."""
@@ -192,6 +195,19 @@ def _resolve(future: Future[Any], reply: Any) -> None:
         future.set_exception(reply)
     else:
         future.set_result(reply)
+
+
+def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
+    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
+    try:
+        result = execute()
+    except Exception as error:
+        future.set_exception(error)
+        return
+    if isinstance(result, Future):
+        result.add_done_callback(lambda done: settle(future, done.result))
+    else:
+        future.set_result(result)
 
 
 def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:

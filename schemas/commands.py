@@ -292,14 +292,14 @@ class Undo(Command, frozen=True, kw_only=True, tag="undo"):
 
 
 QueryText = Annotated[str, Meta(min_length=1, max_length=100_000)]
-RowLimit = Annotated[int, Meta(ge=1, le=1_000_000)]
+RowLimit = Annotated[int, Meta(ge=1, le=100_000)]
 TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
 class Sparql(Command, frozen=True, kw_only=True, tag="sparql"):
     """A SPARQL 1.1 query over what is asserted or, with `inferred`, also over what follows from it.
 
-    It reads only. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
+    It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
     """
 
     query: QueryText
@@ -347,7 +347,9 @@ class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Pause(Command, frozen=True, kw_only=True, tag="pause"):
-    """Stop simulated time; a second time: let it run again."""
+    """Stop simulated time, or with `off` let it run again; without `off` a second time does so, too."""
+
+    off: bool | None = None
 
 
 class StepOnce(Command, frozen=True, kw_only=True, tag="step"):

@@ -23,8 +23,8 @@ _ASK_S = 200.0
 class StandingQuery:
     """The rows of a query as they are, and news of them; use `Client.watch`.
 
-    `changes` waits for the news and renews the lease meanwhile; when the knowledge base was restarted, it asks
-    again and tells what changed in between, too.
+    `changes` waits for the news and renews the lease meanwhile; when the knowledge base was restarted, it
+    asks again and tells what changed in between, too.
     """
 
     def __init__(self, session: zenoh.Session, query: str, inferred: bool) -> None:

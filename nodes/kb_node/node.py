@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import TypeVar
 
 from nodes import bus
@@ -50,7 +50,8 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Explanation
+from schemas.explanations import Explanation, Triple
+from schemas.health import LOADING
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
@@ -127,8 +128,18 @@ class KnowledgeBase:
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit."""
         label = f"f{uuid.uuid4().hex[:8]}"
-        triples = rdf_files.parse(load.content, load.filename, label_prefix=label)
-        kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
+        with self._telling_of(load.filename) as tell:
+            triples = rdf_files.parse(
+                load.content,
+                load.filename,
+                label_prefix=label,
+                progress=lambda count: tell(f"{count:,} triples read"),
+            )
+            tell(f"{len(triples):,} triples to check and write")
+            return self._load(load, triples)
+
+    def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
+        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
         transaction = Transaction(
             id=load.id,
             source=load.source,
@@ -136,9 +147,18 @@ class KnowledgeBase:
             verb="load",
             reason=load.reason,
             retract=tuple(self.map.abox()) if load.replace else (),
-            insert=tuple(t for t in kept if t not in self.map.tbox),
+            insert=tuple(t for t in sorted_out.triples if t not in self.map.tbox),
         )
-        return Loaded(commit=self._commit(transaction), skipped=tuple(skipped))
+        commit = self._commit(transaction)
+        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+
+    @contextmanager
+    def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
+        """Lets the heartbeat tell how far the loading of a file is."""
+        try:
+            yield lambda text: self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+        finally:
+            self._node.describe(self._summary())
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
         """Every entity, as of the last commit."""

@@ -34,9 +34,10 @@ class SemanticMap:
     ) -> None:
         """Rebuild the map from `journal`; `reasoner` is one that holds its TBox and no more, if there is one.
 
-        Raises Refused when the journal is damaged.
+        `progress` is called between the steps of long work. Raises Refused when the journal is damaged.
         """
         self._journal = journal
+        self._progress = progress
         journal.verify(progress)
         start = journal.last_checkpoint()
         self.tbox = self._tbox_of(start.seq)
@@ -45,7 +46,7 @@ class SemanticMap:
         self._entities: dict[str, Entity] = {}
         self.seq = 0
         self._checkpointed = 0
-        self._replay(start, progress)
+        self._replay(start)
 
     # Asking
 
@@ -224,7 +225,7 @@ class SemanticMap:
             if self._is_subject(term):
                 raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")
 
-    def _replay(self, start: Checkpoint, progress: Callable[[], None]) -> None:
+    def _replay(self, start: Checkpoint) -> None:
         self.reasoner.apply(insert=start.triples)
         self.seq = self._checkpointed = start.seq
         said_by_the_tbox = entities.of_the_tbox(self.reasoner, self.classes)
@@ -246,7 +247,7 @@ class SemanticMap:
                     self._apply(commit, lambda _: None)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
-            progress()
+            self._progress()
 
     def _tbox_of(self, seq: int) -> frozenset[Triple]:
         return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
@@ -333,6 +334,7 @@ class SemanticMap:
         removed: list[Departed] = []
         for iri in sorted(owners.union(touched)):
             known = self._known(iri)
+            self._progress()
             entity = self._read(iri, commit.provenance)
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []

@@ -1,4 +1,4 @@
-"""A reader: a forked process with a copy of the triples, that evaluates a query at a time and may die of it."""
+"""A reader: a forked process with a copy of the triples; it evaluates a query at a time and may die of it."""
 
 from __future__ import annotations
 
@@ -22,6 +22,9 @@ from schemas.sparql import SparqlResult
 MEMORY_BYTES: Final = 1 << 30
 """What a query may use beyond the triples."""
 
+ANSWER_BYTES: Final = 32 << 20
+"""How long an answer may be."""
+
 
 class Task(Struct, frozen=True, kw_only=True):
     """A query, and the commits that come before it."""
@@ -40,6 +43,9 @@ class Outcome(Struct, frozen=True, kw_only=True):
     error: ErrorMessage | None = None
 
 
+_TOO_LONG = msgpack.encode(
+    Outcome(error=errors.to_message(errors.Refused(f"the answer is longer than {ANSWER_BYTES >> 20} MB")))
+)
 _tasks = msgpack.Decoder(Task)
 _outcomes = msgpack.Decoder(Outcome)
 
@@ -99,7 +105,7 @@ class Reader:
         died_of = -self._reap()
         if died_of == signal.SIGALRM:
             return errors.Refused(
-                f"the query was cancelled after {self._timeout_s:g} s; narrow it, or raise the time limit"
+                f"the query was cancelled after {self._timeout_s:g} s, its time limit; narrow it"
             )
         if died_of == signal.SIGABRT:
             return errors.Refused(
@@ -119,7 +125,7 @@ def _serve(connection: Connection, dataset: Dataset) -> NoReturn:
             signal.setitimer(signal.ITIMER_REAL, task.timeout_s)
             outcome = msgpack.encode(_evaluate(task, dataset))
             signal.setitimer(signal.ITIMER_REAL, 0.0)
-            connection.send_bytes(outcome)
+            connection.send_bytes(outcome if len(outcome) <= ANSWER_BYTES else _TOO_LONG)
     finally:
         os._exit(0)
 

@@ -79,7 +79,11 @@ def _reason(query: str, line: int, column: int, expected: str) -> str:
     for sign, reason in _REASONS:
         if sign in expected:
             return reason
-    return f"'{after[:30]}' does not fit there" if after else "it ends too early"
+    return (
+        f"'{after[:30]}' does not fit there"
+        if after
+        else "it ends too early, or something before does not fit"
+    )
 
 
 def _words(query: str) -> Iterator[str]:

@@ -1,0 +1,259 @@
+"""The SPARQL process from the outside: asked, fed with commits, starved, killed."""
+
+import os
+import queue
+import random
+import signal
+import time
+
+import pyoxigraph as ox
+import pytest
+
+from nodes.kb_node import rdf_files
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.sparql import readers, text
+from nodes.kb_node.sparql.consequences import inferred
+from nodes.kb_node.sparql.service import SparqlService
+from ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Renew, Sparql, Watch
+from schemas.commits import Commit
+from schemas.entities import Pose
+from tests.kb_node import home
+
+WAIT_S = 60.0
+FOR_EVER = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l FILTER(?a < ?l) }"
+GREEDY = "SELECT DISTINCT * { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } ORDER BY ?c ?f"
+
+
+class Home:
+    """A map without a node: a reasoner as the truth, and the service that follows it."""
+
+    def __init__(self, triples):
+        self.reasoner = Reasoner(triples)
+        self.seq = 0
+        self.news = queue.SimpleQueue()
+        self.service = SparqlService(lambda: self.reasoner.asserted(), self.news.put)
+
+    def commit(self, insert=(), retract=()):
+        insert, retract = tuple(insert), tuple(retract)
+        self.reasoner.apply(delete=retract, insert=insert)
+        self.seq += 1
+        self.service.follow(
+            Commit(seq=self.seq, stamp_ns=0, id="", source="operator", inserted=insert, retracted=retract)
+        )
+
+    def replace(self, triples):
+        """Another TBox."""
+        self.reasoner = Reasoner(triples)
+        self.seq += 1
+        self.service.follow(Commit(seq=self.seq, stamp_ns=0, id="", source="operator", tbox=True))
+
+    def ask(self, query, **fields):
+        return self.service.ask(Sparql(query=query, **fields), self.seq).result(WAIT_S)
+
+    def watch(self, query, **fields):
+        return self.service.ask(Watch(query=query, **fields), self.seq).result(WAIT_S)
+
+    def renew(self, watch, **fields):
+        return self.service.ask(Renew(watch=watch, **fields), self.seq).result(WAIT_S)
+
+    def hear(self):
+        return self.news.get(timeout=WAIT_S)
+
+
+@pytest.fixture
+def at_home():
+    made = Home(home.TBOX)
+    yield made
+    made.service.close()
+
+
+@pytest.fixture
+def flat():
+    files = (HOUSEHOLD_TTL, FLAT_TTL)
+    made = Home(
+        [t for file in files for t in rdf_files.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
+    )
+    yield made
+    made.service.close()
+
+
+def iri(name):
+    return v.entity_iri(name)
+
+
+def chair(name):
+    return stars.star(name, v.dm("Chair"), pose=Pose(position_m=(1.0, 2.0, 0.0)))
+
+
+CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"
+SEATS = "SELECT ?c { ?c a dm:Seat } ORDER BY ?c"
+
+
+def test_every_commit_before_the_question_is_seen(at_home):
+    for number in range(20):
+        at_home.commit(chair(f"c{number:02}"))
+        result = at_home.ask(CHAIRS)
+        assert result.rows == tuple((iri(f"c{n:02}"),) for n in range(number + 1))
+        assert result.seq == at_home.seq
+    assert not at_home.ask(SEATS).rows
+    assert len(at_home.ask(SEATS, inferred=True).rows) == 20
+    at_home.commit(retract=chair("c00"))
+    assert len(at_home.ask(SEATS, inferred=True).rows) == len(at_home.ask(CHAIRS).rows) == 19
+
+
+QUERIES = [
+    "SELECT ?x ?c { ?x a ?c }",
+    "SELECT ?x { ?x a dm:Seat }",
+    "SELECT ?x ?p ?y { ?x ?p ?y }",
+    "SELECT ?x ?r { ?x dm:isLocatedIn ?r }",
+    "SELECT ?r (COUNT(?x) AS ?n) { ?r dm:contains ?x } GROUP BY ?r",
+    "SELECT ?x { ?x a dm:Object FILTER NOT EXISTS { ?x dm:isLocatedIn ?r } }",
+    "SELECT ?c { ?c rdfs:subClassOf dm:Object }",
+    "SELECT ?x ?y { ?x (dm:isOn|^dm:supports)+ ?y }",
+]
+
+
+def test_with_what_follows_it_is_the_query_over_the_full_materialisation(flat):
+    dice = random.Random(7)
+    names = [name for name in ("kitchen1", "fridge1", "table1", "chair1", "chair2") if _is_there(flat, name)]
+    own = []
+    for round_ in range(8):
+        truth = ox.Store()
+        document = "".join(
+            f"{s} {p} {o} .\n" for s, p, o in {*flat.reasoner.asserted(), *inferred(flat.reasoner)}
+        )
+        truth.bulk_extend(ox.Quad(*q.triple) for q in ox.parse(document.encode(), ox.RdfFormat.N_TRIPLES))
+        for query in QUERIES:
+            expected = truth.query(query, prefixes=text.PREFIXES)
+            found = flat.ask(query, inferred=True, limit=100_000)
+            assert sorted(found.rows) == sorted(tuple(map(str, row)) for row in expected), query
+        for _ in range(3):
+            insert = [(iri(f"n{round_}"), v.RDF_TYPE, v.dm(dice.choice(["Cup", "Chair", "Shelf"])))]
+            insert += [(iri(f"n{round_}"), v.dm("isOn"), iri(dice.choice(names)))]
+            insert += [(iri(dice.choice(names)), v.dm("touches"), iri(dice.choice(names)))]
+            retract = dice.sample(own, min(len(own), 2))
+            said = [t for t in insert if not any(True for _ in flat.reasoner.asserted(*t))]
+            try:
+                flat.commit(said, retract)
+            except Inconsistent:
+                continue
+            own = [t for t in own if t not in retract] + said
+    assert len(own) > 5
+
+
+def _is_there(flat, name):
+    return any(True for _ in flat.reasoner.asserted(iri(name), None, None))
+
+
+def test_what_runs_for_ever_is_cancelled_and_others_are_answered_meanwhile(flat):
+    flat.ask(CHAIRS)
+    endless = flat.service.ask(Sparql(query=FOR_EVER, timeout=3.0), 0)
+    start = time.monotonic()
+    for _ in range(10):
+        assert flat.ask(CHAIRS).rows
+    assert time.monotonic() - start < 2.0
+    with pytest.raises(errors.Refused, match="the query was cancelled after 3 s"):
+        endless.result(WAIT_S)
+    assert flat.ask(CHAIRS).rows
+
+
+def test_more_questions_than_readers_are_answered_in_turn(flat):
+    asked = [flat.service.ask(Sparql(query=FOR_EVER, timeout=0.3), 0) for _ in range(6)]
+    last = flat.service.ask(Sparql(query=CHAIRS), 0)
+    for future in asked:
+        with pytest.raises(errors.Refused, match=r"cancelled after 0.3 s"):
+            future.result(WAIT_S)
+    assert last.result(WAIT_S).rows
+
+
+def test_what_needs_all_memory_is_cancelled(flat):
+    with pytest.raises(errors.Refused, match=r"cancelled: it needs more than 1024 MB|cancelled after"):
+        flat.ask(GREEDY, timeout=30.0)
+    assert flat.ask(CHAIRS).rows
+
+
+def test_an_answer_that_is_too_long_is_refused(at_home):
+    at_home.commit(chair("c"))
+    doubled = "".join(f"BIND(CONCAT(?s{n}, ?s{n}) AS ?s{n + 1}) " for n in range(24))
+    with pytest.raises(errors.Refused, match=f"longer than {readers.ANSWER_BYTES >> 20} MB"):
+        at_home.ask(f'SELECT ?s24 {{ BIND("abcd" AS ?s0) {doubled} }}')
+    assert at_home.ask(CHAIRS).rows
+
+
+def test_rows_come_and_go_with_their_commits(at_home):
+    at_home.commit(chair("a"))
+    watching = at_home.watch(SEATS, inferred=True, watch="seats")
+    assert (watching.watch, watching.rows, watching.seq) == ("seats", ((iri("a"),),), 1)
+    at_home.commit(chair("b"))
+    at_home.commit([(iri("b"), v.dm("hasSize"), iri("s"))])
+    at_home.commit(chair("c"), chair("a"))
+    gained, changed = at_home.hear().rows, at_home.hear().rows
+    assert (gained.seq, gained.since, gained.appeared, gained.disappeared) == (2, 1, ((iri("b"),),), ())
+    assert (changed.seq, changed.appeared, changed.disappeared) == (4, ((iri("c"),),), ((iri("a"),),))
+    assert at_home.renew("seats", end=True).text == "seats has ended"
+    assert at_home.hear().ended
+    with pytest.raises(errors.UnknownName):
+        at_home.renew("seats")
+
+
+def test_a_burst_of_commits_is_told_one_by_one(at_home):
+    at_home.watch(CHAIRS)
+    for number in range(50):
+        at_home.commit(chair(f"c{number}"))
+    heard = [at_home.hear().rows for _ in range(50)]
+    assert [(rows.seq, rows.appeared) for rows in heard] == [(n + 1, ((iri(f"c{n}"),),)) for n in range(50)]
+
+
+def test_the_lease_of_a_standing_query_ends(at_home):
+    at_home.watch(CHAIRS, watch="w", lease=1.0)
+    with pytest.raises(errors.NameTaken):
+        at_home.watch(CHAIRS, watch="w")
+    assert at_home.hear().ended
+    at_home.watch(CHAIRS, watch="w")
+
+
+def test_a_standing_query_that_takes_too_long_is_refused(flat):
+    with pytest.raises(errors.Refused, match="cancelled after 2 s"):
+        flat.watch(FOR_EVER)
+    assert flat.watch(CHAIRS).rows
+
+
+def test_a_standing_query_that_gets_too_many_rows_ends_with_the_reason(at_home):
+    everything = "SELECT * { ?door a dm:Door . ?a ?b ?c . ?d ?e ?f . ?g ?h ?i }"
+    assert at_home.watch(everything, watch="w").rows == ()
+    at_home.commit([(iri("door"), v.RDF_TYPE, v.dm("Door"))])
+    news = at_home.hear()
+    assert news.ended
+    assert "more than 10000 rows" in news.rows.error
+
+
+def test_after_its_process_was_killed_a_new_one_answers(at_home):
+    at_home.commit(chair("a"))
+    at_home.ask(CHAIRS)
+    endless = at_home.service.ask(Sparql(query=FOR_EVER, timeout=60.0), 1)
+    os.kill(at_home.service._worker._process.pid, signal.SIGKILL)
+    with pytest.raises(errors.Refused, match="ask again"):
+        endless.result(WAIT_S)
+    at_home.commit(chair("b"))
+    assert len(at_home.ask(CHAIRS).rows) == 2
+
+
+def test_another_tbox_is_followed(at_home):
+    at_home.commit(chair("a"))
+    at_home.watch(SEATS, inferred=True)
+    no_seat = (v.dm("Chair"), v.RDFS_SUB_CLASS_OF, v.dm("Seat"))
+    at_home.replace([t for t in at_home.reasoner.asserted() if t != no_seat])
+    news = at_home.hear().rows
+    assert (news.seq, news.since, news.disappeared) == (2, 1, ((iri("a"),),))
+    assert not at_home.ask(SEATS, inferred=True).rows
+    assert at_home.ask(CHAIRS).rows
+
+
+def test_nothing_is_started_before_the_first_question(at_home):
+    at_home.commit(chair("a"))
+    with pytest.raises(errors.UnknownName):
+        at_home.renew("w")
+    assert at_home.service._worker is None
