@@ -80,8 +80,9 @@ def of_wire(wire: Wire) -> list[Row]:
     bounds = ((None, None), (None, None)) if wire.sim else ((2.0, 10.0), (1.0, 4.0))
     rows = _pair(f"over Zenoh: add, {where}", wire.add, *bounds)
     rows += _pair(f"over Zenoh: move, {where}", wire.move, *bounds)
-    least = (None, None) if wire.sim else (1000.0, 3000.0)
-    rows.append(Row(f"sustained durable moves, {where}", wire.sustained_moves_per_s, "/s", *least, more=True))
+    least: Bounds = (None, None) if wire.sim else (1000, 3000)
+    sustained = wire.sustained_moves_per_s
+    rows.append(Row(f"sustained durable moves, {where}", sustained, "/s", least[0], least[1], more=True))
     rows.append(Row(f"list all over Zenoh, {where}, p50", wire.list_all["p50_ms"], "ms"))
     rows.append(Row(f"SPARQL look-up, {where}, p50", wire.sparql["p50_ms"], "ms", None if wire.sim else 1))
     rows.append(Row(f"semmap up to ready, {where}", wire.start_s, "s"))
