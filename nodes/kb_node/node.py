@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import uuid
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -294,7 +295,10 @@ def run(config: KbConfig) -> None:
     with open_node("kb_node", config.network) as node:
         journal = Journal(path)
         try:
+            gc.disable()  # a start makes much and drops little
             knowledge_base = KnowledgeBase(node, journal)
+            gc.freeze()  # and what it made stays: the collector need not look through it again
+            gc.enable()
             node.run()
             knowledge_base.close()
         finally:
