@@ -16,8 +16,8 @@ from schemas.sparql import RowsChanged
 class Load(Struct, frozen=True, kw_only=True, tag=True):
     """All that is asserted after commit `seq`; with `infers`, what follows is wanted, too.
 
-    The first message, and the one that comes when commits alone do not tell: when what follows is asked for the
-    first time, and when the TBox is another.
+    The first message, and the one that comes when commits alone do not tell: when what follows is asked for
+    the first time, and when the TBox is another.
     """
 
     seq: int
