@@ -89,8 +89,11 @@ def ask(
     *,
     timeout_s: float = TIMEOUT_S,
     patience_s: float = PATIENCE_S,
+    meanwhile: Callable[[], None] | None = None,
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
+
+    `meanwhile` is called again and again while the answer takes its time.
 
     Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
     that does takes longer than `timeout_s`.
@@ -99,11 +102,25 @@ def ask(
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline = time.monotonic() + patience_s
     while True:
-        for reply in session.get(key, payload=payload, encoding=encoding, timeout=timeout_s):
+        replies = session.get(key, payload=payload, encoding=encoding, timeout=timeout_s)
+        for reply in replies if meanwhile is None else _polled(replies, meanwhile):
             return read_reply(key, reply, kind, timeout_s)
         if time.monotonic() > deadline:
             raise _nobody(key)
         time.sleep(0.05)
+
+
+def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:
+    while True:
+        try:
+            reply = replies.try_recv()
+        except zenoh.ZError:  # there will be no more
+            return
+        if reply is not None:
+            yield reply
+        else:
+            meanwhile()
+            time.sleep(0.02)
 
 
 def ask_later(
@@ -243,6 +260,12 @@ def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None)
         sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5),
         publisher_detection=True,
     )
+
+
+def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
+    """A function that tells whether anybody follows any key of `topic` just now."""
+    publisher = session.declare_publisher(topic.key)
+    return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
 
 
 def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, Any], None]) -> Any:

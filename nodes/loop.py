@@ -38,6 +38,7 @@ class Node:
         self.session = session
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._timers: list[tuple[float, Callable[[], None]]] = []
+        self._idle: list[Callable[[], None]] = []
         self._stopping = False
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
@@ -64,9 +65,16 @@ class Node:
         """Call `handle()` each `period_s`, as well as the load allows."""
         self._timers.append((period_s, handle))
 
-    def ask(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Any:
-        """`bus.ask` on this node's session; the heartbeat waits meanwhile."""
-        return bus.ask(self.session, prefix, verb, message, kind, **limits)
+    def when_idle(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` each time that no event waits: what handlers have put off is done then."""
+        self._idle.append(handle)
+
+    def ask(
+        self, prefix: str, verb: str, message: Any, kind: Any, *, beating: bool = False, **limits: float
+    ) -> Any:
+        """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
+        meanwhile = self.beat if beating else None
+        return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
 
     def ask_later(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Future[Any]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread."""
@@ -101,13 +109,13 @@ class Node:
             self._state = "ready"
             self._token = self.session.liveliness().declare_token(keys.live_key(self.name, str(os.getpid())))
             log.info("ready: %s", detail)
+            self._beat_due = 0.0
         self.describe(detail)
+        self.beat()
 
     def describe(self, detail: str) -> None:
-        """What the heartbeat says of the node's state, from now on."""
-        if detail != self._detail:
-            self._detail, self._beat_due = detail, 0.0
-            self.beat()
+        """What the heartbeats say of the node's state, from the next one on."""
+        self._detail = detail
 
     def report(self, text: str) -> None:
         """Log an error and show it in the heartbeat."""
@@ -126,6 +134,9 @@ class Node:
             for i, (period_s, handle) in enumerate(self._timers):
                 if now >= due[i]:
                     due[i] = max(due[i] + period_s, now)
+                    self._guard(handle)
+            if self._events.empty():
+                for handle in self._idle:
                     self._guard(handle)
             self.beat()
             wait_s = max(0.0, min([self._beat_due, *due]) - time.monotonic())
@@ -184,6 +195,19 @@ def _resolve(future: Future[Any], reply: Any) -> None:
         future.set_exception(reply)
     else:
         future.set_result(reply)
+
+
+def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
+    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
+    try:
+        result = execute()
+    except Exception as error:
+        future.set_exception(error)
+        return
+    if isinstance(result, Future):
+        result.add_done_callback(lambda done: settle(future, done.result))
+    else:
+        future.set_result(result)
 
 
 def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:

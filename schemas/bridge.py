@@ -29,6 +29,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
+from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation
 from schemas.sparql import SparqlResult, Watching
 
@@ -41,6 +42,21 @@ class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The stars of these entities; UnknownName if one is not there."""
 
     names: tuple[str, ...]
+    together: bool = True
+    """What only they use counts as their own; if not, only what one of them uses alone is its own."""
+
+
+class Transactions(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Several changes, each accepted or refused by itself in this order, and made durable together."""
+
+    transactions: tuple[Transaction, ...]
+
+
+class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What became of one of several changes: an error, or else the commit (None when it changed nothing)."""
+
+    commit: Commit | None = None
+    error: ErrorMessage | None = None
 
 
 class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -72,10 +88,12 @@ class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     commit: Commit | None
     skipped: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
 
 BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "commit": (Transaction, Commit | None),
+    "commits": (Transactions, tuple[Outcome, ...]),
     "load": (LoadDocument, Loaded),
     "snapshot": (SnapshotQuery, Snapshot),
     "star": (StarQuery, tuple[Star, ...]),

@@ -6,6 +6,9 @@ from typing import Literal
 
 from msgspec import Struct
 
+LOADING = "loading"
+"""With this word the knowledge base's detail begins while it loads a file."""
+
 
 class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Sent once a second by the thread that owns a node's state, so a hung node falls silent."""

@@ -66,11 +66,13 @@ class System:
         return out.getvalue() + err.getvalue()
 
     @contextlib.contextmanager
-    def spawned(self, *words: str) -> Iterator[subprocess.Popen[str]]:
+    def spawned(self, *words: str, **streams: int) -> Iterator[subprocess.Popen[str]]:
         """`semmap WORDS` as a process of its own; ended with Ctrl-C."""
         environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
         command = [_BIN / "semmap", *words]
-        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(
+            command, env=environment, stdout=subprocess.PIPE, text=True, **streams
+        ) as process:
             try:
                 yield process
             finally:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import functools
 import uuid
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from msgspec import structs
 
@@ -20,6 +20,7 @@ from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.hands import Hands
 from nodes.coordinator.naming import free_name, free_position
+from nodes.coordinator.talking import Ask, Question, Talk, hold, hold_all
 from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
 from schemas.commands import Add, Changed, Classes, Clear, Command, Load, Remove, Undo, Update
@@ -39,14 +40,15 @@ D = TypeVar("D", bound="Door")
 C = TypeVar("C", bound=Command)
 
 
-def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
+def once(change: Callable[[D, C], Talk[Changed]]) -> Callable[[D, C], Talk[Changed]]:
     """A command that is sent again under the same id is answered with its first result."""
 
     @functools.wraps(change)
-    def execute(door: D, command: C) -> Changed:
+    def execute(door: D, command: C) -> Talk[Changed]:
         if not command.id:
-            return change(door, structs.replace(command, id=_new_id()))
-        return door.done_before(command) or change(door, command)
+            return (yield from change(door, structs.replace(command, id=_new_id())))
+        done: Changed | None = yield from door.done_before(command)
+        return done or (yield from change(door, command))
 
     return execute
 
@@ -54,7 +56,7 @@ def once(change: Callable[[D, C], Changed]) -> Callable[[D, C], Changed]:
 class Door:
     """Executes the commands that change the map. Owned by the coordinator's thread."""
 
-    def __init__(self, ask: Callable[[str, Any], Any]) -> None:
+    def __init__(self, ask: Ask) -> None:
         """`ask(verb, message)` asks the knowledge base."""
         self._ask = ask
         self.classes = ClassNames()
@@ -86,9 +88,55 @@ class Door:
         self.entities.update({entity.name: entity for entity in commit.changed})
         return True
 
-    @once
     def add(self, command: Add) -> Changed:
         """Put an entity into the map."""
+        return hold(self._add(command), self._ask)
+
+    def update(self, command: Update) -> Changed:
+        """Change what is named; what is not named stays."""
+        return hold(self._update(command), self._ask)
+
+    def change_together(self, commands: Sequence[Add | Update]) -> list[Changed | errors.SemmapError]:
+        """Like `add` and `update` one after the other, with fewer questions to the knowledge base."""
+        return [
+            result
+            for group in _independent(commands)
+            for result in hold_all([self._changing(command) for command in group], self._ask)
+        ]
+
+    def remove(self, command: Remove) -> Changed:
+        """Take entities out: all of them, or, if one is unknown, none."""
+        return hold(self._remove(command), self._ask)
+
+    def clear(self, command: Clear) -> Changed:
+        """Take every entity out."""
+        return hold(self._clear(command), self._ask)
+
+    def load(self, command: Load) -> Changed:
+        """Add what a file describes."""
+        return hold(self._load(command), self._ask)
+
+    def undo(self, command: Undo) -> Changed:
+        """Take back a commit."""
+        return hold(self._undo(command), self._ask)
+
+    def follow(self, name: str, pose: Pose) -> None:
+        """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
+        hand = self.hands.that_moved(name)
+        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
+
+        def build(suffix: str) -> Talk[Transaction]:
+            (star,) = yield from _stars((name,))
+            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
+            return structs.replace(update, verb=hand.verb)
+
+        hold(self._commit(build), self._ask)
+
+    def _changing(self, command: Add | Update) -> Talk[Changed]:
+        return self._add(command) if isinstance(command, Add) else self._update(command)
+
+    @once
+    def _add(self, command: Add) -> Talk[Changed]:
         found = self.classes.spatial(command.class_)
         name = command.name or free_name(found.name, self.entities)
         if name in self.entities:
@@ -96,7 +144,12 @@ class Door:
         at = command.at or free_position(self.entities.values(), command.size)
         pose = pose_of(at, command.yaw, command.orientation)
         ref = command.ref or (_label(found) if command.default else None)
-        commit = self._commit(lambda suffix: transactions.add(command, name, found, pose, ref, suffix))
+
+        def build(suffix: str) -> Talk[Transaction]:
+            return transactions.add(command, name, found, pose, ref, suffix)
+            yield  # nothing to ask
+
+        commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"added {found.name} {name} at {_metres(pose)}",
@@ -105,21 +158,20 @@ class Door:
         )
 
     @once
-    def update(self, command: Update) -> Changed:
-        """Change what is named; what is not named stays."""
+    def _update(self, command: Update) -> Talk[Changed]:
         entity = self.entity(command.name)
         found = self.classes.spatial(command.class_) if command.class_ is not None else None
         changes = (found, command.ref, command.alt, command.size)
         if any(change is not None for change in changes):
             require_authority(command, [entity])
 
-        def build(suffix: str) -> Transaction:
-            (star,) = self._stars((entity.name,))
+        def build(suffix: str) -> Talk[Transaction]:
+            (star,) = yield from _stars((entity.name,))
             return transactions.update(
                 command, self.entity(entity.name), star, found, self._pose(command), suffix
             )
 
-        commit = self._commit(build)
+        commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"updated {entity.name}" if commit else f"{entity.name} is like that already",
@@ -128,32 +180,29 @@ class Door:
         )
 
     @once
-    def remove(self, command: Remove) -> Changed:
-        """Take entities out: all of them, or, if one is unknown, none."""
+    def _remove(self, command: Remove) -> Talk[Changed]:
         if not command.names:
             raise errors.BadRequest("name at least one entity to remove")
         leaving = [self.entity(name) for name in dict.fromkeys(command.names)]
         require_authority(command, leaving)
-        return self._remove(command, f"remove {' '.join(e.name for e in leaving)}", leaving)
+        return (yield from self._take_out(command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
     @once
-    def clear(self, command: Clear) -> Changed:
-        """Take every entity out."""
+    def _clear(self, command: Clear) -> Talk[Changed]:
         require_authority(command, self.entities.values())
-        return self._remove(command, "clear", list(self.entities.values()))
+        return (yield from self._take_out(command, "clear", list(self.entities.values())))
 
     @once
-    def load(self, command: Load) -> Changed:
-        """Add what a file describes."""
+    def _load(self, command: Load) -> Talk[Changed]:
         if command.source == "operator":
             command = structs.replace(command, source="file")
         if command.tbox:
-            return self._load_tbox(command)
+            return (yield from self._load_tbox(command))
         if command.replace:
             require_authority(command, self.entities.values())
         kind = kind_of(command.content, command.filename)
         if kind == "abox":
-            return self._load_document(command)
+            return (yield from self._load_document(command))
         described = READERS[kind](command.content, command.filename)
         known, skipped, notes = self._sort_out(described, skip_unknown=command.skip_unknown)
         taken = set() if command.replace else set(self.entities)
@@ -168,21 +217,23 @@ class Door:
             taken.add(name)
             names.append(name)
             insert.update(dict.fromkeys(transactions.describe(name, found, item)))
-        gone = self._stars(tuple(self.entities)) if command.replace and self.entities else ()
-        commit = self._commit(
-            lambda _: transactions.transaction(
+        gone = (yield from _stars(tuple(self.entities))) if command.replace and self.entities else ()
+
+        def build(_: str) -> Talk[Transaction]:
+            return transactions.transaction(
                 command,
                 f"load {command.filename}",
                 retract=[t for star in gone for t in (*star.own, *star.incoming)],
                 insert=insert,
             )
-        )
+            yield  # nothing to ask
+
+        commit = yield from self._commit(build)
         return _loaded(command, commit, tuple(names), skipped, notes)
 
     @once
-    def undo(self, command: Undo) -> Changed:
-        """Take back a commit."""
-        commit: Commit = self._ask("undo", command)
+    def _undo(self, command: Undo) -> Talk[Changed]:
+        commit: Commit = yield Question("undo", command)
         self._taken(commit)
         first, *settling = commit.undoes
         text = f"took back commit {first}" + (
@@ -190,27 +241,16 @@ class Door:
         )
         return Changed(commit=commit.seq, text=text, names=commit.names)
 
-    def follow(self, name: str, pose: Pose) -> None:
-        """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
-        hand = self.hands.that_moved(name)
-        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
-
-        def build(suffix: str) -> Transaction:
-            (star,) = self._stars((name,))
-            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
-            return structs.replace(update, verb=hand.verb)
-
-        self._commit(build)
-
-    def done_before(self, command: Command) -> Changed | None:
+    def done_before(self, command: Command) -> Talk[Changed | None]:
         """The result of the command with this id, if there was one."""
-        commit: Commit | None = self._ask("commit", Transaction(id=command.id, source=command.source))
+        nothing = Transaction(id=command.id, source=command.source)
+        commit: Commit | None = yield Question("commit", nothing)
         if commit is None:
             return None
         names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
         return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
-    def _load_document(self, command: Load) -> Changed:
+    def _load_document(self, command: Load) -> Talk[Changed]:
         document = LoadDocument(
             id=command.id,
             source=command.source,
@@ -221,11 +261,11 @@ class Door:
             replace=command.replace,
             skip_unknown=command.skip_unknown,
         )
-        loaded: Loaded = self._ask("load", document)
+        loaded: Loaded = yield Question("load", document)
         names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
-        return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
+        return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, loaded.notes)
 
-    def _load_tbox(self, command: Load) -> Changed:
+    def _load_tbox(self, command: Load) -> Talk[Changed]:
         if command.replace or command.skip_unknown:
             raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
         require_operator(command, "replace the TBox")
@@ -237,9 +277,9 @@ class Door:
             content=command.content,
             filename=command.filename,
         )
-        commit: Commit = self._ask("load-tbox", order)
+        commit: Commit = yield Question("load-tbox", order)
         self._taken(commit)
-        self.classes = ClassNames(self._ask("classes", Classes()))
+        self.classes = ClassNames((yield Question("classes", Classes())))
         text = f"{len(self.classes.by_name)} classes from {command.filename or 'the file'}"
         return Changed(commit=commit.seq, text=text, names=commit.names)
 
@@ -263,11 +303,15 @@ class Door:
         skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
         return known, skipped, tuple(notes)
 
-    def _remove(self, command: Command, reason: str, leaving: list[Entity]) -> Changed:
+    def _take_out(self, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
         names = tuple(entity.name for entity in leaving)
         if not names:
             return Changed(commit=None, text="the map is empty already")
-        commit = self._commit(lambda _: transactions.remove(command, reason, self._stars(names)))
+
+        def build(_: str) -> Talk[Transaction]:
+            return transactions.remove(command, reason, (yield from _stars(names)))
+
+        commit = yield from self._commit(build)
         return Changed(commit=_seq(commit), text=f"removed {len(names)}: {_few(names)}", names=names)
 
     def _pose(self, command: Update) -> Pose | None:
@@ -279,17 +323,13 @@ class Door:
             raise errors.BadRequest(f"{command.name} has no position yet; give one with --at")
         return pose_of(at, command.yaw, command.orientation, before)
 
-    def _stars(self, names: tuple[str, ...]) -> tuple[Star, ...]:
-        stars: tuple[Star, ...] = self._ask("star", StarQuery(names=names))
-        return stars
-
-    def _commit(self, build: Callable[[str], Transaction]) -> Commit | None:
+    def _commit(self, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
         """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
         suffix = ""
         for attempt in range(_ATTEMPTS):
-            transaction = build(suffix)
+            transaction = yield from build(suffix)
             try:
-                return self._taken(self._ask("commit", transaction))
+                return self._taken((yield Question("commit", transaction)))
             except errors.PreconditionFailed:
                 if attempt == _ATTEMPTS - 1:
                     raise
@@ -303,6 +343,32 @@ class Door:
         if commit is not None:
             self.take(commit)
         return commit
+
+
+def _stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
+    stars: tuple[Star, ...] = yield Question("star", StarQuery(names=names))
+    return stars
+
+
+def _independent(commands: Iterable[Add | Update]) -> Iterator[list[Add | Update]]:
+    """The commands in runs of which no one depends on another: each of an entity of its own.
+
+    An entity without a name or a place gets one that suits the others, so it goes alone.
+    """
+    run: list[Add | Update] = []
+    names: set[str] = set()
+    for command in commands:
+        alone = isinstance(command, Add) and (command.name is None or command.at is None)
+        if run and (alone or command.name in names):
+            yield run
+            run, names = [], set()
+        run.append(command)
+        names.add(command.name or "")
+        if alone:
+            yield run
+            run, names = [], set()
+    if run:
+        yield run
 
 
 def _new_id() -> str:

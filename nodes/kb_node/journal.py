@@ -158,6 +158,20 @@ class Journal:
                 self._db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
 
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """What is appended within becomes durable at its end, with one wait for the disk.
+
+        Raises NotWritten, with none of it written, when the disk does not take it.
+        """
+        digest = self._digest
+        try:
+            with self._writing("several commits"):
+                yield
+        except BaseException:
+            self._digest = digest
+            raise
+
     def commits(self, after: int = 0) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
         return (codec.decode(body, Commit) for body in self._bodies(after))
@@ -292,9 +306,12 @@ class Journal:
 
     @contextmanager
     def _writing(self, what: str) -> Iterator[None]:
-        """One transaction of the file: all of it or nothing."""
+        """One transaction of the file, or a part of the one that is open: all of it or nothing."""
         try:
             with self._lock:
+                if self._db.in_transaction:
+                    yield
+                    return
                 self._db.execute("BEGIN IMMEDIATE")
                 try:
                     yield

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import TypeVar
 
 from nodes import bus
@@ -17,7 +17,16 @@ from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.loop import Node, open_node
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, Loaded, LoadTBox, SnapshotQuery, StarQuery
+from schemas.bridge import (
+    BRIDGE,
+    LoadDocument,
+    Loaded,
+    LoadTBox,
+    Outcome,
+    SnapshotQuery,
+    StarQuery,
+    Transactions,
+)
 from schemas.commands import (
     Check,
     Checked,
@@ -41,7 +50,8 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Explanation
+from schemas.explanations import Explanation, Triple
+from schemas.health import LOADING
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
@@ -57,6 +67,7 @@ class KnowledgeBase:
         self._past = past.Past(journal)
         self.map = SemanticMap(journal, progress=node.beat)
         self._commits = bus.publisher(node.session, keys.COMMIT)
+        self._entities_are_watched = bus.watched(node.session, keys.ENTITY)
         self._published = {entity.name: entity.types for entity in self.map.entities()}
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
@@ -83,19 +94,52 @@ class KnowledgeBase:
         try:
             commit = change()
         except NotWritten as error:
-            self._node.report(error.text)
-            self._node.describe(f"{self._summary()}; the disk takes no commits")
+            self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._publish(commit)
-            self._sparql.follow(commit)
+            self._spread(commit)
         return commit
+
+    def _not_written(self, error: NotWritten) -> None:
+        self._node.report(error.text)
+        self._node.describe(f"{self._summary()}; the disk takes no commits")
+
+    def _spread(self, commit: Commit) -> None:
+        self._publish(commit)
+        self._sparql.follow(commit)
+
+    def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
+        """Several transactions, each by itself: journal (durable, once for all), publish, reply.
+
+        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        """
+        for transaction in several.transactions:
+            terms.require_triples(transaction.insert)
+        before = self.map.seq
+        results = self.map.commit_together(several.transactions)
+        for error in results:
+            if isinstance(error, NotWritten):
+                self._not_written(error)
+        new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
+        for commit in new.values():
+            self._spread(commit)
+        return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit."""
         label = f"f{uuid.uuid4().hex[:8]}"
-        triples = rdf_files.parse(load.content, load.filename, label_prefix=label)
-        kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
+        with self._telling_of(load.filename) as tell:
+            triples = rdf_files.parse(
+                load.content,
+                load.filename,
+                label_prefix=label,
+                progress=lambda count: tell(f"{count:,} triples read"),
+            )
+            tell(f"{len(triples):,} triples to check and write")
+            return self._load(load, triples)
+
+    def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
+        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
         transaction = Transaction(
             id=load.id,
             source=load.source,
@@ -103,9 +147,18 @@ class KnowledgeBase:
             verb="load",
             reason=load.reason,
             retract=tuple(self.map.abox()) if load.replace else (),
-            insert=tuple(t for t in kept if t not in self.map.tbox),
+            insert=tuple(t for t in sorted_out.triples if t not in self.map.tbox),
         )
-        return Loaded(commit=self._commit(transaction), skipped=tuple(skipped))
+        commit = self._commit(transaction)
+        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+
+    @contextmanager
+    def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
+        """Lets the heartbeat tell how far the loading of a file is."""
+        try:
+            yield lambda text: self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+        finally:
+            self._node.describe(self._summary())
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
         """Every entity, as of the last commit."""
@@ -113,7 +166,7 @@ class KnowledgeBase:
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
-        return self.map.stars(query.names)
+        return self.map.stars(query.names, together=query.together)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
@@ -202,16 +255,22 @@ class KnowledgeBase:
     def _publish(self, commit: Commit) -> None:
         """The commit, and under each of its classes the entity or, where it is no more, a delete."""
         self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
+        if self._entities_are_watched():
+            for gone in commit.removed:
+                self._unpublish(gone.name, self._published.get(gone.name, gone.types))
+            for entity in commit.changed:
+                self._publish_entity(entity)
         for gone in commit.removed:
-            self._unpublish(gone.name, self._published.pop(gone.name, gone.types))
-        for entity in commit.changed:
-            lost = set(self._published.get(entity.name, ())).difference(entity.types)
-            self._unpublish(entity.name, sorted(lost))
-            payload, encoding = codec.encode(entity), codec.encoding_of(entity)
-            for class_name in entity.types:
-                self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
-            self._published[entity.name] = entity.types
+            self._published.pop(gone.name, None)
+        self._published.update((entity.name, entity.types) for entity in commit.changed)
         self._node.describe(self._summary())
+
+    def _publish_entity(self, entity: Entity) -> None:
+        lost = set(self._published.get(entity.name, ())).difference(entity.types)
+        self._unpublish(entity.name, sorted(lost))
+        payload, encoding = codec.encode(entity), codec.encoding_of(entity)
+        for class_name in entity.types:
+            self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
 
     def _unpublish(self, name: str, class_names: Iterable[str]) -> None:
         for class_name in class_names:
@@ -219,6 +278,12 @@ class KnowledgeBase:
 
     def _summary(self) -> str:
         return f"{len(self.map)} entities, {len(self.map.reasoner)} triples, commit {self.map.seq}"
+
+
+def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
+    if isinstance(result, errors.SemmapError):
+        return Outcome(error=errors.to_message(result))
+    return Outcome(commit=result)
 
 
 def run(config: KbConfig) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from xml.parsers import expat
 
 import pyoxigraph
@@ -30,6 +30,7 @@ MEDIA_TYPES: dict[str, str] = {
     "ntriples": "application/n-triples",
     "jsonld": "application/ld+json",
 }
+_TOLD_EVERY = 50_000
 _BOM = b"\xef\xbb\xbf"
 _XML = re.compile(rb"\s*<(\?xml|!DOCTYPE|!--|[\w.:-]+\s[^>]*\bxmlns)")
 _JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
@@ -43,10 +44,12 @@ def syntax_of(content: bytes) -> RdfFormat:
     return "jsonld" if _JSON.match(content) else "turtle"
 
 
-def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Triple]:
+def parse(
+    content: bytes, filename: str, *, label_prefix: str = "", progress: Callable[[int], None] = lambda _: None
+) -> list[Triple]:
     """The triples of a document. Blank nodes get `label_prefix`, so that those of two files do not meet.
 
-    Raises BadFile with the place of the fault.
+    `progress` is told now and then how many there are so far. Raises BadFile with the place of the fault.
     """
     name = filename or "the document"
     content = content.removeprefix(_BOM)
@@ -62,9 +65,23 @@ def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Trip
         if syntax == "rdfxml":
             _require_well_formed(content)
         quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
-        return [tuple(_term(term, label_prefix) for term in quad.triple) for quad in quads]  # type: ignore[misc]
+        return _triples(quads, label_prefix, progress)
     except (SyntaxError, ValueError) as error:
         raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {_reason(error)}") from None
+
+
+def _triples(
+    quads: Iterable[pyoxigraph.Quad], label_prefix: str, progress: Callable[[int], None]
+) -> list[Triple]:
+    """The triples as text; the same term is the same object, which is what bounds the memory of big files."""
+    terms: dict[str, str] = {}
+    triples: list[Triple] = []
+    for quad in quads:
+        s, p, o = (_term(term, label_prefix) for term in quad.triple)
+        triples.append((terms.setdefault(s, s), terms.setdefault(p, p), terms.setdefault(o, o)))
+        if len(triples) % _TOLD_EVERY == 0:
+            progress(len(triples))
+    return triples
 
 
 def _term(term: object, label_prefix: str) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from itertools import islice
 
 from msgspec import structs
 
 from nodes.kb_node import entities, rdf_files, tboxes
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Checkpoint, Journal, Marks
+from nodes.kb_node.journal import Checkpoint, Journal, Marks, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
@@ -18,6 +19,7 @@ from schemas.entities import ClassInfo, Entity, Provenance
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
+_FEW = 64
 
 
 class SemanticMap:
@@ -32,9 +34,10 @@ class SemanticMap:
     ) -> None:
         """Rebuild the map from `journal`; `reasoner` is one that holds its TBox and no more, if there is one.
 
-        Raises Refused when the journal is damaged.
+        `progress` is called between the steps of long work. Raises Refused when the journal is damaged.
         """
         self._journal = journal
+        self._progress = progress
         journal.verify(progress)
         start = journal.last_checkpoint()
         self.tbox = self._tbox_of(start.seq)
@@ -43,7 +46,7 @@ class SemanticMap:
         self._entities: dict[str, Entity] = {}
         self.seq = 0
         self._checkpointed = 0
-        self._replay(start, progress)
+        self._replay(start)
 
     # Asking
 
@@ -67,11 +70,17 @@ class SemanticMap:
         """Every entity, as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
-    def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
-        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
+    def stars(self, names: Iterable[str], *, together: bool = True) -> tuple[Star, ...]:
+        """The triples about some entities, taken together or each alone.
+
+        Raises UnknownName, Refused for the TBox's.
+        """
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
-        return tuple(entities.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris)
+        return tuple(
+            entities.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
+            for iri in iris
+        )
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
@@ -143,6 +152,34 @@ class SemanticMap:
 
         return self._switch(commit, new, make_durable)
 
+    def commit_together(
+        self, transactions: Sequence[Transaction]
+    ) -> list[Commit | errors.SemmapError | None]:
+        """Like `commit` for each by itself, in order, but durable together; errors are among the results.
+
+        When the disk does not take them, all are refused and the map is as before.
+        """
+        before, known = self.seq, self._entities.copy()
+        results: list[Commit | errors.SemmapError | None] = []
+        try:
+            with self._journal.together():
+                for transaction in transactions:
+                    try:
+                        results.append(self.commit(transaction))
+                    except NotWritten:
+                        raise
+                    except errors.SemmapError as error:
+                        results.append(error)
+        except BaseException as error:
+            made = {c.seq: c for c in results if isinstance(c, Commit) and c.seq > before}
+            for _, commit in sorted(made.items(), reverse=True):
+                self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+            self.seq, self._entities = before, known
+            if not isinstance(error, NotWritten):
+                raise
+            return [error] * len(transactions)
+        return results
+
     @property
     def checkpoint_is_due(self) -> bool:
         """Would the next start have much to replay?"""
@@ -168,8 +205,14 @@ class SemanticMap:
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
         named = {*transaction.require, *transaction.retract, *transaction.insert}
-        present = {s for s in {s for s, _, _ in named} if self._is_subject(s)}
-        return {t for t in named if t[0] in present and self.has(t)}
+        held: set[Triple] = set()
+        many: set[Term] = set()
+        for subject in {s for s, _, _ in named}:
+            said = list(islice(self.reasoner.asserted(subject), _FEW))
+            held.update(said)
+            if len(said) == _FEW:
+                many.add(subject)
+        return {t for t in named if t in held or (t[0] in many and self.has(t))}
 
     def _is_subject(self, term: Term) -> bool:
         return any(True for _ in self.reasoner.asserted(term))
@@ -182,7 +225,7 @@ class SemanticMap:
             if self._is_subject(term):
                 raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")
 
-    def _replay(self, start: Checkpoint, progress: Callable[[], None]) -> None:
+    def _replay(self, start: Checkpoint) -> None:
         self.reasoner.apply(insert=start.triples)
         self.seq = self._checkpointed = start.seq
         said_by_the_tbox = entities.of_the_tbox(self.reasoner, self.classes)
@@ -204,7 +247,7 @@ class SemanticMap:
                     self._apply(commit, lambda _: None)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
-            progress()
+            self._progress()
 
     def _tbox_of(self, seq: int) -> frozenset[Triple]:
         return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
@@ -291,6 +334,7 @@ class SemanticMap:
         removed: list[Departed] = []
         for iri in sorted(owners.union(touched)):
             known = self._known(iri)
+            self._progress()
             entity = self._read(iri, commit.provenance)
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []

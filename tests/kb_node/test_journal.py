@@ -155,7 +155,7 @@ def checkpoint(seq):
     return Checkpoint(
         seq=seq,
         triples=(("<urn:a>", "<urn:b>", "<urn:c>"),),
-        marks={"<urn:a>": Marks(any=seq, pose=seq, shape=seq)},
+        marks={"<urn:a>": Marks(any=seq, pose=seq, shape=seq, references=seq)},
         commits={seq: Provenance(commit=seq, stamp_ns=1, source="file")},
     )
 

@@ -96,7 +96,7 @@ REFUSED = {
     "no thing in space": (
         TBOX_TURTLE.replace("dm:Chair a owl:Class ; rdfs:subClassOf dm:Seat", "dm:Chair a owl:Class"),
         errors.Refused,
-        "chair1 would be no thing in space any more, because it does not say that Chair is a class of such",
+        "chair. would be no thing in space any more, because it does not say that Chair is a class of such",
     ),
     "inconsistent map": (
         TBOX_TURTLE + "dm:Chair owl:disjointWith dm:Seat .",

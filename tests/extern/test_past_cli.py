@@ -1,0 +1,128 @@
+"""The past, undo and the TBox through the command line and a whole system without a simulator."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from nodes.extern.client import connect
+from ontology import HOUSEHOLD_TTL
+from schemas import errors
+from tests.conftest import running
+
+DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
+MORE = f"""
+@prefix dm: <{DM}> . @prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+dm:Throne a owl:Class ; rdfs:subClassOf dm:Chair ; rdfs:label "throne"@en .
+"""
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    """Commits: 1 the seed, 2 chair1, 3 chair1 moved by perception, 4 chair2, 5 chair2 removed."""
+    with running(tmp_path_factory.mktemp("past"), "--abox", "none", "--no-record", "--no-sim") as system:
+        with connect(system.endpoint, agent="ann") as client:
+            client.add("Chair", "chair1", at=(1.0, 1.0, 0.0), ref="chair")
+            with connect(system.endpoint, source="perception", agent="camera") as camera:
+                camera.update("chair1", at=(2.0, 1.0, 0.0), confidence=0.5)
+            client.add("Chair", "chair2", at=(3.0, 1.0, 0.0))
+            client.remove("chair2")
+        yield system
+
+
+def test_history(system):
+    table = system.cli("history", "chair1", "--until", "5")
+    for word in ("operator/ann", "perception/camera", "0.50", "add Chair chair1", "2 commits"):
+        assert word in table
+    rows = json.loads(system.cli("history", "--until", "5", "--format", "json"))
+    assert [row["seq"] for row in rows] == [1, 2, 3, 4, 5]
+    assert [row["verb"] for row in rows] == ["", "add", "update", "add", "remove"]
+    assert rows[-1]["removed"] == ["chair2"]
+    assert "0 commits" in system.cli("history", "--until", "2001-01-01")
+
+
+def test_as_of(system):
+    then = json.loads(system.cli("list", "--class", "Chair", "--as-of", "4", "--format", "json"))
+    assert [e["name"] for e in then] == ["chair1", "chair2"]
+    first = json.loads(system.cli("get", "chair1", "--as-of", "2", "--format", "json"))
+    assert first["pose"]["position_m"] == [1.0, 1.0, 0.0]
+    time = json.loads(system.cli("history", "chair1", "--format", "json"))[1]["stamp_ns"] / 1e9 + 1e-4
+    at_that_time = json.loads(system.cli("get", "chair1", "--as-of", f"{time}", "--format", "json"))
+    assert at_that_time["pose"]["position_m"] == [2.0, 1.0, 0.0]
+    assert "chair2" in system.cli("list", "--as-of", "4")
+
+
+def test_last_seen(system):
+    said = system.cli("last-seen", "chair2")
+    assert "(3.000, 1.000, 0.000) m" in said
+    assert "commit 4" in said
+    assert "removed" in said
+    seen = json.loads(system.cli("last-seen", "chair1", "--format", "json"))
+    assert (seen["provenance"]["source"], seen["removed"]) == ("perception", None)
+
+
+def test_get_shows_who_when_why_and_how_sure(system):
+    card = system.cli("get", "chair1")
+    assert "operator/ann: add Chair chair1" in card
+    assert "perception/camera: update chair1 (confidence 0.50)" in card
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "text"),
+    [
+        (("list", "--as-of", "999"), 1, "there is no commit 999 yet"),
+        (("get", "chair1", "--as-of", "2999-01-01"), 1, "that is in the future"),
+        (("list", "--as-of", "2001-01-01"), 1, "there was no map then; it begins with commit 1"),
+        (("list", "--as-of", "yesterday"), 2, "'yesterday' is neither a commit's number nor a time"),
+        (("list", "--as-of", "2", "--class", "Chiar"), 2, "did you mean Chair"),
+        (("get", "chair2", "--as-of", "5"), 1, "no entity was named 'chair2' after commit 5"),
+        (("history", "chair9"), 1, "no entity was ever named 'chair9'"),
+        (("history", "--limit", "0"), 2, "limit"),
+        (("history", "--since", "-1"), 2, "-1"),
+        (("last-seen", "chair9"), 1, "no entity was ever named"),
+        (("undo", "999"), 1, "there is no commit 999 yet"),
+        (("undo", "0"), 2, "commit must be"),
+        (("undo", "2"), 1, "it is too late to undo commit 2"),
+        (("load", "--tbox", "nowhere.ttl"), 2, "there is no file nowhere.ttl"),
+        (("load", "--tbox", HOUSEHOLD_TTL, "--replace"), 2, "takes the place of the present one"),
+        (("repair", "--data", "nowhere"), 2, "there is no map in"),
+    ],
+)
+def test_bad_requests_get_one_line(system, words, status, text):
+    assert text in system.cli(*words, status=status)
+
+
+def test_undo(system):
+    system.cli("add", "Chair", "chair7", "--at", "5", "5", "0")
+    assert "took back commit" in system.cli("undo")
+    assert "no entity is named 'chair7'" in system.cli("get", "chair7", status=1)
+    commits = json.loads(system.cli("history", "--limit", "2", "--format", "json"))
+    assert commits[1]["undoes"] == [commits[0]["seq"]]
+    system.cli("undo", str(commits[1]["seq"]))
+    assert "chair7" in system.cli("list")
+
+
+def test_another_tbox(system, tmp_path):
+    file = tmp_path / "more.ttl"
+    file.write_text(MORE)
+    assert "the map does not fit the TBox: unknown class" in system.cli("load", "--tbox", file, status=1)
+    assert "unknown class 'Throne'" in system.cli("add", "Throne", status=2)
+    file.write_text(HOUSEHOLD_TTL.read_text() + MORE)
+    assert "classes from more.ttl (commit" in system.cli("load", "--tbox", file)
+    system.cli("add", "Throne", "throne1", "--at", "6", "6", "0", "--default")
+    with system.client() as client:
+        throne = client.get("throne1")
+        assert (throne.preferred_reference, "Chair" in throne.types) == ("throne", True)
+        assert "the map does not fit the TBox: unknown class 'Throne'" in system.cli(
+            "load", "--tbox", HOUSEHOLD_TTL, status=1
+        )
+        with pytest.raises(errors.Refused, match="replaced the TBox"):
+            client.undo(throne.provenance.commit - 1)
+        client.remove("throne1")
+        assert client.load(HOUSEHOLD_TTL, tbox=True).commit
+        with pytest.raises(errors.UnknownClass):
+            client.add("Throne")
+        then = client.list("Throne", as_of=throne.provenance.commit)
+        assert [e.name for e in then] == ["throne1"]

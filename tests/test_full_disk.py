@@ -1,0 +1,54 @@
+"""A disk that takes no more: commits are refused, the system stays up and says so, and goes on later."""
+
+from __future__ import annotations
+
+import resource
+from contextlib import contextmanager
+
+import pytest
+
+from schemas import errors
+from tests.conftest import running, until
+
+
+@contextmanager
+def full(data, pid):
+    """The operating system lets the process make no file larger than the largest of the journal's."""
+    size = max(path.stat().st_size for path in data.glob("journal.sqlite*"))
+    limits = resource.prlimit(pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, limits[1]))
+    yield
+    resource.prlimit(pid, resource.RLIMIT_FSIZE, limits)
+
+
+def node(client):
+    return next(n for n in client.status().nodes if n.node == "kb_node")
+
+
+def fill(client):
+    """Commits of 40 kB each, more than the journal has room for."""
+    for i in range(20):
+        alt = tuple(f"{i:02}" * 450 + f" {n}" for n in range(20))
+        client.add("Chair", f"big{i}", at=(2.0, i, 0.0), alt=alt)
+
+
+def test_commits_are_refused_until_there_is_space_again(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
+        client.add("Chair", "chair1", at=(1.0, 1.0, 0.0))
+        before = node(client)
+        with full(tmp_path, before.pid):
+            with pytest.raises(errors.Refused, match=r"commit \d+ could not be written to .*journal\.sqlite"):
+                fill(client)
+            there = {e.name for e in client.list()}
+            assert "chair1" in there
+            assert client.check().consistent
+            status = until(
+                lambda: (now := node(client)).last_error and now, "the status says that the disk is full"
+            )
+            assert "could not be written" in status.last_error
+            assert status.detail.endswith("the disk takes no commits")
+            assert (status.pid, status.state) == (before.pid, "ready")
+        seq = client.status().commit
+        assert client.add("Chair", "chair2", at=(3.0, 1.0, 0.0)).commit == seq + 1
+        assert {e.name for e in client.list()} == there | {"chair2"}
+        until(lambda: not node(client).detail.endswith("the disk takes no commits"), "all is well again")
