@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from msgspec import Struct, msgpack
+from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.sparql.dataset import Delta
 from schemas.commands import Renew, Sparql, Watch
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
 from schemas.sparql import RowsChanged
+
+NOTHING = Raw(msgpack.encode(None))
 
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):
@@ -39,10 +39,10 @@ class Asked(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class Answered(Struct, frozen=True, kw_only=True, tag=True):
-    """The answer: the message that the command's reply is, or the error."""
+    """The answer: the command's reply, encoded, or the error."""
 
     number: int
-    reply: Any = None
+    reply: Raw = NOTHING
     error: ErrorMessage | None = None
 
 
