@@ -126,7 +126,7 @@ def tour(t: Tour) -> None:
     t.do("add", "Beer", "beer7", status=1, holds="taken")
     t.do("add", "Beer", "my beer", status=2, holds="valid name")
     t.do("add", "Beer", "--at", "nan", "0", "0", status=2)
-    t.do("load", "demo/nonsense.ttl", status=1, holds="beer7")
+    t.do("load", "demo/nonsense.ttl", status=1, holds="fridge1 cannot be both")
     t.do("remove", "beer8", status=1, holds="no entity is named 'beer8'")
 
     t.tell("Drag a chair: a hand takes the body, it comes to rest, the map follows")
@@ -173,9 +173,9 @@ def tour(t: Tour) -> None:
     t.do("list", "--class", "Beer", "--format", "legacy", holds="type_full")
 
     t.tell("Stop time, let it go on for a moment, let it run; put every body back; take a picture")
-    t.do("pause")
+    t.do("pause", "--on")
     t.do("step", "--seconds", "0.5")
-    t.do("pause")
+    t.do("pause", "--off")
     t.do("reset")
     t.do("picture", str(PICTURE))
 

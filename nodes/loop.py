@@ -197,6 +197,19 @@ def _resolve(future: Future[Any], reply: Any) -> None:
         future.set_result(reply)
 
 
+def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
+    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
+    try:
+        result = execute()
+    except Exception as error:
+        future.set_exception(error)
+        return
+    if isinstance(result, Future):
+        result.add_done_callback(lambda done: settle(future, done.result))
+    else:
+        future.set_result(result)
+
+
 def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
     """The future of `function(result)`; errors pass through."""
     following: Future[Any] = Future()

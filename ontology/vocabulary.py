@@ -201,6 +201,12 @@ OWL_IMPORTS: Final = iri(f"{OWL}imports")
 OWL_OBJECT_PROPERTY: Final = iri(f"{OWL}ObjectProperty")
 OWL_DATATYPE_PROPERTY: Final = iri(f"{OWL}DatatypeProperty")
 OWL_ANNOTATION_PROPERTY: Final = iri(f"{OWL}AnnotationProperty")
+PROPERTY_KINDS: Final = (
+    OWL_OBJECT_PROPERTY,
+    OWL_DATATYPE_PROPERTY,
+    OWL_ANNOTATION_PROPERTY,
+    iri(f"{RDF}Property"),
+)
 OWL_NAMED_INDIVIDUAL: Final = iri(f"{OWL}NamedIndividual")
 OWL_SAME_AS: Final = iri(f"{OWL}sameAs")
 OWL_DIFFERENT_FROM: Final = iri(f"{OWL}differentFrom")

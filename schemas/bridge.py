@@ -88,6 +88,7 @@ class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     commit: Commit | None
     skipped: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
 
 BRIDGE: dict[str, tuple[type[Struct], Any]] = {

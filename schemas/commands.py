@@ -347,7 +347,9 @@ class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Pause(Command, frozen=True, kw_only=True, tag="pause"):
-    """Stop simulated time; a second time: let it run again."""
+    """Stop simulated time, or with `off` let it run again; without `off` a second time does so, too."""
+
+    off: bool | None = None
 
 
 class StepOnce(Command, frozen=True, kw_only=True, tag="step"):

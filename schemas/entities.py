@@ -62,6 +62,13 @@ def orientation_from_yaw(yaw_rad: float) -> Quaternion:
     return (math.cos(yaw_rad / 2.0), 0.0, 0.0, math.sin(yaw_rad / 2.0))
 
 
+def rounded(pose: Pose) -> Pose:
+    """To a micrometre, and without minus zeros: what physics knows no better is not worth its digits."""
+    x, y, z = (round(value, 6) + 0.0 for value in pose.position_m)
+    qw, qx, qy, qz = (round(value, 6) + 0.0 for value in pose.orientation_wxyz)
+    return Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz))
+
+
 def distance_m(a: Pose, b: Pose) -> float:
     """Distance of two positions [m]."""
     return math.dist(a.position_m, b.position_m)

@@ -137,6 +137,7 @@ def from_message(message: ErrorMessage) -> SemmapError:
     return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
 
 
+SKIP_UNKNOWN = "; --skip-unknown leaves these out"
 _FEW = 10
 
 
@@ -153,10 +154,18 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
     """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
+    return f"{_unknown('class', 'classes', users, known)}{SKIP_UNKNOWN}"
+
+
+def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
+    """One sentence on properties that the TBox does not have, and who has them."""
+    return _unknown("property", "properties", users, known)
+
+
+def _unknown(one: str, many: str, users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
     known = list(known)
     said = [f"'{name}' (of {_some(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
-    kind = "unknown class" if len(said) == 1 else "unknown classes"
-    return f"{kind} {', '.join(said)}; --skip-unknown leaves these out"
+    return f"unknown {one if len(said) == 1 else many} {', '.join(said)}"
 
 
 def _some(names: Sequence[str]) -> str:

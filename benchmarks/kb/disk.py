@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.kb.made import Figures, each, entities, timed
-from nodes.kb_node import answers, rdf_files
+from nodes.kb_node import answers
 from nodes.kb_node.journal import FILENAME, Journal
 from nodes.kb_node.seed import seed
 from nodes.kb_node.semantic_map import SemanticMap
@@ -50,7 +50,7 @@ def prepare(folder: Path, size: int, *, checkpoint: bool = True) -> None:
 
 
 def _opened(journal: Journal) -> SemanticMap:
-    return SemanticMap(journal, rdf_files.parse(journal.tbox(), "the TBox"))
+    return SemanticMap(journal)
 
 
 def _load(size: int) -> Transaction:

@@ -263,7 +263,7 @@ class Door:
         )
         loaded: Loaded = yield Question("load", document)
         names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
-        return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, ())
+        return _loaded(command, self._taken(loaded.commit), names, loaded.skipped, loaded.notes)
 
     def _load_tbox(self, command: Load) -> Talk[Changed]:
         if command.replace or command.skip_unknown:

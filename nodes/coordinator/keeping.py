@@ -18,7 +18,7 @@ from nodes.coordinator.keeper import Actions, latest, reconcile
 from nodes.coordinator.scene_view import SceneView
 from schemas import errors
 from schemas.commands import Add
-from schemas.entities import BodyState, Entity
+from schemas.entities import BodyState, Entity, rounded
 from schemas.scenes import (
     BodiesMoved,
     Body,
@@ -192,7 +192,7 @@ class Keeping:
     def _follow(self, placement: Placement) -> Placement | None:
         """Let the map follow a body; if the map refuses, the body has to go back."""
         try:
-            self._door.follow(placement.name, placement.pose)
+            self._door.follow(placement.name, rounded(placement.pose))
         except errors.Refused as error:
             self._report(f"{placement.name} goes back, because the map refused its new place: {error.text}")
             entity = self._door.entities[placement.name]
@@ -210,7 +210,8 @@ class Keeping:
                 raise errors.UnknownClass(
                     "nothing says its class: name it like chair_3 or add a text semmap:BODY"
                 )
-            x, y, z = body.pose.position_m
+            pose = rounded(body.pose)
+            x, y, z = pose.position_m
             self._door.add(
                 Add(
                     source="scene",
@@ -218,7 +219,7 @@ class Keeping:
                     class_=body.class_,
                     name=body.name,
                     at=(x, y, z),
-                    orientation=body.pose.orientation_wxyz,
+                    orientation=pose.orientation_wxyz,
                     size=body.size_m,
                 )
             )

@@ -15,17 +15,18 @@ from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
-from nodes.loop import Node, open_node, then
+from nodes.loop import Node, open_node, settle, then
 from schemas import commands as c
 from schemas import errors, keys
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commits import Commit, Snapshot
-from schemas.entities import Entity, Pose, orientation_from_yaw
+from schemas.entities import BodyState, Entity, Pose, orientation_from_yaw
 from schemas.health import Health
 from schemas.moments import When
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
 
 _WAIT_S = 20.0
+_EARLY_S = 10.0
 _TOGETHER = 64
 _COMMIT_TIMEOUT_S = 10.0
 _LOAD_TIMEOUT_S = 300.0
@@ -46,13 +47,14 @@ class Coordinator:
         self._has_map = False
         self._fetching = False
         self._put_aside: list[tuple[c.Add | c.Update, Future[c.Changed]]] = []
+        self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
         door = self._door
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
             c.Add: self._put_off,
             c.Update: self._put_off,
-            c.Remove: door.remove,
-            c.Clear: door.clear,
+            c.Remove: self._noted(door.remove),
+            c.Clear: self._noted(door.clear),
             c.Load: door.load,
             c.Undo: door.undo,
             c.History: lambda m: self._later("history", m),
@@ -66,8 +68,8 @@ class Coordinator:
             c.Classes: lambda m: self._later("classes", m),
             c.Status: self._status,
             c.Move: self._move,
-            c.Pause: lambda m: self._ask_sim("pause", m, c.Done),
-            c.StepOnce: lambda m: self._ask_sim("step", m, c.Done),
+            c.Pause: lambda m: self._ask_scene("pause", m, c.Done),
+            c.StepOnce: lambda m: self._ask_scene("step", m, c.Done),
             c.Reset: self._reset,
             c.TakePicture: self._picture,
             c.Sparql: lambda m: self._later("sparql", m, timeout_s=_SPARQL_TIMEOUT_S),
@@ -106,6 +108,7 @@ class Coordinator:
             self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
+        self._answer_early()
         self._keep()
 
     def _keep(self) -> None:
@@ -213,7 +216,7 @@ class Coordinator:
 
     def _picture(self, m: c.TakePicture) -> Future[Any]:
         query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
-        return self._ask_sim("picture", query, Picture)
+        return self._ask_scene("picture", query, Picture)
 
     # Changing
 
@@ -253,14 +256,43 @@ class Coordinator:
             if state is not None and state.status == "pending" and time.monotonic() < deadline:
                 still.append((name, deadline, changed, future))
                 continue
-            status = f"{state.status} {state.detail}".strip() if state is not None else "removed meanwhile"
+            status = _spoken(state) if state is not None else "removed meanwhile"
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
+
+    def _noted(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], c.Changed]:
+        """Where the scene owns existence, what is removed from the map only comes back."""
+        if self._config.truth == "map":
+            return change
+        note = "the scene is the truth here: what still stands in it comes back"
+
+        def noted(command: Any) -> c.Changed:
+            changed = change(command)
+            return structs.replace(changed, notes=(*changed.notes, note))
+
+        return noted
+
+    def _once_there_is_a_map(self, execute: Callable[[], Any]) -> Future[Any]:
+        """For a moment after a start the map is not known yet: commands wait for it rather than fail."""
+        future: Future[Any] = Future()
+        self._early.append((time.monotonic() + _EARLY_S, execute, future))
+        return future
+
+    def _answer_early(self) -> None:
+        early, self._early = self._early, []
+        for deadline, execute, future in early:
+            if not self._has_map and time.monotonic() < deadline:
+                self._early.append((deadline, execute, future))
+            elif not self._has_map:
+                error = errors.NoAnswer("the knowledge base does not answer; see: semmap status")
+                future.set_exception(error)
+            else:
+                settle(future, execute)
 
     def _with_map(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
         def guarded(command: Any) -> Any:
             if not self._has_map:
-                raise errors.NoAnswer("the knowledge base does not answer yet; see: semmap status")
+                return self._once_there_is_a_map(lambda: guarded(command))
             if handle != self._put_off:
                 self._change_together()  # what came before it
             return handle(command)
@@ -275,8 +307,17 @@ class Coordinator:
     def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
 
+    def _ask_scene(self, verb: str, message: Any, kind: Any) -> Future[Any]:
+        if not self._keeping.scene.known:
+            raise errors.NoAnswer("no simulator runs")
+        return self._ask_sim(verb, message, kind)
+
     def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
         return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
+
+
+def _spoken(state: BodyState) -> str:
+    return f"{state.status}: {state.detail}" if state.detail else state.status
 
 
 def run(config: CoordinatorConfig) -> None:

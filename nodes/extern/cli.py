@@ -221,10 +221,11 @@ def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
 
 
 @app.command()
+@click.option("--off/--on", "off", default=None, help="Run or stop; without either, the other of the two.")
 @talks
-def pause(client: Client) -> None:
-    """Stop simulated time; again: let it run."""
-    print(client.send(commands.Pause()).text)
+def pause(client: Client, off: bool | None) -> None:
+    """Stop simulated time, or let it run again."""
+    print(client.send(commands.Pause(off=off)).text)
 
 
 @app.command()
@@ -244,12 +245,14 @@ def reset(client: Client) -> None:
 
 @app.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--camera", metavar="NAME", help="A camera of the world; without one, from above.")
+@click.option("--camera", metavar="NAME", help="A camera of the world; without one, all from aloft.")
 @click.option("--width", type=int, default=960, show_default=True)
 @click.option("--height", type=int, default=720, show_default=True)
 @talks
 def picture(client: Client, file: Path, camera: str | None, width: int, height: int) -> None:
     """Write a picture of the scene to FILE (PNG)."""
+    if file.suffix.lower() != ".png":
+        raise errors.BadRequest(f"pictures are PNG; call the file {file.with_suffix('.png').name}")
     _write_atomically(file, client.picture(camera, width=width, height=height))
     print(f"wrote {file}")
 
@@ -340,6 +343,8 @@ def execute(arguments: list[str], client: Client | None = None) -> int:
     except errors.SemmapError as error:
         _complain(error.text)
         return error.exit_status
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message())
     except click.ClickException as error:
         _complain(error.format_message())
         return 2
@@ -432,4 +437,4 @@ def _write_atomically(file: Path, content: bytes) -> None:
 
 
 def _complain(text: str) -> None:
-    print(f"semmap: {text}", file=sys.stderr)
+    print(f"semmap: {text.removeprefix('malformed message: ')}", file=sys.stderr)

@@ -275,11 +275,15 @@ class Client:
 
     @contextlib.contextmanager
     def commits(self) -> Iterator[Iterator[Commit]]:
-        """`with client.commits() as commits: for commit in commits: ...`: every commit from now on."""
+        """`with client.commits() as commits: for commit in commits: ...`: every commit from now on.
+
+        A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over.
+        """
         events: queue.SimpleQueue[Commit] = queue.SimpleQueue()
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
-            yield iter(events.get, None)
+            now = self.status().commit
+            yield (commit for commit in iter(events.get, None) if commit.seq > now)
         finally:
             subscriber.undeclare()
 

@@ -45,7 +45,7 @@ def entity_card(e: Entity) -> Table:
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
-        "model": e.body.model if e.body is not None and e.body.model else e.model or "a box",
+        "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "posed": provenance_text(e.pose_provenance),
         "class and size": provenance_text(e.shape_provenance),
@@ -143,3 +143,7 @@ def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict
         count = f"  [bold green]{c.inferred}[/]" if c.inferred else ""
         own = f" [dim]({c.asserted})[/]" if c.asserted and c.asserted != c.inferred else ""
         _grow(tree.add(f"{name}{count}{own}"), name, children, by_name)
+
+
+def _model(e: Entity) -> str:
+    return (e.body.model if e.body is not None else "") or e.model or "a box"

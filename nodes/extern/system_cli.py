@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import logging
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from nodes import bus
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
+from schemas.keys import NODES
 
 _path = click.Path(path_type=Path)
 
@@ -22,15 +24,16 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 
     @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
     @click.option("--abox", help="ABox file, or none for an empty map. Default: the shipped flat.")
-    @click.option("--world", help="MJCF file or JSON scene, or empty for a bare floor. Default: the flat's.")
+    @click.option(
+        "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
+    )
     @click.option("--data", type=_path, default=None, help="Folder of the journal, the logs, the recordings.")
     @click.option("--fresh", is_flag=True, help="Begin anew; the old data is kept aside.")
     @click.option(
         "--truth",
         type=click.Choice(["map", "scene"]),
-        default="map",
-        show_default=True,
-        help="Who owns existence.",
+        default=None,
+        help="Who owns existence. Default: as before, else map.",
     )
     @click.option(
         "--threshold",
@@ -82,7 +85,7 @@ def down(data: Path | None) -> None:
     from nodes.supervisor.control import Supervisor
 
     Supervisor((data or default_data()).resolve()).shut_down()
-    click.echo("stopping")
+    click.echo("stopped")
 
 
 @click.command()
@@ -95,29 +98,35 @@ def repair(data: Path | None) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", type=click.Choice(NODES))
 @settings_options
 def node(name: str, settings: Settings) -> None:
-    """Run one node by itself, in the foreground."""
+    """Run one node by itself, in the foreground.
+
+    The coordinator listens on --listen; the others connect to it there.
+    """
     from nodes.supervisor.launch import run_node, seed
 
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if name == "kb_node":
         seed(settings)
     run_node(name, settings)
 
 
 def _settings(
-    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str,
+    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float, camera_size: tuple[int, int], camera_noise: bool,
     no_sim: bool, no_record: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
+    before = None if fresh or abox is not None else _settings_before(folder)
     if world is None:
-        before = None if fresh or abox is not None else _world_before(folder)
-        world = before or str(FLAT_WORLD if abox is None else EMPTY_WORLD)
-    world = str(EMPTY_WORLD) if world == "empty" else world
+        world = before.world if before is not None else str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+    if truth is None:
+        truth = before.truth if before is not None else "map"
+    world = str(EMPTY_WORLD) if world in ("empty", "none") else world
     abox = str(FLAT_TTL) if abox is None else abox
     values = {
         "data": str(folder),
@@ -144,13 +153,13 @@ def _settings(
         raise errors.BadRequest(error.text.removeprefix("malformed message: ")) from None
 
 
-def _world_before(data: Path) -> str | None:
-    """The world that the map in `data` was last run with, if both are there."""
+def _settings_before(data: Path) -> Settings | None:
+    """What the map in `data` was last run with, if there is such a map, and its world is still there."""
     try:
         settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
     except (OSError, errors.BadRequest):
         return None
-    return settings.world if (data / JOURNAL).exists() and Path(settings.world).exists() else None
+    return settings if (data / JOURNAL).exists() and Path(settings.world).exists() else None
 
 
 def _existing(path: Path) -> str:

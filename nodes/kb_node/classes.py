@@ -41,6 +41,9 @@ class ClassTable:
         }
         self.spatial: frozenset[Term] = frozenset().union(*map(self._named_below, self._spatial_roots()))
         self.places: frozenset[Term] = self._named_below(v.LOCATION)
+        self.properties = frozenset(
+            s for kind in v.PROPERTY_KINDS for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
+        )
         self.iris = _by_name(self.names)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from nodes.kb_node.classes import ClassTable
 from ontology import stars
@@ -11,17 +12,26 @@ from schemas import errors
 from schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
+_TBOX = f"<{v.TBOX}"
+_FLOATS = frozenset((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
+_OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
 
 
-def sort_out(
-    triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool
-) -> tuple[list[Triple], list[str]]:
-    """The triples that fit the TBox, and a word on each individual of an unknown class.
+class SortedOut(NamedTuple):
+    """The triples that fit the TBox, a word on each individual left out, and on what may be a mistake."""
 
-    Raises UnknownClass naming all of them, unless `skip_unknown`; then what is of unknown classes only is
-    left out, with the star that only it uses, and of the others the unknown class.
+    triples: list[Triple]
+    skipped: list[str]
+    notes: list[str]
+
+
+def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool) -> SortedOut:
+    """What of a document may come into the map. A number of a star may be written as any kind of number.
+
+    Raises UnknownClass naming all individuals of unknown classes, unless `skip_unknown`; then what is of
+    unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
     """
-    triples = list(triples)
+    triples = list(map(_with_float, triples))
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
@@ -34,7 +44,27 @@ def sort_out(
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
     doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
-    return _without(gone, [t for t in triples if t not in doubtful]), words
+    kept = _without(gone, [t for t in triples if t not in doubtful])
+    return SortedOut(kept, words, _unknown_properties(kept, classes))
+
+
+def _with_float(triple: Triple) -> Triple:
+    """`0` and `0.5` in Turtle are an integer and a decimal; a star's numbers are floats all the same."""
+    s, p, o = triple
+    if p in _FLOATS and o.endswith(_OTHER_NUMBERS):
+        return (s, p, v.literal(v.lexical(o), v.XSD_FLOAT))
+    return triple
+
+
+def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
+    """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
+    declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
+    known = declared | classes.properties
+    users: dict[str, list[str]] = {}
+    for s, p, _ in triples:
+        if p.startswith(_TBOX) and p not in known:
+            users.setdefault(v.local_name(p), []).append(v.local_name(s))
+    return [errors.unknown_properties(users, map(v.local_name, sorted(known)))] if users else []
 
 
 def is_built_in(term: Term) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Set
+from itertools import islice
 
 from msgspec import structs
 
@@ -18,6 +19,7 @@ from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance
 from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
+_FEW = 16
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
@@ -136,10 +138,10 @@ def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: Set[Term], tbox:
 
 def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     """The individuals in whose star `node` is."""
-    if any(True for _ in reasoner.asserted(None, None, node)):  # most new nodes have nobody
-        for predicate in stars.STAR_PROPERTIES:
-            for user, _, _ in reasoner.asserted(None, predicate, node):
-                yield user
+    incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
+    if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
+        return (s for s, p, _ in incoming if p in stars.STAR_PROPERTIES)
+    return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 
 def _objects(reasoner: Reasoner, subject: Term) -> dict[Term, list[Term]]:

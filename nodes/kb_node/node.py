@@ -140,7 +140,7 @@ class KnowledgeBase:
             return self._load(load, triples)
 
     def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
-        kept, skipped = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
+        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
         transaction = Transaction(
             id=load.id,
             source=load.source,
@@ -148,9 +148,10 @@ class KnowledgeBase:
             verb="load",
             reason=load.reason,
             retract=tuple(self.map.abox()) if load.replace else (),
-            insert=tuple(t for t in kept if t not in self.map.tbox),
+            insert=tuple(t for t in sorted_out.triples if t not in self.map.tbox),
         )
-        return Loaded(commit=self._commit(transaction), skipped=tuple(skipped))
+        commit = self._commit(transaction)
+        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:

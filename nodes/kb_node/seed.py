@@ -28,13 +28,21 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     """
     path = data / FILENAME
     if path.exists() and not fresh:
-        return f"going on with the map in {data} (--fresh begins anew and keeps the old one aside)"
+        return (
+            f"going on with the map in {data}; --tbox and --abox are for a new one"
+            " (--fresh begins anew and keeps this one aside)"
+        )
     tbox_triples = read_triples(tbox, "t")
     reasoner = tboxes.compiled(tbox_triples, str(tbox))
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tboxes.imports(tbox_triples)]
+    notes: list[str] = []
     if abox is not None:
-        kept, _ = documents.sort_out(read_triples(abox, "a"), ClassTable(reasoner), skip_unknown=False)
-        abox_triples += kept
+        try:
+            sorted_out = documents.sort_out(read_triples(abox, "a"), ClassTable(reasoner), skip_unknown=False)
+        except errors.BadRequest as error:
+            raise type(error)(f"{abox}: {error.text.removesuffix(errors.SKIP_UNKNOWN)}") from None
+        abox_triples += sorted_out.triples
+        notes = sorted_out.notes
     source = abox.name if abox is not None else "nothing"
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",
@@ -52,7 +60,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
-    return f"{size} entities from {source}"
+    return "; note: ".join((f"{size} entities from {source}", *notes))
 
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from itertools import islice
 
 from msgspec import structs
 
@@ -18,6 +19,7 @@ from schemas.entities import ClassInfo, Entity, Provenance
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
+_FEW = 64
 
 
 class SemanticMap:
@@ -203,8 +205,14 @@ class SemanticMap:
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
         named = {*transaction.require, *transaction.retract, *transaction.insert}
-        present = {s for s in {s for s, _, _ in named} if self._is_subject(s)}
-        return {t for t in named if t[0] in present and self.has(t)}
+        held: set[Triple] = set()
+        many: set[Term] = set()
+        for subject in {s for s, _, _ in named}:
+            said = list(islice(self.reasoner.asserted(subject), _FEW))
+            held.update(said)
+            if len(said) == _FEW:
+                many.add(subject)
+        return {t for t in named if t in held or (t[0] in many and self.has(t))}
 
     def _is_subject(self, term: Term) -> bool:
         return any(True for _ in self.reasoner.asserted(term))

@@ -94,8 +94,8 @@ class Simulator:
     def _snapshot(self, _: SceneQuery) -> Scene:
         return self._world.scene()
 
-    def _pause(self, _: Pause) -> Done:
-        self._paused = not self._paused
+    def _pause(self, message: Pause) -> Done:
+        self._paused = not self._paused if message.off is None else not message.off
         self._clock_s = time.monotonic()
         self._node.describe(self._summary())
         return Done(text="time stands still" if self._paused else "time runs again")

@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import xmlrpc.client
 from pathlib import Path
 from typing import Any
@@ -52,8 +53,11 @@ class Supervisor:
 
     def seed(self, settings: Settings) -> str:
         """Make the journal; what was done, in words. Raises the reason why it could not be made."""
-        self.data.mkdir(parents=True, exist_ok=True)
-        self._settings_path.write_bytes(codec.encode_json(settings))
+        try:
+            self.data.mkdir(parents=True, exist_ok=True)
+            self._settings_path.write_bytes(codec.encode_json(settings))
+        except OSError as error:
+            raise errors.BadFile(f"no data can be kept in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
@@ -90,6 +94,9 @@ class Supervisor:
             self._rpc().supervisor.shutdown()
         except (OSError, xmlrpc.client.Error):
             raise errors.NoAnswer(f"no system runs on the data in {self.data}") from None
+        deadline = time.monotonic() + 2 * _STOP_WAIT_S
+        while self.is_running() and time.monotonic() < deadline:
+            time.sleep(0.1)
 
     def last_words(self, node: str) -> str:
         """The last line that a node wrote to its log."""

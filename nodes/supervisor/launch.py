@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from nodes.supervisor.settings import Settings
+from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec, errors
 
 
@@ -23,9 +24,14 @@ def run_node(name: str, settings: Settings) -> None:
 
 
 def seed(settings: Settings) -> None:
-    """Make the journal, or say that it is there, on stdout."""
+    """Make the journal, or say that it is there, on stdout. A world that cannot be is told first."""
     from nodes.kb_node.seed import seed as seed_journal
 
+    if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
+        from nodes.sim_node.models.files import Models
+        from nodes.sim_node.world_file import open_world
+
+        open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
     abox = Path(settings.abox) if settings.abox is not None else None
     print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import re
 import signal
 import socket
 import subprocess
@@ -32,7 +33,9 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     """
     supervisor = Supervisor(Path(settings.data))
     if supervisor.is_running():
-        raise errors.Refused(f"a system runs on {settings.data} already; stop it with: semmap down")
+        down = f"semmap down --data {settings.data}"
+        raise errors.Refused(f"a system runs on {settings.data} already; stop it with: {down}")
+    _require_free(settings.listen)
     if settings.record:
         settings = structs.replace(settings, live_view=_live_view())
     say(f"map          {supervisor.seed(settings)}")
@@ -135,6 +138,22 @@ class _Foreground:
             self._say(f"live view    rerun --connect rerun+http://{self._settings.live_view}/proxy")
         self._say(f"try          semmap list{connect}")
         self._say("stop         Ctrl-C")
+
+
+def _require_free(endpoint: str) -> None:
+    """Refuse an endpoint that another system of this machine listens on, rather than take it for ours."""
+    match = re.fullmatch(r"tcp/(.+):(\d+)", endpoint)
+    if match is None:
+        return
+    host, port = match[1].strip("[]"), int(match[2])
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            raise errors.Refused(
+                f"cannot listen on {endpoint}: {error.strerror}; give another with --listen"
+            ) from None
 
 
 def _live_view() -> str:

@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from schemas import errors
+from schemas import errors, keys
 from tests.conftest import running, until
 
 CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"
@@ -75,9 +75,7 @@ ASK = "query=ASK {:chair1 a dm:Seat}"
 
 def test_a_selector_asks_too(system):
     with system.client() as client:
-        (reply,) = client.session.get(
-            "semmap/cmd/sparql?query=ASK {:chair1 a dm:Seat};inferred=true;format=json"
-        )
+        (reply,) = client.session.get(f"{keys.CMD}/sparql?{ASK};inferred=true;format=json")
         assert json.loads(reply.ok.payload.to_bytes())["verdict"] is True
 
 

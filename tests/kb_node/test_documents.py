@@ -18,7 +18,7 @@ def test_a_document_of_known_classes_passes_whole(classes):
     triples = turtle(
         ":a a dm:Chair , owl:NamedIndividual ; dm:hasPosition [ a dm:Coordinates ] . <urn:o> a owl:Ontology ."
     )
-    assert documents.sort_out(triples, classes, skip_unknown=False) == (list(triples), [])
+    assert documents.sort_out(triples, classes, skip_unknown=False) == (list(triples), [], [])
 
 
 def test_all_unknown_classes_are_named(classes):
@@ -37,7 +37,7 @@ def test_what_is_skipped_takes_its_own_star_along(classes):
         ":x a dm:Xylophone ; dm:hasPosition :x_coordinates ; dm:hasPreferredReference :shared ; dm:near :d ."
         " :x_coordinates a dm:Coordinates ; dm:float_coordinates_x 1 . :d dm:near :x ."
     )
-    triples, words = documents.sort_out([*skipped, *kept], classes, skip_unknown=True)
+    triples, words, _ = documents.sort_out([*skipped, *kept], classes, skip_unknown=True)
     assert set(triples) == set(kept)
     assert words == ["x (unknown class 'Xylophone')"]
 
@@ -45,21 +45,37 @@ def test_what_is_skipped_takes_its_own_star_along(classes):
 def test_what_a_skipped_thing_points_to_stays_when_it_is_a_thing_itself(classes):
     robot = turtle(":robot a dm:Robot ; dm:holds :chair1 .")
     held = turtle(":chair1 a dm:Chair .")
-    assert documents.sort_out([*robot, *held], classes, skip_unknown=True)[0] == list(held)
+    assert documents.sort_out([*robot, *held], classes, skip_unknown=True).triples == list(held)
 
 
 def test_of_two_classes_only_the_unknown_one_is_skipped(classes):
     triples = turtle(":c a dm:Chair , dm:Antique ; dm:near :d .")
-    kept, words = documents.sort_out(triples, classes, skip_unknown=True)
+    kept, words, _ = documents.sort_out(triples, classes, skip_unknown=True)
     assert set(kept) == set(turtle(":c a dm:Chair ; dm:near :d ."))
     assert words == ["c (unknown class 'Antique')"]
 
 
 def test_a_class_that_the_document_declares_is_known(classes):
     triples = turtle(":s a dm:Sofa . dm:Sofa a owl:Class ; rdfs:subClassOf dm:Seat .")
-    assert documents.sort_out(triples, classes, skip_unknown=False)[1] == []
+    assert documents.sort_out(triples, classes, skip_unknown=False).skipped == []
 
 
 def test_a_literal_as_class_is_unknown(classes):
     with pytest.raises(errors.UnknownClass):
         documents.sort_out([(v.entity_iri("a"), v.RDF_TYPE, '"Chair"')], classes, skip_unknown=False)
+
+
+def test_numbers_of_a_star_may_be_written_as_any_number(classes):
+    node = v.entity_iri("a_coordinates")
+    said = [
+        (node, v.COORDINATE_XYZ[i], v.literal("1", v.iri(v.XSD + kind)))
+        for i, kind in enumerate(("integer", "decimal", "double"))
+    ]
+    meant = [(node, p, v.literal("1", v.XSD_FLOAT)) for p in v.COORDINATE_XYZ]
+    assert documents.sort_out(said, classes, skip_unknown=False).triples == meant
+
+
+def test_a_property_that_may_be_misspelt_is_told(classes):
+    triples = [(v.entity_iri("cup1"), v.dm("hasPositoin"), v.entity_iri("x"))]
+    (note,) = documents.sort_out(triples, classes, skip_unknown=False).notes
+    assert "unknown property 'hasPositoin' (of cup1; did you mean hasPosition" in note

@@ -13,17 +13,16 @@ from schemas.explanations import Triple
 from schemas.sparql import RowsChanged
 
 
-class Start(Struct, frozen=True, kw_only=True, tag=True):
-    """The first message: all that is asserted after commit `seq`."""
+class Load(Struct, frozen=True, kw_only=True, tag=True):
+    """All that is asserted after commit `seq`; with `infers`, what follows is wanted, too.
+
+    The first message, and the one that comes when commits alone do not tell: when what follows is asked for the
+    first time, and when the TBox is another.
+    """
 
     seq: int
     asserted: tuple[Triple, ...]
-
-
-class Infer(Struct, frozen=True, kw_only=True, tag=True):
-    """Work out what follows, from now on, of all that is asserted now."""
-
-    asserted: tuple[Triple, ...]
+    infers: bool
 
 
 class Committed(Struct, frozen=True, kw_only=True, tag=True):
@@ -55,7 +54,7 @@ class News(Struct, frozen=True, kw_only=True, tag=True):
     ended: bool = False
 
 
-ToWorker = Start | Infer | Committed | Asked
+ToWorker = Load | Committed | Asked
 FromWorker = Answered | News
 
 to_worker = msgpack.Decoder(ToWorker)

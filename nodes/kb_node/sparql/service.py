@@ -6,7 +6,6 @@ node's own never waits for it.
 
 from __future__ import annotations
 
-import logging
 import queue
 import subprocess
 import sys
@@ -20,14 +19,12 @@ from typing import Any
 from msgspec import msgpack
 
 from nodes.kb_node.sparql.dataset import Delta
-from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Infer, News, Start, from_worker
+from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Load, News, from_worker
 from schemas import codec, errors
 from schemas.bridge import BRIDGE
 from schemas.commands import Renew, Sparql, Watch
 from schemas.commits import Commit
 from schemas.explanations import Triple
-
-log = logging.getLogger(__name__)
 
 
 class SparqlService:
@@ -37,23 +34,33 @@ class SparqlService:
         self._asserted = asserted
         self._publish = publish
         self._worker: _Worker | None = None
+        self._infers = False
 
     def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
         """The reply to a command about the map as it is now, after commit `seq`."""
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
                 raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
-            self._worker = _Worker(Start(seq=seq, asserted=tuple(self._asserted())), self._publish)
-        if not isinstance(command, Renew) and command.inferred and not self._worker.infers:
-            self._worker.infers = True
-            self._worker.send(Infer(asserted=tuple(self._asserted())))
+            self._worker = _Worker(self._publish)
+            self._infers = command.inferred
+            self._load(self._worker, seq)
+        elif not isinstance(command, Renew) and command.inferred and not self._infers:
+            self._infers = True
+            self._load(self._worker, seq)
         return self._worker.ask(command)
 
     def follow(self, commit: Commit) -> None:
         """Every commit, in order."""
-        if self._worker is not None:
+        if self._worker is None:
+            return
+        if commit.tbox:
+            self._load(self._worker, commit.seq)
+        else:
             delta = Delta(seq=commit.seq, retracted=commit.retracted, inserted=commit.inserted)
             self._worker.send(Committed(delta=delta))
+
+    def _load(self, worker: _Worker, seq: int) -> None:
+        worker.send(Load(seq=seq, asserted=tuple(self._asserted()), infers=self._infers))
 
     def close(self) -> None:
         """End the process."""
@@ -65,8 +72,7 @@ class SparqlService:
 class _Worker:
     """The process, while it lives."""
 
-    def __init__(self, start: Start, publish: Callable[[News], None]) -> None:
-        self.infers = False
+    def __init__(self, publish: Callable[[News], None]) -> None:
         self._publish = publish
         self._numbers = count()
         self._outbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -79,10 +85,8 @@ class _Worker:
             [sys.executable, "-m", module, str(there.fileno())],
             pass_fds=[there.fileno()],
             stdin=subprocess.DEVNULL,
-            start_new_session=False,
         )
         there.close()
-        self.send(start)
         for target in (self._write, self._read):
             threading.Thread(target=target, args=(self._connection,), name="sparql", daemon=True).start()
 

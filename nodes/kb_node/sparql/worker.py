@@ -33,9 +33,9 @@ from nodes.kb_node.sparql.protocol import (
     Asked,
     Committed,
     FromWorker,
-    Infer,
+    Load,
     News,
-    Start,
+    ToWorker,
     to_worker,
 )
 from nodes.kb_node.sparql.readers import Reader
@@ -68,9 +68,9 @@ class Look:
 class Worker:
     """Follows the commits, and hands queries to readers."""
 
-    def __init__(self, start: Start, send: Callable[[FromWorker], None]) -> None:
+    def __init__(self, send: Callable[[FromWorker], None]) -> None:
         self._send = send
-        self._dataset = Dataset(start.seq, start.asserted)
+        self._dataset = Dataset(0, ())
         self._consequences: Consequences | None = None
         self._log: deque[Delta] = deque()
         self._log_size = 0
@@ -98,14 +98,13 @@ class Worker:
         ends = [standing.ends for standing in self._standing.values()]
         return max(0.0, min(ends) - time.monotonic()) if ends else None
 
-    def take(self, message: Infer | Committed | Asked) -> None:
-        """A commit, or a command; before the first one that asks for what follows, what it follows from."""
+    def take(self, message: ToWorker) -> None:
+        """The triples, a commit, or a command."""
         match message:
+            case Load():
+                self._load(message)
             case Committed():
                 self._follow(message.delta)
-            case Infer():
-                self._consequences = Consequences(message.asserted, self._dataset)
-                self._outdate_readers()
             case Asked():
                 try:
                     self._handle(message.number, message.command)
@@ -186,6 +185,14 @@ class Worker:
 
     # Commits
 
+    def _load(self, load: Load) -> None:
+        """Begin anew; the standing queries go on, with a look at what has changed for them."""
+        self._dataset = Dataset(load.seq, load.asserted)
+        self._consequences = Consequences(load.asserted, self._dataset) if load.infers else None
+        self._outdate_readers()
+        for standing in self._standing.values():
+            self._looks.append(Look(standing, since=load.seq - 1, seq=load.seq))
+
     def _follow(self, delta: Delta) -> None:
         if self._consequences is not None:
             delta = self._consequences.after(delta)
@@ -197,8 +204,6 @@ class Worker:
         self._log_size += len(delta.everything)
         if self._log_size > BACKLOG:
             self._outdate_readers()
-            self._log.clear()
-            self._log_size = 0
 
     def _since(self, seq: int, until: int) -> Iterator[Delta]:
         """The commits after `seq`, up to `until`."""
@@ -214,6 +219,8 @@ class Worker:
         self._outdated.update(reader for reader, _ in self._busy.values())
         if self._looker is not None:
             self._outdated.add(self._looker)
+        self._log.clear()
+        self._log_size = 0
 
     def _finish(self, reader: Reader, number: int) -> None:
         try:
@@ -290,17 +297,12 @@ def main(node: Connection) -> None:
     def send(message: Any) -> None:
         node.send_bytes(msgpack.encode(message))
 
-    start = to_worker.decode(node.recv_bytes())
-    assert isinstance(start, Start)
-    worker = Worker(start, send)
-    del start
+    worker = Worker(send)
     try:
         while True:
             for ready in wait([node, *worker.connections], worker.patience_s):
                 if ready is node:
-                    message = to_worker.decode(node.recv_bytes())
-                    assert not isinstance(message, Start)
-                    worker.take(message)
+                    worker.take(to_worker.decode(node.recv_bytes()))
                 else:
                     assert isinstance(ready, Connection)
                     worker.done(ready)

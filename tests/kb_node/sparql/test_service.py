@@ -34,7 +34,7 @@ class Home:
         self.reasoner = Reasoner(triples)
         self.seq = 0
         self.news = queue.SimpleQueue()
-        self.service = SparqlService(self.reasoner.asserted, self.news.put)
+        self.service = SparqlService(lambda: self.reasoner.asserted(), self.news.put)
 
     def commit(self, insert=(), retract=()):
         insert, retract = tuple(insert), tuple(retract)
@@ -43,6 +43,12 @@ class Home:
         self.service.follow(
             Commit(seq=self.seq, stamp_ns=0, id="", source="operator", inserted=insert, retracted=retract)
         )
+
+    def replace(self, triples):
+        """Another TBox."""
+        self.reasoner = Reasoner(triples)
+        self.seq += 1
+        self.service.follow(Commit(seq=self.seq, stamp_ns=0, id="", source="operator", tbox=True))
 
     def ask(self, query, **fields):
         return self.service.ask(Sparql(query=query, **fields), self.seq).result(WAIT_S)
@@ -233,6 +239,17 @@ def test_after_its_process_was_killed_a_new_one_answers(at_home):
         endless.result(WAIT_S)
     at_home.commit(chair("b"))
     assert len(at_home.ask(CHAIRS).rows) == 2
+
+
+def test_another_tbox_is_followed(at_home):
+    at_home.commit(chair("a"))
+    at_home.watch(SEATS, inferred=True)
+    no_seat = (v.dm("Chair"), v.RDFS_SUB_CLASS_OF, v.dm("Seat"))
+    at_home.replace([t for t in at_home.reasoner.asserted() if t != no_seat])
+    news = at_home.hear().rows
+    assert (news.seq, news.since, news.disappeared) == (2, 1, ((iri("a"),),))
+    assert not at_home.ask(SEATS, inferred=True).rows
+    assert at_home.ask(CHAIRS).rows
 
 
 def test_nothing_is_started_before_the_first_question(at_home):
