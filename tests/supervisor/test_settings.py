@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+import pytest
+
+from nodes.supervisor.settings import Settings
+from schemas import codec, errors
+
+
+def settings(**fields) -> Settings:
+    return Settings(data="/d", tbox="/t", abox=None, world="/w", **fields)
+
+
+def test_the_coordinator_listens_and_the_others_connect_to_it():
+    chosen = settings(listen="tcp/127.0.0.1:7000", connect=("tcp/10.0.0.1:7447",))
+    door, other = chosen.network("coordinator"), chosen.network("kb_node")
+    assert (door.listen, door.connect) == (("tcp/127.0.0.1:7000",), ("tcp/10.0.0.1:7447",))
+    assert other.connect == ("tcp/127.0.0.1:7000", "tcp/10.0.0.1:7447")
+    assert other.listen == ("tcp/127.0.0.1:0",)
+
+
+@pytest.mark.parametrize(
+    ("listen", "reachable"),
+    [("tcp/0.0.0.0:7447", "tcp/127.0.0.1:7447"), ("tcp/[::]:7447", "tcp/[::1]:7447")],
+)
+def test_who_listens_everywhere_is_reached_on_loopback(listen, reachable):
+    assert settings(listen=listen).reachable == reachable
+
+
+def test_nodes_can_be_left_out():
+    assert settings().nodes == ("coordinator", "kb_node", "sim_node", "recorder")
+    assert settings(sim=False, record=False).nodes == ("coordinator", "kb_node")
+
+
+def test_settings_survive_the_file_and_are_checked():
+    chosen = settings(threshold_m=0.1, truth="scene")
+    assert codec.decode(codec.encode_json(chosen), Settings) == chosen
+    with pytest.raises(errors.BadRequest, match="angle_threshold_deg"):
+        codec.decode(codec.encode_json(settings(angle_threshold_deg=-1.0)), Settings)

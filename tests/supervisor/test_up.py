@@ -1,0 +1,102 @@
+"""What keeps `semmap up` from starting is told in one line, and leaves what is there alone."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from nodes.supervisor.settings import JOURNAL
+from ontology import FLAT_TTL
+from tests.conftest import free_endpoint, running
+
+BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
+
+
+def up(data: Path, *words: str | Path) -> tuple[int, str]:
+    """Exit status and the last line of stderr of `semmap up` that is expected to fail."""
+    command = [Path(sys.executable).parent / "semmap", "up", "--data", data, "--listen", free_endpoint()]
+    run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=60)
+    lines = run.stderr.strip().splitlines()
+    assert len(lines) == 1, run.stderr
+    return run.returncode, lines[0]
+
+
+@pytest.mark.parametrize(
+    ("abox", "status", "said"),
+    [
+        (FLAT_TTL.read_text()[:3000], 2, "no valid Turtle"),
+        (f"<{BASE}_1#a> a <{BASE}_domain_model#Chair>, <{BASE}_domain_model#Kitchen> .", 1, "cannot be both"),
+        (f"<{BASE}_1#a> a <{BASE}_domain_model#Chiar> .", 2, "unknown class 'Chiar'"),
+    ],
+)
+def test_a_bad_abox_stops_the_start_and_leaves_existing_data_alone(tmp_path, abox, status, said):
+    data, file = tmp_path / "data", tmp_path / "bad.ttl"
+    file.write_text(abox)
+    ended, line = up(data, "--abox", file)
+    assert ended == status
+    assert said in line
+    assert "bad.ttl" in line
+    assert not (data / JOURNAL).exists()
+
+
+def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
+    data, file = tmp_path / "data", tmp_path / "bad.ttl"
+    file.write_text("hello")
+    with running(data, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
+        client.add("Chair", "chair1")
+    before = (data / JOURNAL).read_bytes()
+    assert up(data, "--abox", file, "--fresh")[0] == 2
+    assert (data / JOURNAL).read_bytes() == before
+    with running(data, "--no-sim", "--no-record") as system, system.client() as client:
+        assert [e.name for e in client.list()] == ["chair1"]
+
+
+def test_a_bad_world_is_told_before_a_map_is_made(tmp_path):
+    world = tmp_path / "world.xml"
+    world.write_text("<mujoco")
+    status, line = up(tmp_path / "data", "--abox", "none", "--world", world)
+    assert status == 2
+    assert "world.xml" in line
+    assert not (tmp_path / "data" / JOURNAL).exists()
+
+
+def test_a_port_in_use_is_told(tmp_path):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        endpoint = f"tcp/127.0.0.1:{taken.getsockname()[1]}"
+        status, line = up(tmp_path, "--listen", endpoint)
+    assert status == 1
+    assert f"cannot listen on {endpoint}" in line
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--abox", "nowhere.ttl"), "there is no file nowhere.ttl"),
+        (("--abox", "/"), "is a directory"),
+        (("--tbox", "nowhere.ttl"), "there is no file"),
+        (("--threshold", "-1"), "threshold_m must be"),
+        (("--threshold", "nan"), "threshold_m"),
+        (("--truth", "god"), "god"),
+        (("--data", "/etc/hosts"), "/etc/hosts"),
+    ],
+)
+def test_bad_options_are_told(tmp_path, words, said):
+    status, line = up(tmp_path, *words)
+    assert status == 2
+    assert said in line
+
+
+def test_one_system_a_data_folder(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record"):
+        status, line = up(tmp_path)
+        assert status == 1
+        assert f"semmap down --data {tmp_path}" in line
+        down = [Path(sys.executable).parent / "semmap", "down", "--data", tmp_path]
+        assert subprocess.run(down, stdout=subprocess.DEVNULL).returncode == 0
+    assert subprocess.run(down, stderr=subprocess.DEVNULL).returncode == 3
