@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from nodes.extern.cli import execute
+from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
 
 _BIN = Path(sys.executable).parent

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import random
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 from benchmarks.kb.made import Figures, each, entities, timed
 from nodes.kb_node import answers
@@ -16,44 +18,52 @@ from schemas import codec
 from schemas.commits import Transaction
 
 
-def bulk_load(size: int) -> float:
-    """One durable commit of `size` entities into an empty map [s]."""
-    with tempfile.TemporaryDirectory() as folder:
-        seed(Path(folder), HOUSEHOLD_TTL, None)
-        journal = Journal(Path(folder) / FILENAME)
-        semantic_map = _opened(journal)
-        transaction = _load(size)
-        took_s = timed(lambda: semantic_map.commit(transaction))
+class Disk(NamedTuple):
+    """A map of so many entities in one process, with its journal."""
+
+    entities: int
+    bulk_load_s: float
+    """One durable commit of all of them into an empty map."""
+    start_up_s: float
+    """From the journal's file to a map that answers."""
+    list_all: Figures
+    """All of them, encoded as for the wire."""
+    sync: Figures
+    """What the disk takes for any durable write, to compare."""
+
+
+def measure(where: Path | None, size: int) -> Disk:
+    """Journals in a new folder in `where`, or in the temporary one."""
+    with tempfile.TemporaryDirectory(dir=where) as folder:
+        path = Path(folder)
+        bulk_load_s = prepare(path, size)
+        journal = Journal(path / FILENAME)
+        maps: list[SemanticMap] = []
+        start_up_s = timed(lambda: maps.append(SemanticMap(journal)))
+        list_all = each(range(10), lambda _: codec.encode(answers.entities_of(maps[0], None)))
         journal.close()
-        return took_s
+        return Disk(size, bulk_load_s, start_up_s, list_all, _sync(path / "sync"))
 
 
-def start_up(folder: Path) -> tuple[float, Figures]:
-    """From the journal's file to a map that answers [s]; then listing all of it, encoded, in a warm node."""
-    journal = Journal(folder / FILENAME)
-    maps: list[SemanticMap] = []
-    took_s = timed(lambda: maps.append(_opened(journal)))
-    listing = each(range(10), lambda _: codec.encode(answers.entities_of(maps[0], None)))
-    journal.close()
-    return took_s, listing
-
-
-def prepare(folder: Path, size: int, *, checkpoint: bool = True) -> None:
-    """A journal of `size` entities in `folder`, as a node leaves it that was stopped (or, without, killed)."""
+def prepare(folder: Path, size: int) -> float:
+    """A journal of `size` entities in `folder`, as a node leaves it that was stopped; its bulk load [s]."""
     seed(folder, HOUSEHOLD_TTL, None)
     journal = Journal(folder / FILENAME)
-    semantic_map = _opened(journal)
-    semantic_map.commit(_load(size))
-    if checkpoint:
-        semantic_map.checkpoint()
-    journal.close()
-
-
-def _opened(journal: Journal) -> SemanticMap:
-    return SemanticMap(journal)
-
-
-def _load(size: int) -> Transaction:
+    semantic_map = SemanticMap(journal)
     random_ = random.Random(size)
     triples = tuple(triple for star in entities(size, random_) for triple in star)
-    return Transaction(id="load", source="file", reason="benchmark", insert=triples)
+    transaction = Transaction(id="load", source="file", reason="benchmark", insert=triples)
+    took_s = timed(lambda: semantic_map.commit(transaction))
+    semantic_map.checkpoint()
+    journal.close()
+    return took_s
+
+
+def _sync(path: Path) -> Figures:
+    with path.open("wb", buffering=0) as file:
+
+        def write(_: int) -> None:
+            file.write(bytes(8192))
+            os.fdatasync(file.fileno())
+
+        return each(range(200), write)

@@ -1,4 +1,4 @@
-"""The reasoner alone: single changes to maps of several sizes, memory, a crowded room, and owlrl beside it."""
+"""The reasoner alone: single changes to maps of several sizes, memory, a crowded room; owlrl beside it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import random
 from typing import NamedTuple
 
 import owlrl
-import psutil
+import psutil  # type: ignore[import-untyped]
 import rdflib
 
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import queue
 import random
+import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import psutil
+import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
 from nodes.extern.client import Client, connect
 from schemas import commands, keys
 from schemas.errors import SemmapError
-from tests.conftest import free_endpoint
 
 IN_FLIGHT = 32
 
@@ -28,13 +28,14 @@ class Wire(NamedTuple):
     """What a client sees. Times of single commands are with one request in flight."""
 
     entities: int
+    sim: bool
     start_s: float
     """From `semmap up` to a system that is ready, all processes and their imports included."""
     add: Figures
     move: Figures
     sustained_moves_per_s: float
     list_all: Figures
-    sparql: Figures | None
+    sparql: Figures
     memory_kb: dict[str, float]
 
 
@@ -51,7 +52,9 @@ def measure(folder: Path, size: int, *, sim: bool, repeat: int) -> Wire:
         move = each(names, lambda name: client.update(name, at=pose(random_).position_m))
         moves_per_s = _sustained(client, [f"e{i % size}" for i in range(4 * repeat)], random_)
         list_all = each(range(5), lambda _: client.list())
-        return Wire(size, start_s, add, move, moves_per_s, list_all, _sparql(client, repeat), _memory(client))
+        return Wire(
+            size, sim, start_s, add, move, moves_per_s, list_all, _sparql(client, repeat), _memory(client)
+        )
 
 
 def _add(client: Client, name: str, i: int, random_: random.Random) -> None:
@@ -82,13 +85,10 @@ def _sustained(client: Client, names: list[str], random_: random.Random) -> floa
     return len(names) / (time.perf_counter() - started)
 
 
-def _sparql(client: Client, repeat: int) -> Figures | None:
-    """One look-up by name, if this version answers SPARQL."""
-    ask: Callable[[str], Any] | None = getattr(client, "sparql", None)
-    if ask is None:
-        return None
-    iri = client.get("e1").iri
-    return each(range(repeat), lambda _: ask(f"SELECT ?class WHERE {{ <{iri}> a ?class }}"))
+def _sparql(client: Client, repeat: int) -> Figures:
+    """The classes of one entity, looked up by its IRI."""
+    query = f"SELECT ?class WHERE {{ <{client.get('e1').iri}> a ?class }}"
+    return each(range(repeat), lambda _: client.sparql(query))
 
 
 def _settle(client: Client) -> None:
@@ -106,9 +106,9 @@ def _memory(client: Client) -> dict[str, float]:
 @contextmanager
 def _running(folder: Path, *, sim: bool) -> Iterator[tuple[Client, float]]:
     """A client of `semmap up` on a port of its own, and how long the start took [s]; stopped at the end."""
-    endpoint = free_endpoint()
+    endpoint = _free_endpoint()
     words = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
-    command = [Path(sys.executable).with_name("semmap"), "up", *words, *([] if sim else ["--no-sim"])]
+    command = [str(Path(sys.executable).with_name("semmap")), "up", *words, *([] if sim else ["--no-sim"])]
     started = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:
@@ -125,3 +125,9 @@ def _running(folder: Path, *, sim: bool) -> Iterator[tuple[Client, float]]:
                 yield client, took_s
         finally:
             process.terminate()
+
+
+def _free_endpoint() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"

@@ -7,10 +7,10 @@ never older than the orders before it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
@@ -34,6 +34,7 @@ from schemas.scenes import (
     Spawned,
 )
 
+T = TypeVar("T")
 Ask = Callable[[str, Any, Any], Future[Any]]
 BATCH = 500
 _USUAL_AREA_M2 = 0.1
@@ -85,11 +86,11 @@ class Keeping:
         if self.scene.known and not self._busy:
             self.scene.forget()
 
-    def keep(self) -> None:
-        """Do what must be done, unless orders are under way already."""
+    def keep(self, names: Collection[str] | None = None) -> None:
+        """Do what must be done (about these entities and bodies), unless orders are under way already."""
         if self._busy or not self.scene.known:
             return
-        actions = self.wanted()
+        actions = self.wanted(names)
         refused = [placement for placement in map(self._follow, actions.follow) if placement is not None]
         for body in actions.adopt:
             self._adopt(body)
@@ -97,12 +98,13 @@ class Keeping:
         if steps:
             self._start(steps)
 
-    def wanted(self) -> Actions:
-        """What map and scene still differ in."""
+    def wanted(self, names: Collection[str] | None = None) -> Actions:
+        """What map and scene still differ in: all of it, or what concerns these entities and bodies."""
         failed = {name: commit for name, (commit, _) in self._failed.items()}
-        return reconcile(
-            self._door.entities, self.scene.bodies, self._config.truth, self._config.thresholds, failed
-        )
+        entities, bodies = self._door.entities, self.scene.bodies
+        if names is not None:
+            entities, bodies = _only(names, entities), _only(names, bodies)
+        return reconcile(entities, bodies, self._config.truth, self._config.thresholds, failed)
 
     def in_agreement(self) -> bool | None:
         """Map and scene are the same, and nothing is under way; None when no simulator runs."""
@@ -226,3 +228,7 @@ class Keeping:
         except (errors.Refused, errors.BadRequest) as error:
             self._foreign[body.name] = f"a body of the scene that is no entity: {error.text}"
             self._report(f"{body.name} did not become an entity: {error.text}")
+
+
+def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:
+    return {name: of[name] for name in names if name in of}

@@ -46,6 +46,7 @@ class Coordinator:
         self._health = HealthView()
         self._has_map = False
         self._fetching = False
+        self._changed: set[str] = set()
         self._put_aside: list[tuple[c.Add | c.Update, Future[c.Changed]]] = []
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
@@ -85,14 +86,14 @@ class Coordinator:
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True)
         node.every(0.2, self._tick)
-        node.when_idle(self._change_together)
+        node.when_idle(self._catch_up)
 
     # Following
 
     def _on_commit(self, commit: Commit) -> None:
         if self._has_map and (not self._door.take(commit) or commit.tbox):
             self._fetch_map()
-        self._keep()
+        self._changed.update(commit.names)
 
     def _on_poses(self, poses: Poses) -> None:
         if self._has_map:
@@ -118,6 +119,14 @@ class Coordinator:
             self._node.describe(
                 f"{len(self._door.entities)} entities, {len(self._keeping.scene.bodies)} bodies"
             )
+
+    def _catch_up(self) -> None:
+        """Make the changes that were put off, and look at what commits changed; all the rest at each tick."""
+        self._change_together()
+        if self._changed:
+            names, self._changed = self._changed, set()
+            self._keeping.keep(names)
+            self._answer_waiting()
 
     def _fetch_map(self) -> None:
         """Ask for the class table and a snapshot: the first time, and when a commit was missed."""
@@ -246,7 +255,6 @@ class Coordinator:
                 self._waiting.append((result.names[0], time.monotonic() + _WAIT_S, result, future))
             else:
                 future.set_result(result)
-        self._keep()
 
     def _answer_waiting(self) -> None:
         still = []

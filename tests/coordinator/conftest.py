@@ -11,6 +11,8 @@ from nodes.coordinator.door import Door
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.undo import undo
+from schemas import errors
+from schemas.bridge import Outcome
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
@@ -43,7 +45,13 @@ def semantic_map(tmp_path: Path):
 def door(semantic_map):
     answers = {
         "commit": semantic_map.commit,
-        "star": lambda query: semantic_map.stars(query.names),
+        "commits": lambda several: tuple(
+            Outcome(error=errors.to_message(result))
+            if isinstance(result, errors.SemmapError)
+            else Outcome(commit=result)
+            for result in semantic_map.commit_together(several.transactions)
+        ),
+        "star": lambda query: semantic_map.stars(query.names, together=query.together),
         "undo": lambda command: undo(semantic_map, semantic_map._journal, command),
     }
     door = Door(lambda verb, message: answers[verb](message))

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from nodes.coordinator.door import Door
+from ontology import vocabulary as v
 from schemas import commands as c
 from schemas import errors
-from schemas.commits import Commit
+from schemas.commits import Commit, Transaction
 from schemas.entities import Pose, orientation_from_yaw
 
 
@@ -219,3 +220,46 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
     add(door, name="chair2")
     assert door.undo(c.Undo(id="u")).commit == door.undo(c.Undo(id="u")).commit == 3
     assert set(door.entities) == {"chair1"}
+
+
+def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map):
+    results = door.change_together(
+        [
+            c.Add(class_="Chair", name="a", at=(1.0, 0.0, 0.0), ref="seat"),
+            c.Add(class_="Chair", name="b", at=(2.0, 0.0, 0.0), id="42"),
+            c.Update(name="a", at=(3.0, 0.0, 0.0)),
+            c.Update(name="c", at=(3.0, 0.0, 0.0)),
+            c.Add(class_="Chair"),
+            c.Add(class_="Chair", name="b", at=(2.0, 0.0, 0.0), id="42"),
+            c.Add(class_="Chair", name="chair1", at=(2.0, 0.0, 0.0)),
+        ]
+    )
+    assert [getattr(result, "commit", type(result)) for result in results] == [
+        1,
+        2,
+        3,
+        errors.UnknownName,
+        4,
+        2,
+        errors.NameTaken,
+    ]
+    assert {e.name: e for e in semantic_map.entities()} == door.entities
+    assert door.seq == semantic_map.seq == 4
+    assert door.entity("a").pose == Pose(position_m=(3.0, 0.0, 0.0))
+
+
+def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, semantic_map):
+    for name in ("a", "b"):
+        add(door, name=name, at=(1.0, 2.0, 0.0), ref="seat")
+    (star,) = semantic_map.stars(["a"])
+    (seat,) = star.preferred
+    other = semantic_map.stars(["b"])[0]
+    shared = Transaction(
+        id="share",
+        source="operator",
+        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] in other.preferred),
+        insert=((other.iri, v.HAS_PREFERRED_REFERENCE, seat),),
+    )
+    door.take(semantic_map.commit(shared))
+    door.change_together([c.Update(name=name, ref=f"the {name}") for name in ("a", "b")])
+    assert [door.entity(name).preferred_reference for name in ("a", "b")] == ["the a", "the b"]

@@ -3,6 +3,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
+from nodes.kb_node.journal import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
@@ -305,3 +306,29 @@ def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):
 def test_a_commit_crosses_the_wire(semantic_map):
     commit = semantic_map.commit(transaction(1, chair()))
     assert codec.decode(codec.encode(commit), Commit) == commit
+
+
+def test_together_each_is_committed_or_refused_by_itself(semantic_map):
+    kitchen = [(CHAIR1, v.RDF_TYPE, v.dm("Kitchen"))]
+    results = semantic_map.commit_together(
+        [transaction(1, chair()), transaction(2, kitchen), transaction(3, chair("chair2")), transaction(1)]
+    )
+    assert [getattr(result, "seq", type(result)) for result in results] == [1, errors.Inconsistent, 2, 1]
+    assert state(home.reopened(semantic_map)) == state(semantic_map)
+
+
+def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
+    semantic_map.commit(transaction(0, chair("chair0")))
+    before = state(semantic_map)
+    long = "x" * 20_000
+    transactions = [
+        transaction(1, chair()),
+        transaction(2, retract=chair("chair0")),
+        transaction(3, chair("chair2", preferred=long)),
+    ]
+    with full_by_page_count(semantic_map._journal):
+        results = semantic_map.commit_together(transactions)
+    assert {type(result) for result in results} == {NotWritten}
+    assert state(semantic_map) == before
+    assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
+    assert state(home.reopened(semantic_map)) == state(semantic_map)

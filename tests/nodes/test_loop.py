@@ -97,3 +97,23 @@ def test_then_passes_results_and_errors_on():
     broken = then(doubled, lambda x: x / 0)
     assert isinstance(broken.exception(), ZeroDivisionError)
     assert then(broken, str).exception() is broken.exception()
+
+
+def test_what_is_put_off_is_done_when_no_event_waits(network):
+    node, client = network
+    done: list[int] = []
+    put_off: list[Future] = []
+
+    def finish():
+        done.append(len(put_off))
+        while put_off:
+            put_off.pop().set_result(commands.Done(text="done"))
+
+    def later(_):
+        put_off.append(Future())
+        return put_off[-1]
+
+    node.when_idle(finish)
+    node.serve("semmap/later", {"get": (commands.Get, later)})
+    assert bus.ask(client, "semmap/later", "get", commands.Get(name="x"), commands.Done).text == "done"
+    assert 1 in done

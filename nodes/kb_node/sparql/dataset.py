@@ -57,17 +57,22 @@ class Dataset:
         """Go on to the commit after."""
         for quad in quads(delta.retracted, ASSERTED):
             self._retract(quad)
-        for quad in quads(delta.inserted, ASSERTED):
-            self._insert(quad)
+        inserted = list(quads(delta.inserted, ASSERTED))
+        self.store.extend(quad for quad in inserted if not isinstance(quad.object, ox.Literal))
+        for quad in inserted:
+            if isinstance(quad.object, ox.Literal):
+                self._insert(quad)
         for quad in quads(delta.no_longer_inferred, INFERRED):
             self.store.remove(quad)
         self.store.extend(quads(delta.newly_inferred, INFERRED))
         self.seq = delta.seq
 
     def _insert(self, quad: ox.Quad) -> None:
-        if isinstance(quad.object, ox.Literal) and quad in self.store:
+        """Insert one with a literal, unless it is asserted in another spelling already."""
+        if quad in self.store:
             self._other_spellings[_stored(quad)] += 1
-        self.store.add(quad)
+        else:
+            self.store.add(quad)
 
     def _retract(self, quad: ox.Quad) -> None:
         """Remove it, unless it is still asserted in another spelling."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from msgspec import Struct, msgpack
+from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.sparql.dataset import Delta
 from schemas.commands import Renew, Sparql, Watch
@@ -12,12 +10,14 @@ from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
 from schemas.sparql import RowsChanged
 
+NOTHING = Raw(msgpack.encode(None))
+
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):
     """All that is asserted after commit `seq`; with `infers`, what follows is wanted, too.
 
-    The first message, and the one that comes when commits alone do not tell: when what follows is asked for the
-    first time, and when the TBox is another.
+    The first message, and the one that comes when commits alone do not tell: when what follows is asked for
+    the first time, and when the TBox is another.
     """
 
     seq: int
@@ -39,10 +39,10 @@ class Asked(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class Answered(Struct, frozen=True, kw_only=True, tag=True):
-    """The answer: the message that the command's reply is, or the error."""
+    """The answer: the command's reply, encoded, or the error."""
 
     number: int
-    reply: Any = None
+    reply: Raw = NOTHING
     error: ErrorMessage | None = None
 
 

@@ -11,13 +11,13 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, Pipe
 from typing import Final, NoReturn
 
-from msgspec import Struct, msgpack
+from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.sparql.dataset import Dataset, Delta
 from nodes.kb_node.sparql.evaluation import answer
+from nodes.kb_node.sparql.protocol import NOTHING
 from schemas import errors
 from schemas.errors import ErrorMessage
-from schemas.sparql import SparqlResult
 
 MEMORY_BYTES: Final = 1 << 30
 """What a query may use beyond the triples."""
@@ -37,9 +37,9 @@ class Task(Struct, frozen=True, kw_only=True):
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
-    """What came of it: one of the two."""
+    """What came of it: a `SparqlResult`, encoded, or the error."""
 
-    result: SparqlResult | None = None
+    result: Raw = NOTHING
     error: ErrorMessage | None = None
 
 
@@ -73,15 +73,17 @@ class Reader:
         with suppress(OSError):  # if it is dead, `finish` tells
             self.connection.send_bytes(msgpack.encode(task))
 
-    def finish(self) -> SparqlResult:
-        """The answer. Raises the query's error; Refused when the process had to die, and then it is gone."""
+    def finish(self) -> Raw:
+        """The `SparqlResult`, encoded.
+
+        Raises the query's error; Refused when the process had to die, and then it is gone.
+        """
         try:
             outcome = _outcomes.decode(self.connection.recv_bytes())
         except (EOFError, OSError):
             raise self._post_mortem() from None
         if outcome.error is not None:
             raise errors.from_message(outcome.error)
-        assert outcome.result is not None
         return outcome.result
 
     @property
@@ -153,7 +155,8 @@ def _data_bytes() -> int:
 
 def _evaluate(task: Task, dataset: Dataset) -> Outcome:
     try:
-        return Outcome(result=answer(task.query, dataset, inferred=task.inferred, limit=task.limit))
+        result = answer(task.query, dataset, inferred=task.inferred, limit=task.limit)
+        return Outcome(result=Raw(msgpack.encode(result)))
     except errors.SemmapError as error:
         return Outcome(error=errors.to_message(error))
     except MemoryError:

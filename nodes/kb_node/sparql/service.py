@@ -113,8 +113,8 @@ class _Worker:
 
     def _write(self, connection: Connection) -> None:
         try:
-            while self.is_alive:
-                connection.send_bytes(msgpack.encode(self._outbox.get()))
+            while (message := self._outbox.get()) is not None:
+                connection.send_bytes(msgpack.encode(message))
         except OSError:
             pass  # `_read` sees the end, too
 
@@ -128,11 +128,17 @@ class _Worker:
                     self._answer(message)
         except (EOFError, OSError):
             pass
+        finally:
+            self._bury(connection)
+
+    def _bury(self, connection: Connection) -> None:
+        """Nobody waits for it any more."""
         with self._lock:
             self.is_alive = False
             left = list(self._waiting.values())
             self._waiting.clear()
         self._outbox.put(None)
+        self._process.kill()
         self._process.wait()
         connection.close()
         for _, future in left:
@@ -144,7 +150,7 @@ class _Worker:
         if message.error is not None:
             future.set_exception(errors.from_message(message.error))
         else:
-            future.set_result(codec.convert(message.reply, BRIDGE[verb][1]))
+            future.set_result(codec.decode(bytes(message.reply), BRIDGE[verb][1]))
 
 
 def _ended() -> errors.Refused:

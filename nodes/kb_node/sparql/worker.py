@@ -23,7 +23,7 @@ from itertools import islice
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final
 
-from msgspec import msgpack
+from msgspec import Raw, msgpack
 
 from nodes.kb_node.sparql import text
 from nodes.kb_node.sparql.consequences import Consequences
@@ -52,6 +52,8 @@ STANDING: Final = 64
 """How many standing queries there may be."""
 STANDING_ROWS: Final = 10_000
 STANDING_TIMEOUT_S: Final = 2.0
+
+_results = msgpack.Decoder(SparqlResult)
 
 
 @dataclass
@@ -163,7 +165,7 @@ class Worker:
                     self._drop(standing)
                 standing.ends = time.monotonic() + standing.lease_s
                 said = "has ended" if command.end else f"goes on for {standing.lease_s:g} s"
-                self._send(Answered(number=number, reply=Done(text=f"{command.watch} {said}")))
+                self._send(Answered(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
 
     def _admit(self, command: Watch) -> Standing:
         name = command.watch or f"q{uuid.uuid4().hex[:12]}"
@@ -258,7 +260,7 @@ class Worker:
         look, self._looking = self._looking, None
         assert look is not None
         try:
-            result = reader.finish()
+            result = _results.decode(reader.finish())
         except errors.SemmapError as error:
             if look.number is not None:
                 self._send(Answered(number=look.number, error=errors.to_message(error)))
@@ -267,9 +269,13 @@ class Worker:
             return
         news = look.standing.take(result.rows, look.since, look.seq)
         if look.number is not None:
-            self._send(Answered(number=look.number, reply=_watching(look.standing, result)))
+            self._send(Answered(number=look.number, reply=_encoded(_watching(look.standing, result))))
         elif news is not None and look.standing.watch in self._standing:
             self._send(News(watch=news.watch, rows=news))
+
+
+def _encoded(message: Any) -> Raw:
+    return Raw(msgpack.encode(message))
 
 
 def _in_one_step(looks: deque[Look], seq: int) -> Iterator[Look]:
@@ -307,7 +313,7 @@ def main(node: Connection) -> None:
                     assert isinstance(ready, Connection)
                     worker.done(ready)
             worker.go_on()
-    except (EOFError, BrokenPipeError, KeyboardInterrupt):
+    except (EOFError, ConnectionError, KeyboardInterrupt):
         pass
     finally:
         worker.end()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
-from nodes.extern import show, show_past
+from nodes.extern.cli import show, show_past
+from nodes.extern.cli.talking import print_json, print_lines, talks
 from nodes.extern.client import Client
-from nodes.extern.talking import print_json, print_lines, talks
 
 _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from nodes.extern import show, sparql_formats
+from nodes.extern.cli import show, sparql_formats
 from nodes.extern.client import Client, read_file
 from schemas import errors
 

@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import pyoxigraph as ox
 from rich.table import Table
 
-from nodes.extern import tables
+from nodes.extern.cli import tables
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.explanations import Term

@@ -3,7 +3,7 @@ import json
 import pyoxigraph as ox
 import pytest
 
-from nodes.extern import sparql_formats as formats
+from nodes.extern.cli import sparql_formats as formats
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.sparql import RowsChanged, SparqlResult

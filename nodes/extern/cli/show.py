@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.tree import Tree
 
-from nodes.extern.tables import author, card, pose_cells, pose_text, provenance_text, table
+from nodes.extern.cli.tables import author, card, pose_cells, pose_text, provenance_text, table
 from schemas.commands import Changed, Inferred, SystemStatus
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity

@@ -1,0 +1,92 @@
+"""`python -m benchmarks.kb [--sizes 10,100,...] [--quick] [--parts core,disk,...] [--json FILE]`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, TypeVar
+
+from benchmarks.kb import disk, engine, table, wire
+
+PARTS = ("core", "owlrl", "disk", "wire", "sim")
+T = TypeVar("T")
+
+
+def arguments() -> argparse.Namespace:
+    """What the command line says."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.kb", description="Speed and memory.")
+    parser.add_argument("--sizes", default="10,100,1000,10000,100000", help="entities in the engine alone")
+    parser.add_argument("--entities", type=int, default=10_000, help="in the node, on disk and over Zenoh")
+    parser.add_argument("--sim-entities", type=int, default=300, help="with bodies in the simulator")
+    parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
+    parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
+    parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
+    parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
+    words = parser.parse_args()
+    if words.quick:
+        words.sizes, words.entities, words.sim_entities, words.repeat = "10,100,1000", 1000, 30, 100
+    return words
+
+
+def main() -> None:
+    """Measure, print the table as it grows, write JSON."""
+    words = arguments()
+    parts = set(words.parts.split(","))
+    report: dict[str, Any] = {"machine": platform.platform(), "load_average": os.getloadavg()}
+    rows: list[table.Row] = []
+    if parts & {"core", "owlrl"}:
+        rows += _core(words, report, with_owlrl="owlrl" in parts)
+    if "disk" in parts:
+        found = _alone(disk.measure, words.folder, words.entities)
+        rows += table.of_disk(found)
+        report["disk"] = found._asdict()
+    for part, size in (("wire", words.entities), ("sim", words.sim_entities)):
+        if part in parts:
+            with tempfile.TemporaryDirectory(dir=words.folder) as folder:
+                _alone(disk.prepare, Path(folder), size)
+                seen = wire.measure(Path(folder), size, sim=part == "sim", repeat=words.repeat)
+            rows += table.of_wire(seen)
+            report[part] = seen._asdict()
+    report["rows"] = [{**row._asdict(), "met": row.met} for row in rows]
+    print(table.lines(rows))
+    print("load average: {:.1f} before, {:.1f} now".format(report["load_average"][0], os.getloadavg()[0]))
+    if words.json_file:
+        words.json_file.write_text(json.dumps(report, indent=1) + "\n")
+
+
+def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool) -> list[table.Row]:
+    """The engine at each size, a crowded room, and if wanted owlrl on a map of 100."""
+    engines = [_alone(engine.measure, int(size), words.repeat) for size in words.sizes.split(",")]
+    add, remove = _alone(engine.room, words.repeat)
+    rows = table.of_engine(engines) + table.of_room(add, remove)
+    report["core"] = [e._asdict() for e in engines]
+    report["core_add_check"] = [{"entities": e.entities, **e.add} for e in engines]
+    report["kb_per_entity"] = engines[-1].kb_per_entity
+    report["process_kb_per_entity"] = engines[-1].process_kb_per_entity
+    report["room"] = {"add": add, "remove": remove}
+    if with_owlrl:
+        size = 10 if words.quick else 100
+        alike = next((e for e in engines if e.entities == size), None)
+        alike = alike or _alone(engine.measure, size, words.repeat)
+        figures = _alone(engine.against_owlrl, size, 1)
+        rows += table.of_owlrl(figures, alike)
+        report["owlrl_add_check"] = [{"entities": size, **figures}]
+    return rows
+
+
+def _alone(function: Callable[..., T], *values: Any) -> T:
+    """`function(*values)` in a process of its own, whose memory nobody else has used."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(function, *values).result()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""What was measured beside what is to be reached."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from benchmarks.kb.disk import Disk
+from benchmarks.kb.engine import Engine
+from benchmarks.kb.made import Figures
+from benchmarks.kb.wire import Wire
+
+
+class Row(NamedTuple):
+    """One figure. `reach` and `aim` are the most that is allowed, for rates (`more`) the least."""
+
+    what: str
+    value: float
+    unit: str
+    reach: float | None = None
+    aim: float | None = None
+    more: bool = False
+
+    @property
+    def met(self) -> str:
+        """Which of the two is met."""
+        for name, bound in (("aim", self.aim), ("reach", self.reach)):
+            if bound is not None and (self.value >= bound if self.more else self.value <= bound):
+                return name
+        return "" if self.reach is None else "NO"
+
+
+def of_engine(engines: Sequence[Engine]) -> list[Row]:
+    """Single changes, at every size, and how they grow."""
+    rows: list[Row] = []
+    for e in engines:
+        rows += _pair(f"core: add and check, {e.entities}", e.add, (0.1, 0.5), (0.03, 0.1))
+    first, last = engines[0], engines[-1]
+    growth = last.add["p50_ms"] / first.add["p50_ms"]
+    rows.append(Row(f"core: add, {last.entities} against {first.entities}", growth, "times", 1.5, 1.5))
+    rows.append(Row("core: refused add, explained, undone, p50", last.refuse["p50_ms"], "ms", 0.2, 0.05))
+    rows.append(Row("core: remove, p50", last.remove["p50_ms"], "ms", 0.1, 0.03))
+    rows.append(Row("core: move, p50", last.move["p50_ms"], "ms", 0.1, 0.03))
+    rows.append(Row(f"engine memory an entity, {last.entities}", last.kb_per_entity, "kB", 4, 2))
+    rows.append(Row("whole process, an entity", last.process_kb_per_entity, "kB", 15, 8))
+    return rows
+
+
+def of_room(add: Figures, remove: Figures) -> list[Row]:
+    """A room with many parts."""
+    return [
+        Row("core: a room with 10 000 parts: add one, p50", add["p50_ms"], "ms", 1, 0.1),
+        Row("core: a room with 10 000 parts: remove one, p50", remove["p50_ms"], "ms", 1, 0.1),
+    ]
+
+
+def of_owlrl(owlrl: Figures, engine: Engine) -> list[Row]:
+    """How many times faster the engine is than owlrl, on a map of the same size."""
+    times = owlrl["p50_ms"] / engine.add["p50_ms"]
+    return [
+        Row(f"owlrl: add and check, {engine.entities}", owlrl["p50_ms"], "ms"),
+        Row("core against owlrl", times, "times", 10_000, 50_000, more=True),
+    ]
+
+
+def of_disk(disk: Disk) -> list[Row]:
+    """Load, start, list."""
+    of = f"{disk.entities} entities"
+    return [
+        Row(f"bulk load, durable, {of}", disk.bulk_load_s, "s", 1, 0.3),
+        Row(f"start-up from disk, {of}", disk.start_up_s, "s", 2, 1),
+        Row(f"list all in the node, {of}, p50", disk.list_all["p50_ms"], "ms", 100, 50),
+        Row("one write of this disk (fdatasync of 8 kB), p50", disk.sync["p50_ms"], "ms"),
+    ]
+
+
+def of_wire(wire: Wire) -> list[Row]:
+    """What a client sees. With the simulator there is nothing that must be reached."""
+    where = f"{wire.entities} entities, simulator {'on' if wire.sim else 'off'}"
+    bounds = ((None, None), (None, None)) if wire.sim else ((2.0, 10.0), (1.0, 4.0))
+    rows = _pair(f"over Zenoh: add, {where}", wire.add, *bounds)
+    rows += _pair(f"over Zenoh: move, {where}", wire.move, *bounds)
+    least: Bounds = (None, None) if wire.sim else (1000, 3000)
+    sustained = wire.sustained_moves_per_s
+    rows.append(Row(f"sustained durable moves, {where}", sustained, "/s", least[0], least[1], more=True))
+    rows.append(Row(f"list all over Zenoh, {where}, p50", wire.list_all["p50_ms"], "ms"))
+    rows.append(Row(f"SPARQL look-up, {where}, p50", wire.sparql["p50_ms"], "ms", None if wire.sim else 1))
+    rows.append(Row(f"semmap up to ready, {where}", wire.start_s, "s"))
+    return rows
+
+
+def lines(rows: Sequence[Row]) -> str:
+    """The table in Markdown."""
+    head = ["| what | measured | reach | aim | met |", "| --- | --- | --- | --- | --- |"]
+    return "\n".join(
+        head
+        + [
+            f"| {r.what} | {r.value:.3g} {r.unit} | {_bound(r.reach)} | {_bound(r.aim)} | {r.met} |"
+            for r in rows
+        ]
+    )
+
+
+def _bound(bound: float | None) -> str:
+    return "" if bound is None else f"{bound:g}"
+
+
+Bounds = tuple[float | None, float | None]
+
+
+def _pair(what: str, figures: Figures, reach: Bounds, aim: Bounds) -> list[Row]:
+    """Median and 99th percentile."""
+    return [
+        Row(f"{what}, {name}", figures[f"{name}_ms"], "ms", reach[i], aim[i])
+        for i, name in enumerate(("p50", "p99"))
+    ]

@@ -1,0 +1,112 @@
+"""What the verbs of the command line that talk to a system have in common."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from nodes import bus
+from nodes.extern.client import CONNECT_VARIABLE, Client, connect
+from schemas import codec, errors
+
+
+def talks(function: Callable[..., None]) -> Callable[..., None]:
+    """A verb that talks to a running system: its first argument is a client."""
+
+    @click.option(
+        "--connect",
+        "where",
+        envvar=CONNECT_VARIABLE,
+        default=bus.DEFAULT_ENDPOINT,
+        show_default=True,
+        show_envvar=True,
+        metavar="EP",
+        help="Zenoh endpoint of the system.",
+    )
+    @functools.wraps(function)
+    def with_client(where: str, **arguments: Any) -> None:
+        shared = click.get_current_context().obj
+        if isinstance(shared, Client):
+            function(shared, **arguments)
+            return
+        with connect(where, agent=f"cli/{os.environ.get('USER', 'user')}") as client:
+            function(client, **arguments)
+
+    return with_client
+
+
+def run_words(app: click.Command, words: list[str], client: Client | None = None) -> int:
+    """Run a command line, over `client` if there is one; its exit status. Errors are one line on stderr."""
+    try:
+        app.main(words, prog_name="semmap", standalone_mode=False, obj=client)
+    except errors.SemmapError as error:
+        complain(error.text)
+        return error.exit_status
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message())
+    except click.ClickException as error:
+        complain(error.format_message())
+        return 2
+    except (click.Abort, KeyboardInterrupt):
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 0
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+def print_json(message: Any) -> None:
+    """A reply as JSON."""
+    print(json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False))
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """A reply in words."""
+    for line in lines:
+        print(line)
+
+
+def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
+    """An option of three numbers."""
+    return click.option(*names, nargs=3, type=float, **options)
+
+
+def given(fields: dict[str, Any]) -> dict[str, Any]:
+    """The options that were given."""
+    return {name: value for name, value in fields.items() if value not in (None, (), False)}
+
+
+def command(kind: type[Any], **fields: Any) -> Any:
+    """A command of the options that were given. Raises BadRequest."""
+    return codec.convert(given(fields), kind)
+
+
+def write_atomically(file: Path, content: bytes) -> None:
+    """All of `content` under that name, or nothing. Raises BadFile."""
+    try:
+        with tempfile.NamedTemporaryFile(dir=file.resolve().parent, delete=False) as temporary:
+            temporary.write(content)
+            temporary.flush()
+            os.fsync(temporary.fileno())
+        Path(temporary.name).chmod(0o644)
+        Path(temporary.name).replace(file)
+    except OSError as error:
+        with contextlib.suppress(OSError, UnboundLocalError):
+            Path(temporary.name).unlink()
+        raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
+
+
+def complain(text: str) -> None:
+    """What is wrong, in one line on stderr."""
+    print(f"semmap: {text.removeprefix('malformed message: ')}", file=sys.stderr)

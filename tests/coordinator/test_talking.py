@@ -1,0 +1,117 @@
+"""Talks held in step: fewer questions, and each as if it were alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes.coordinator.talking import Question, hold, hold_all
+from schemas import errors
+from schemas.bridge import Outcome, StarQuery, Transactions
+from schemas.commits import Commit, Star, Transaction
+
+
+def star(name):
+    empty = {
+        "own": (),
+        "incoming": (),
+        "coordinates": None,
+        "size": None,
+        "preferred": (),
+        "alternatives": (),
+    }
+    return Star(seq=1, name=name, iri=f"<urn:{name}>", **empty)
+
+
+def transaction(name):
+    return Transaction(id=name, source="operator")
+
+
+def commit(name):
+    return Commit(seq=1, stamp_ns=0, id=name, source="operator")
+
+
+def change(name):
+    """A talk as of a command: the star, then the commit."""
+    (found,) = yield Question("star", StarQuery(names=(name,)))
+    made = yield Question("commit", transaction(found.name))
+    return made.id
+
+
+class KnowledgeBase:
+    """Knows every name but `gone`, refuses to commit `no`, and does not understand `odd`."""
+
+    def __init__(self):
+        self.asked = []
+
+    def __call__(self, verb, message):
+        self.asked.append((verb, message))
+        if verb == "star":
+            if "gone" in message.names:
+                raise errors.UnknownName("no entity is named 'gone'")
+            return tuple(map(star, message.names))
+        if verb == "commits":
+            return tuple(map(self.outcome, message.transactions))
+        outcome = self.outcome(message)
+        if outcome.error is not None:
+            raise errors.from_message(outcome.error)
+        return outcome.commit
+
+    def outcome(self, transaction):
+        if transaction.id == "odd":
+            raise errors.BadRequest("odd")
+        if transaction.id == "no":
+            return Outcome(error=errors.to_message(errors.PreconditionFailed("no")))
+        return Outcome(commit=commit(transaction.id))
+
+
+@pytest.fixture
+def ask():
+    return KnowledgeBase()
+
+
+def test_one_talk_asks_as_it_is_written(ask):
+    assert hold(change("a"), ask) == "a"
+    assert ask.asked == [("star", StarQuery(names=("a",))), ("commit", transaction("a"))]
+
+
+def test_what_is_asked_at_the_same_time_goes_together(ask):
+    assert hold_all([change("a"), change("b")], ask) == ["a", "b"]
+    assert ask.asked == [
+        ("star", StarQuery(names=("a", "b"), together=False)),
+        ("commits", Transactions(transactions=(transaction("a"), transaction("b")))),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("bad", "error"),
+    [("gone", errors.UnknownName), ("no", errors.PreconditionFailed), ("odd", errors.BadRequest)],
+)
+def test_an_error_ends_its_own_talk_only(ask, bad, error):
+    first, second, third = hold_all([change("a"), change(bad), change("c")], ask)
+    assert (first, type(second), third) == ("a", error, "c")
+
+
+def test_a_talk_may_go_on_after_an_error(ask):
+    def stubborn():
+        try:
+            yield Question("commit", transaction("no"))
+        except errors.PreconditionFailed:
+            return (yield Question("commit", transaction("yes"))).id
+
+    assert hold_all([stubborn(), change("a"), stubborn()], ask) == ["yes", "a", "yes"]
+
+
+def test_the_stars_of_entities_that_leave_together_are_asked_as_such(ask):
+    def leaving(*names):
+        return (yield Question("star", StarQuery(names=names)))
+
+    hold_all([leaving("a", "b"), leaving("c")], ask)
+    assert ask.asked == [("star", StarQuery(names=("a", "b"))), ("star", StarQuery(names=("c",)))]
+
+
+def test_without_an_answer_nothing_is_said_to_be_done():
+    def nobody(verb, message):
+        raise errors.NoAnswer(verb)
+
+    with pytest.raises(errors.NoAnswer):
+        hold_all([change("a"), change("b")], nobody)
