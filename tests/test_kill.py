@@ -43,11 +43,13 @@ def test_every_acknowledged_commit_is_there_and_no_other_one_half(tmp_path, kill
     with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
         committer = Committer(system)
         committer.start()
+        pid = 0
         for _ in range(kills):
             count = len(committer.acknowledged)
             until(lambda seen=count: len(committer.acknowledged) > seen, "commits go on")
             time.sleep(chance.uniform(0.0, 0.3))
-            os.kill(system.pid("kb_node"), signal.SIGKILL)
+            pid = until(lambda last=pid: (now := system.pid("kb_node")) != last and now, "it is back")
+            os.kill(pid, signal.SIGKILL)
         count = len(committer.acknowledged)
         until(lambda: len(committer.acknowledged) > count, "commits go on")
         committer.stopping.set()

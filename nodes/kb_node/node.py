@@ -161,8 +161,13 @@ class KnowledgeBase:
         process, Zenoh's keep-alive included, for longer than a lease. They stay, so they are never looked at.
         """
         gc.disable()
+
+        def tell(text: str) -> None:
+            self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+            self._node.beat()
+
         try:
-            yield lambda text: self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+            yield tell
         finally:
             gc.freeze()
             gc.enable()
