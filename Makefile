@@ -11,7 +11,7 @@ help:  ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /  make \1\t/' | expand -t 20
 
 setup: .venv/.ready  ## Install everything into .venv, as locked; and what rendering needs, where allowed
-	@sh demo/rendering.sh
+	@sh demo/system_packages.sh
 
 $(UV):
 	python3 -m venv .tools

@@ -1,0 +1,1 @@
+"""Perception: from RGB-D frames to observations, and from those to commands."""

@@ -1,0 +1,33 @@
+"""What a depth camera saw, as points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Transform = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Points of one frame. Organised as the picture's rows and columns, else in a single row.
+
+    `points_camera`: (H, W, 3), camera frame (x right, y down, z forward) [m], NaN where nothing was seen.
+    `colors`: (H, W, 3) rgb, or None. `map_from_camera`: (4, 4), or None where nobody knows.
+    `intrinsics`: (3, 3) [pixel], or None for a cloud from a file.
+    """
+
+    points_camera: Floats
+    colors: NDArray[np.uint8] | None = None
+    map_from_camera: Transform | None = None
+    intrinsics: Transform | None = None
+    camera: str = ""
+    stamp_ns: int = 0
+
+    @property
+    def organised(self) -> bool:
+        """Whether neighbours in the array are neighbours in the picture."""
+        return self.points_camera.shape[0] > 1

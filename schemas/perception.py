@@ -1,0 +1,44 @@
+"""What perception saw."""
+
+from __future__ import annotations
+
+from msgspec import Struct, field
+
+from schemas.entities import Pose, Probability, Size
+
+
+class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One object as it was seen once.
+
+    `class_` is the most special class that is sure enough (`Object` for what is like nothing known), with
+    `probability` that the thing is one of it. `candidates` are the leaves of the vote with theirs. `pose` and
+    `size_m` are those of the whole object, its hidden part included. `whole` is false when the picture's edge
+    cuts it or something hides a part.
+    """
+
+    class_: str = field(name="class")
+    probability: Probability
+    candidates: dict[str, Probability] = {}
+    pose: Pose
+    size_m: Size
+    points: int
+    whole: bool = True
+
+
+class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """From where a frame was taken: `intrinsics` (3, 3) [pixel] and `map_from_camera` (4, 4) [m] row by row."""
+
+    camera: str
+    width: int
+    height: int
+    stamp_ns: int
+    intrinsics: tuple[float, ...]
+    map_from_camera: tuple[float, ...]
+
+
+class Observations(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All that was seen in one look of one camera, or of several that looked at the same time."""
+
+    stamp_ns: int
+    views: tuple[CameraView, ...]
+    observations: tuple[Observation, ...]
