@@ -26,7 +26,7 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """From where a frame was taken: `intrinsics` (3, 3) [pixel] and `map_from_camera` (4, 4) [m] row by row."""
+    """Whence a frame was taken: `intrinsics` (3, 3) [pixel] and `map_from_camera` (4, 4) [m], row by row."""
 
     camera: str
     width: int
