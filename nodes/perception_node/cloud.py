@@ -30,4 +30,4 @@ class Cloud:
     @property
     def organised(self) -> bool:
         """Whether neighbours in the array are neighbours in the picture."""
-        return self.points_camera.shape[0] > 1
+        return len(self.points_camera) > 1
