@@ -64,4 +64,4 @@ def _groups(same: NDArray[np.bool_], segments: Sequence[Segment]) -> list[list[S
     root = np.arange(len(segments))
     for a, b in np.argwhere(same):
         root[root == root[a]] = root[b]
-    return [[segments[i] for i in np.flatnonzero(root == r)] for r in np.unique(root)]
+    return [[segments[int(i)] for i in np.flatnonzero(root == r)] for r in np.unique(root)]

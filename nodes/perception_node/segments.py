@@ -17,8 +17,8 @@ MOST_POINTS = 3000
 class Segment:
     """What one view shows of one thing.
 
-    `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `view`: the number of the cloud and `label`: its
-    number there. `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it.
+    `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `view`: the number of the cloud, `label`: its
+    own in there. `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it.
     `count`: how many points it had before it was thinned.
     """
 

@@ -12,11 +12,12 @@ from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import View, look_at
 from nodes.training.scenes import Item
 
-HANGING = frozenset(
-    "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light "
-    "mirror picture poster power_plug shelf shower stairs switch tap thermostat wall window clock "
-    "washing_line rug".split()
+_HANGING = (
+    "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"
+    " mirror picture poster power_plug shelf shower stairs switch tap thermostat wall window clock"
+    " washing_line rug"
 )
+HANGING = frozenset(_HANGING.split())
 """Models that are part of a room, or hang on its walls: no objects that stand somewhere."""
 
 SMALL_M = 0.5
