@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.boxes import Numbers
+from nodes.perception_node.recognition.novelty import Novelty
 from nodes.perception_node.recognition.perceptron import Perceptron
 from schemas.errors import BadFile
 
@@ -26,13 +27,15 @@ CLUTTER = ""
 VOTERS = ("geometry", "shape", "colour")
 """Who votes, in the order of the weights."""
 
+_NOVELTY = ("mean", "axes", "centres", "weights")
+
 
 @dataclass(frozen=True)
 class Learnt:
     """Everything that recognition learnt.
 
-    `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each leaf, the
-    most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
+    `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each class,
+    the most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
     `sideways`: (K,) whether a leaf's longer side is its own y axis. `voters`: scores (N, K) from each one's
     features. `weights`: (voters,) how much each one's vote counts. `sides`: see `sides.completed`.
     `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
@@ -44,6 +47,7 @@ class Learnt:
     sideways: NDArray[np.bool_]
     voters: tuple[Perceptron, ...]
     weights: Numbers
+    novelty: Novelty
     sides: Perceptron
     sure: float
     story: str
@@ -55,6 +59,7 @@ def save(learnt: Learnt, path: Path) -> None:
         "sizes_m": learnt.sizes_m,
         "sideways": learnt.sideways,
         "weights": learnt.weights,
+        **{f"novelty.{name}": getattr(learnt.novelty, name).astype(np.float32) for name in _NOVELTY},
     }
     for name, perceptron in zip((*VOTERS, "sides"), (*learnt.voters, learnt.sides), strict=True):
         arrays |= {f"{name}.mean": perceptron.mean.astype(np.float32)}
@@ -83,6 +88,7 @@ def load(path: Path = SHIPPED) -> Learnt:
                 sideways=arrays["sideways"],
                 voters=tuple(_perceptron(arrays, name) for name in VOTERS),
                 weights=arrays["weights"],
+                novelty=Novelty(*(arrays[f"novelty.{name}"].astype(float) for name in _NOVELTY)),
                 sides=_perceptron(arrays, "sides"),
                 sure=float(text["sure"]),
                 story=text["story"],

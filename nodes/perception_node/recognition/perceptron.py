@@ -8,6 +8,9 @@ import numpy as np
 
 from nodes.perception_node.boxes import Numbers
 
+REACH = 6.0
+"""Inputs farther from their mean than so many deviations are taken for that far."""
+
 
 @dataclass(frozen=True)
 class Perceptron:
@@ -23,7 +26,7 @@ class Perceptron:
 
     def __call__(self, inputs: Numbers) -> Numbers:
         """(N, outputs) of inputs (N, D)."""
-        values = np.clip((inputs - self.mean) / self.scale, -6.0, 6.0)
+        values = np.clip((inputs - self.mean) / self.scale, -REACH, REACH)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.maximum(values @ weight + bias, 0.0)
         return np.asarray(values @ self.weights[-1] + self.biases[-1])

@@ -11,12 +11,13 @@ from nodes.perception_node.boxes import Box, Numbers
 from nodes.perception_node.recognition.features import colour, geometry, shape
 from nodes.perception_node.recognition.learnt import CLUTTER, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
-from nodes.perception_node.recognition.vote import answer, vote
+from nodes.perception_node.recognition.vote import answer, expected_sizes, leaves
 from nodes.perception_node.things import Thing
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.perception import Observation
 
 _CANDIDATES = 5
+_CLUTTER = 0.5
 _WORTH_SAYING = 0.01
 
 
@@ -25,30 +26,25 @@ def features_of(things: Sequence[Thing]) -> list[Numbers]:
     return [np.array([look(thing) for thing in things]) for look in (geometry, shape, colour)]
 
 
-def expected_sizes(probabilities: Numbers, learnt: Learnt) -> Numbers:
-    """(N, 3) long side, short side and height [m] that things of the likely leaves have: geometric means."""
-    return np.asarray(np.exp(probabilities @ np.log(learnt.sizes_m)))
-
-
 def recognise(things: Sequence[Thing], learnt: Learnt) -> list[Observation | None]:
     """An observation of each thing, None for one that is rather clutter than a thing."""
     if not things:
         return []
-    probabilities = vote(learnt, features_of(things))
-    expected = expected_sizes(probabilities, learnt)
+    probabilities = leaves(learnt, features_of(things))
+    expected = expected_sizes(probabilities, learnt.sizes_m)
     return [_observation(*row, learnt) for row in zip(things, probabilities, expected, strict=True)]
 
 
 def _observation(
     thing: Thing, probabilities: Numbers, expected_m: Numbers, learnt: Learnt
 ) -> Observation | None:
-    leaves = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
-    if leaves.pop(CLUTTER, 0.0) > 0.5:
+    chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
+    clutter = chances.pop(CLUTTER)
+    if clutter > _CLUTTER:
         return None
-    total = sum(leaves.values())
-    leaves = {leaf: probability / total for leaf, probability in leaves.items()}
-    class_, probability = answer(leaves, learnt.ancestors, learnt.sure)
-    likely = sorted(leaves, key=leaves.__getitem__, reverse=True)[:_CANDIDATES]
+    chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
+    class_, probability = answer(chances, learnt.ancestors, learnt.sure)
+    likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
     box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely[0])]))
     x, y, z = box.bottom_m.tolist()
@@ -56,7 +52,7 @@ def _observation(
     return Observation(
         class_=class_,
         probability=probability,
-        candidates={leaf: leaves[leaf] for leaf in likely if leaves[leaf] > _WORTH_SAYING},
+        candidates={leaf: chances[leaf] for leaf in likely if chances[leaf] > _WORTH_SAYING},
         pose=Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(box.yaw_rad)),
         size_m=(a, b, c),
         points=thing.count,

@@ -8,6 +8,9 @@ from nodes.perception_node.boxes import Box, Numbers, in_frame
 from nodes.perception_node.recognition.perceptron import Perceptron
 from nodes.perception_node.things import Thing
 
+SIZE_FEATURES = slice(-3, None)
+"""The columns of the features that hold the expected size."""
+
 _NEAR = 0.12
 _LEAST_M = 0.002
 

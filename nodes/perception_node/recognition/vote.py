@@ -8,17 +8,44 @@ import numpy as np
 
 from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
-from nodes.perception_node.recognition.perceptron import log_softmax
+from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 
 
-def vote(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
+def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
     """(N, K) probabilities of the leaves; `features`: for each voter (N, its own number).
 
     The votes are independent evidence, so their logarithms add up, each with the weight that calibration on
     scenes apart gave it.
     """
-    votes = [log_softmax(voter(seen)) for voter, seen in zip(learnt.voters, features, strict=True)]
-    return np.exp(log_softmax(np.tensordot(learnt.weights, np.array(votes), axes=1)))
+    return np.exp(pool(ballots(voters, features), weights))
+
+
+def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
+    """(voters, N, K) logarithms of the probabilities that each voter gives."""
+    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, features, strict=True)])
+
+
+def pool(votes: Numbers, weights: Numbers) -> Numbers:
+    """(N, K) logarithms of the probabilities that the votes (voters, N, K) together give."""
+    return log_softmax(np.tensordot(weights, votes, axes=1))
+
+
+def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
+    """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`."""
+    votes = ballots(learnt.voters, features)
+    pooled = pool(votes, learnt.weights)
+    new = learnt.novelty(features, votes, pooled)
+    probabilities = np.exp(pooled)
+    nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])
+    moved = np.where(nameable, probabilities * new[:, None], 0.0)
+    probabilities -= moved
+    probabilities[:, learnt.classes.index(UNKNOWN)] += moved.sum(axis=1)
+    return probabilities
+
+
+def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
+    """(N, 3) the size [m] that things of the likely leaves have: the geometric mean of `sizes_m` (K, 3)."""
+    return np.asarray(np.exp(probabilities @ np.log(sizes_m)))
 
 
 def answer(
