@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Container
 from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
@@ -56,6 +58,16 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Rotation about the map's z axis, in (-pi, pi]."""
         w, x, y, z = self.orientation_wxyz
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def free_name(class_name: str, taken: Container[str]) -> str:
+    """The class in lower case and the first number that is free: `chair1`."""
+    stem = re.sub(r"[^a-z0-9_.-]", "", class_name.lower())
+    stem = stem if stem[:1].isalpha() else f"_{stem}"
+    number = 1
+    while f"{stem}{number}" in taken:
+        number += 1
+    return f"{stem}{number}"
 
 
 def orientation_from_yaw(yaw_rad: float) -> Quaternion:
