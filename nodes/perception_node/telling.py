@@ -8,7 +8,7 @@ from typing import Any
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.tracks import Track, slack_m, turn_between
-from schemas.commands import Add, Remove, Update
+from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Size, distance_m, free_name, rounded
 
 AGENT = "perception_node"
@@ -18,6 +18,18 @@ MISSING = "not seen where it should stand"
 _SURE, _UNSURE = 0.6, 0.25
 """What one class has more and another has less of the votes than, if the one contradicts the other."""
 _LEAST_RESIZE_M = 0.015
+
+
+def subject_of(command: Command) -> str:
+    """What a command is about: an entity or, if it is to be a new one, the class."""
+    match command:
+        case Add():
+            return f"a new {command.class_}"
+        case Remove():
+            return " ".join(command.names)
+        case Update():
+            return command.name
+    raise TypeError(f"perception does not say {type(command).__name__}")
 
 
 def is_sure(track: Track, config: TrackingConfig) -> bool:
