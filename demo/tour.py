@@ -133,7 +133,7 @@ def tour(t: Tour) -> None:
     before = t.ask("get", "chair1")
     t.do("move", "chair1", "--at", "2.0", "1.2", "0.1")
     t.until("the map followed", lambda: t.ask("get", "chair1")["pose"] != before["pose"])  # type: ignore[index]
-    t.do("get", "chair1", holds="by scene")
+    t.do("get", "chair1", holds="scene/cli")
 
     t.tell("Is it all consistent?")
     t.do("check", holds="consistent")

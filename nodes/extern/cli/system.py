@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from nodes import bus
+from nodes.extern.client import CONNECT_VARIABLE
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
@@ -80,10 +81,15 @@ def up(settings: Settings) -> None:
 
 @click.command()
 @click.option("--data", type=_path, default=None, help="Folder that the system was started on.")
-def down(data: Path | None) -> None:
-    """Stop a running system."""
-    from nodes.supervisor.control import Supervisor
+@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
+def down(data: Path | None, connect: str | None) -> None:
+    """Stop a running system of this machine."""
+    from nodes.supervisor.control import Supervisor, running
 
+    if data is None and connect is not None:
+        data = next((s.data for s in running() if connect in (s.settings.listen, s.settings.reachable)), None)
+        if data is None:
+            raise errors.NoAnswer(f"no system of this machine listens on {connect}")
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 
