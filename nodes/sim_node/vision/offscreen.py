@@ -60,7 +60,7 @@ class Offscreen:
 
     def segment(self, model: mujoco.MjModel, data: mujoco.MjData, view: View) -> NDArray[np.int32]:
         """(H, W) the geom that each pixel sees, -1 for none."""
-        context, scene = self._prepare(model)
+        context, scene = self._prepare(model, view)
         self._aim(model, data, scene, view)
         flags = [mujoco.mjtRndFlag.mjRND_SEGMENT.value, mujoco.mjtRndFlag.mjRND_IDCOLOR.value]
         scene.flags[flags] = 1
