@@ -24,7 +24,7 @@ from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.map_view import MapView, kinship_of
-from nodes.perception_node.pipeline import Learnt, Look, look
+from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
 from nodes.perception_node.tracks import Tracks
@@ -48,7 +48,7 @@ class Perception:
     def __init__(self, node: Node, config: PerceptionConfig) -> None:
         self._node = node
         self._config = config
-        self._learnt = Learnt()
+        self._learnt = shipped()
         self._map = MapView()
         self._kinship = Kinship()
         self._tracks = Tracks()
