@@ -1,6 +1,6 @@
 """Perception on the wire: the cameras' frames in, observations and commands out.
 
-Zenoh's threads only keep the newest frames; a thread of this node's own looks at them; the node's thread, which
+Zenoh's threads only keep the newest frames, and a thread of this node's own looks at them. The node's thread
 owns the tracks, compares what was seen with the map, and tells the map.
 """
 
@@ -38,6 +38,8 @@ from schemas.health import Health
 log = logging.getLogger(__name__)
 
 _TAKE_S = 0.5
+_CLOUD_S = 1.0
+"""A cloud is published no more often."""
 _REFUSED_S = 10.0
 """What was refused is not said again before that."""
 
@@ -61,6 +63,7 @@ class Perception:
         self._frames = Frames()
         self._stopping = threading.Event()
         self._observations = bus.publisher(node.session, keys.OBSERVATIONS)
+        self._cloud_due = 0.0
         self._cloud = bus.publisher(node.session, keys.CLOUD)
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
         node.follow(keys.COMMIT, self._on_commit)
@@ -144,8 +147,10 @@ class Perception:
             seen = structs.replace(seen, observations=tuple(structs.replace(o, entity=e) for o, e in named))
             self._tell(result.commands)
         self._observations.put(codec.encode(seen), encoding=codec.encoding_of(seen))
-        if self._cloud_is_wanted():
-            self._cloud.put(codec.encode(segmented_cloud(clouds, found)))
+        if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
+            self._cloud_due = time.monotonic() + _CLOUD_S
+            cloud = segmented_cloud(clouds, found)
+            self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
         self._node.describe(
             f"{len(clouds)} cameras, {len(seen.observations)} things seen, {1000 * took_s:.0f} ms a look"
         )
