@@ -85,7 +85,7 @@ def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
 def test_a_frame_of_the_past_is_refused():
     frames = Frames()
     put(frames, "left", 3_000_000_000)
-    with pytest.raises(BadRequest, match=r"camera left: a frame is passed over that is 2 s older"):
+    with pytest.raises(BadRequest, match="camera left: a frame of the past is passed over"):
         put(frames, "left", 1_000_000_000)
     put(frames, "right", 1_000_000_000)
 
