@@ -51,9 +51,7 @@ def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
     """The planes and objects of a cloud, organised or not."""
     parts = taken_apart(cloud)
     objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
-    return Segmentation(
-        spread(parts.grid, objects), parts.planes, spread(parts.grid, parts.of_plane)
-    )
+    return Segmentation(spread(parts.grid, objects), parts.planes, spread(parts.grid, parts.of_plane))
 
 
 def taken_apart(cloud: Cloud) -> Parts:

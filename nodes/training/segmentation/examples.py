@@ -56,7 +56,9 @@ def own_way(of: Example, probability: Callable[[NDArray[np.float32]], NDArray[np
     return _met(of, lambda rows, _: probability(rows))
 
 
-def _met(of: Example, decide: Callable[[NDArray[np.float32], NDArray[np.bool_]], NDArray[np.floating]]) -> Rows:
+def _met(
+    of: Example, decide: Callable[[NDArray[np.float32], NDArray[np.bool_]], NDArray[np.floating]]
+) -> Rows:
     met: list[Rows] = []
 
     def judge(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
