@@ -20,7 +20,7 @@ from nodes.sim_node.models.parts import rotation_matrix
 from schemas.entities import Pose
 
 _BODY = ("mass", "inertia", "contype", "conaffinity", "sameframe")
-_DOF = ("M0", "invweight0", "length")
+_DOF = ("M0", "invweight0", "length", "damping")
 _GEOM = (
     *("type", "dataid", "matid", "group", "contype", "conaffinity", "condim", "friction"),
     *("size", "aabb", "rbound", "pos", "quat", "sameframe", "rgba"),

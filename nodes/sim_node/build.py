@@ -30,6 +30,9 @@ _WIDTH = {
 }
 _BATCH = 50
 _FRICTION = (0.8, 0.01, 0.004)
+_SPIN_S = 1.0
+"""A body's spin dies away in about this time; so a can that rolls stops, without costly contacts."""
+
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
@@ -64,7 +67,8 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
     position, quaternion = frame_of(pose, record.origin_m)
     body = spec.worldbody.add_body(name=record.name, pos=position, quat=quaternion)
     if not record.static:
-        body.add_freejoint(name=record.name)
+        joint = body.add_freejoint(name=record.name)
+        joint.damping = [max(model.inertial.moments) / _SPIN_S, 0.0, 0.0]
     body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
     body.mass, body.inertia = model.inertial.mass_kg, list(model.inertial.moments)
     for part in model.parts:
@@ -115,7 +119,7 @@ def add_part(
         group=_GROUP[part.role],
         contype=contype,
         conaffinity=conaffinity,
-        condim=3 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        condim=6 if part.shape is Shape.ELLIPSOID else 3,  # a ball needs friction against rolling
         friction=_FRICTION,
     )
 
