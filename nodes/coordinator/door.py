@@ -19,13 +19,13 @@ from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.hands import Hands
-from nodes.coordinator.naming import free_name, free_position
+from nodes.coordinator.naming import free_position
 from nodes.coordinator.talking import Ask, Question, Talk, hold, hold_all
 from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
 from schemas.commands import Add, Changed, Classes, Clear, Command, Load, Remove, Undo, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity, Pose
+from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.explanations import Triple
 from schemas.scene_files import Described, pose_of
 

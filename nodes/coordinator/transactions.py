@@ -87,6 +87,10 @@ def update(
         retract += _references(star, v.HAS_ALTERNATIVE_REFERENCE, star.alternatives)
         for i, text in enumerate(command.alt, start=1):
             insert += stars.alternative_reference(star.iri, node(f"alternative_reference_{i}"), text)
+    if command.conflict is not None and command.conflict != entity.conflict:
+        retract += _edges(star, v.CONFLICTING_OBSERVATION)
+        if command.conflict:
+            insert.append((star.iri, v.CONFLICTING_OBSERVATION, v.literal(command.conflict)))
     known = {star.iri, star.coordinates, star.size}
     return transaction(
         command,

@@ -7,33 +7,32 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.pairs import candidates, features
+from nodes.perception_node.segmentation.pairs import candidates
 from nodes.perception_node.segmentation.statistics import Statistics
 
-Probability = Callable[[NDArray[np.float32]], NDArray[np.float32]]
-"""Of rows of pair features, (N, F) to (N,)."""
+Indices = NDArray[np.int64]
+Judge = Callable[[Statistics, Indices, Indices], NDArray[np.float32]]
+"""How likely the pairs of patches (a, b) are one object: (N,)."""
 
 SURE_ENOUGH = 0.5
 
 
-def merge(of: Statistics, probability: Probability) -> NDArray[np.int32]:
+def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
     """(P,) for each patch the number of its object, from 1. `of` is used up."""
     count = len(of.inside)
-    owner = np.arange(count)
     may = candidates(of)
     score = np.zeros((count, count), np.float32)
 
-    def look(a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
+    def look(a: Indices, b: Indices) -> None:
         if len(a):
-            score[a, b] = score[b, a] = probability(features(of, a, b))
+            score[a, b] = score[b, a] = judge(of, a, b)
 
     look(*np.nonzero(np.triu(may)))
     while count:
-        a, b = np.unravel_index(score.argmax(), score.shape)
+        a, b = divmod(int(score.argmax()), count)
         if score[a, b] < SURE_ENOUGH:
             break
-        of.merge(int(a), int(b))
-        owner[owner == b] = a
+        of.merge(a, b)
         may[a] |= may[b]
         may[:, a] |= may[:, b]
         may[b] = may[:, b] = False
@@ -41,4 +40,4 @@ def merge(of: Statistics, probability: Probability) -> NDArray[np.int32]:
         score[b] = score[:, b] = 0
         others = np.flatnonzero(may[a])
         look(np.full(len(others), a), others)
-    return np.unique(owner, return_inverse=True)[1].astype(np.int32) + 1
+    return np.unique(of.owner, return_inverse=True)[1].astype(np.int32) + 1

@@ -10,12 +10,12 @@ from nodes.perception_node.segmentation.grid import Floats, Mask, shifted
 
 Labels = NDArray[np.int32]
 
-_CONCAVE = np.sin(np.radians(20))
-_CONVEX = np.sin(np.radians(40))
+_CONCAVE = np.sin(np.radians(15))
+_CONVEX = np.sin(np.radians(30))
+_ACROSS = ((0, 2), (2, 0), (0, 4), (4, 0))  # the farther ones see past edges that the normals round off
 _STEP_M = 0.007  # times z^2, at least z
 _FEWEST_CELLS = 12
 _GROWTH = 8
-_NEIGHBOURS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
 
 def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
@@ -40,7 +40,7 @@ def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
 def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
     """Cells at which two sides meet."""
     cut: Mask = ~np.isfinite(normals[..., 0])
-    for rows, columns in ((0, 2), (2, 0)):
+    for rows, columns in _ACROSS:
         (p, q), (m, n) = shifted(points, rows, columns), shifted(normals, rows, columns)
         middle = cut[rows // 2 : cut.shape[0] - rows // 2, columns // 2 : cut.shape[1] - columns // 2]
         middle |= _bent(p, q, m, n)

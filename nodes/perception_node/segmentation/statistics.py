@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,26 +33,28 @@ class Statistics:
     """What is known of P patches; row 0 is the first.
 
     `inside`: (P, INSIDE) sums over cells. `low`, `high`: (P, 3) bounds along two axes of the support
-    and above it [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first is in front of
-    the second, is not symmetric.
+    and above it [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first is in
+    front of the second, is not symmetric. `owner`: (P,) the patch that each was merged into, at first itself.
     """
 
     inside: Sums
     low: Sums
     high: Sums
     between: Sums
+    owner: NDArray[np.int64]
 
     def merge(self, a: int, b: int) -> None:
-        """Patch a becomes the union of a and b; b is left as it was, for the caller to forget."""
+        """Patch a becomes the union of a and b; b's row is left as it was, and means nothing any more."""
         self.inside[a] += self.inside[b]
         self.low[a] = np.minimum(self.low[a], self.low[b])
         self.high[a] = np.maximum(self.high[a], self.high[b])
         self.between[a] += self.between[b]
         self.between[:, a] += self.between[:, b]
+        self.owner[self.owner == b] = a
 
     def copy(self) -> Statistics:
         """An independent one."""
-        return Statistics(self.inside.copy(), self.low.copy(), self.high.copy(), self.between.copy())
+        return Statistics(*(getattr(self, field.name).copy() for field in fields(self)))
 
 
 def statistics(
@@ -82,7 +84,7 @@ def statistics(
     _bending(between, labels, points, normals)
     _seen_between(between, labels, points, inside)
     inside[:, HIDDEN] = _hidden(labels, points, count)
-    return Statistics(inside, low, high, between)
+    return Statistics(inside, low, high, between, np.arange(count))
 
 
 def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.generic]]) -> None:
