@@ -15,13 +15,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 import zenoh
 from zenoh import ext
 
 from schemas import codec, errors, keys
 from schemas.commands import Document
+from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PATIENCE_S = 3.0
@@ -301,6 +302,27 @@ def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, An
         on_sample,
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
     )
+
+
+def follow_cameras(
+    session: zenoh.Session,
+    plane: Literal["rgb", "depth"],
+    receive: Callable[[CameraFrame, Callable[[], bytes]], None],
+    refuse: Callable[[str], None],
+) -> None:
+    """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
+
+    On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
+    """
+
+    def on_sample(sample: zenoh.Sample) -> None:
+        try:
+            attached = sample.attachment.to_bytes() if sample.attachment is not None else b""
+            receive(codec.decode(attached, CameraFrame), sample.payload.to_bytes)
+        except errors.BadRequest as error:
+            refuse(f"{sample.key_expr}: {error.text}")
+
+    session.declare_subscriber(keys.camera_key("*", plane), on_sample)
 
 
 def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:

@@ -86,6 +86,10 @@ class Node:
         bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
         return future
 
+    def soon(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` on this node's own thread. Other threads hand over their results so."""
+        self._events.put(handle)
+
     def beat(self) -> None:
         """Send the heartbeat if it is due. Long work calls this between its steps."""
         now = time.monotonic()

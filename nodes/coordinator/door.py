@@ -19,13 +19,13 @@ from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.hands import Hands
-from nodes.coordinator.naming import free_name, free_position
+from nodes.coordinator.naming import free_position
 from nodes.coordinator.talking import Ask, Question, Talk, hold, hold_all
 from schemas import errors, scene_files
 from schemas.bridge import LoadDocument, Loaded, LoadTBox, StarQuery
 from schemas.commands import Add, Changed, Classes, Clear, Command, Load, Remove, Undo, Update
 from schemas.commits import Commit, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity, Pose
+from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.explanations import Triple
 from schemas.scene_files import Described, pose_of
 
@@ -132,8 +132,7 @@ class Door:
             orientation=pose.orientation_wxyz,
             reason=hand.reason,
         )
-        moved = transactions.transaction(command, hand.reason, placed=transactions.place(command))
-        hold(self._commit_once(structs.replace(moved, verb=hand.verb)), self._ask)
+        hold(self._commit_once(structs.replace(transactions.place(command), verb=hand.verb)), self._ask)
 
     def _changing(self, command: Add | Update) -> Talk[Changed]:
         return self._add(command) if isinstance(command, Add) else self._update(command)
@@ -168,15 +167,14 @@ class Door:
         if any(change is not None for change in changes):
             require_authority(command, [entity])
 
-            def build(suffix: str) -> Talk[Transaction]:
-                (star,) = yield from _stars((entity.name,))
-                return transactions.update(command, self.entity(entity.name), star, found, suffix)
+        def build(suffix: str) -> Talk[Transaction]:
+            (star,) = yield from _stars((entity.name,))
+            return transactions.update(command, self.entity(entity.name), star, found, suffix)
 
-            commit = yield from self._commit(build)
+        if all(change is None for change in (*changes, command.conflict)):
+            commit = yield from self._commit_once(transactions.place(command))
         else:
-            reason = f"update {entity.name}"
-            moved = transactions.transaction(command, reason, placed=transactions.place(command))
-            commit = yield from self._commit_once(moved)
+            commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"updated {entity.name}" if commit else f"{entity.name} is like that already",

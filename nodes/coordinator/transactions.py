@@ -58,12 +58,9 @@ def add(
     return transaction(command, f"add {found.name} {name}", vacant=_subjects(triples), insert=triples)
 
 
-def place(command: Update) -> tuple[Placed, ...]:
-    """Where the command puts its entity, if it says anything of it."""
-    if command.at is None and command.yaw is None and command.orientation is None:
-        return ()
-    placed = Placed(name=command.name, at=command.at, yaw=command.yaw, orientation=command.orientation)
-    return (placed,)
+def place(command: Update) -> Transaction:
+    """An entity is somewhere else, and that is all."""
+    return transaction(command, f"update {command.name}", placed=_placed(command))
 
 
 def update(
@@ -92,11 +89,15 @@ def update(
         retract += _references(star, v.HAS_ALTERNATIVE_REFERENCE, star.alternatives)
         for i, text in enumerate(command.alt, start=1):
             insert += stars.alternative_reference(star.iri, node(f"alternative_reference_{i}"), text)
+    if command.conflict is not None and command.conflict != entity.conflict:
+        retract += _edges(star, v.CONFLICTING_OBSERVATION)
+        if command.conflict:
+            insert.append((star.iri, v.CONFLICTING_OBSERVATION, v.literal(command.conflict)))
     known = {star.iri, star.size}
     return transaction(
         command,
         f"update {entity.name}",
-        placed=place(command),
+        placed=_placed(command),
         require=retract,
         vacant=[s for s in _subjects(insert) if s not in known],
         retract=retract,
@@ -124,6 +125,13 @@ def describe(name: str, found: ClassInfo, described: Described) -> list[Triple]:
         alternatives=described.alt,
     )
     return triples + [(v.entity_iri(name), v.HAS_AFFORDANCE, v.dm(word)) for word in described.affords]
+
+
+def _placed(command: Update) -> tuple[Placed, ...]:
+    """Where the command puts its entity, if it says anything of it."""
+    if command.at is None and command.yaw is None and command.orientation is None:
+        return ()
+    return (Placed(name=command.name, at=command.at, yaw=command.yaw, orientation=command.orientation),)
 
 
 def _subjects(triples: Iterable[Triple]) -> list[Term]:

@@ -113,8 +113,9 @@ class SemanticMap:
     def commit(self, transaction: Transaction) -> Commit | None:
         """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
 
-        Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is not there, Inconsistent (with
-        the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the TBox or the disk does not take the commit.
+        Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is none, Inconsistent (with
+        the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the
+        TBox or the disk does not take the commit.
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known

@@ -34,9 +34,11 @@ def supports_of(points_map: NDArray[np.float32]) -> list[float]:
     ]
 
 
-def label_segments(points_map: NDArray[np.float32], depth_m: NDArray[np.float32]) -> NDArray[np.int32]:
+def label_segments(
+    points_map: NDArray[np.float32], depth_m: NDArray[np.float32], supports_m: list[float]
+) -> NDArray[np.int32]:
     """(H, W): a number from 1 for each thing that sticks out of a support, 0 for all else."""
-    supports = np.array(supports_of(points_map) or [0.0])
+    supports = np.array(supports_m or [0.0])
     height = points_map[..., 2]
     margin = 0.008 + 0.004 * depth_m**2
     with np.errstate(invalid="ignore"):

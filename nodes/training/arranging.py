@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -21,6 +21,8 @@ HANGING = frozenset(_HANGING.split())
 """Models that are part of a room, or hang on its walls: no objects that stand somewhere."""
 
 SMALL_M = 0.5
+_ODD = 0.6
+_ODD_SHARE = 0.08
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
 
@@ -31,6 +33,8 @@ Rectangle = tuple[float, float, float, float, float]
 def overlap(a: Rectangle, b: Rectangle, gap_m: float) -> bool:
     """Whether two rectangles come nearer than `gap_m` to one another."""
     offset = np.array([b[0] - a[0], b[1] - a[1]])
+    if math.hypot(*offset) > (math.hypot(*a[2:4]) + math.hypot(*b[2:4])) / 2 + gap_m:
+        return False
     axes = np.array(
         [(math.cos(yaw + turn), math.sin(yaw + turn)) for yaw in (a[4], b[4]) for turn in (0.0, math.pi / 2)]
     )
@@ -78,7 +82,10 @@ def _nearest(spot: Rectangle, others: Sequence[Rectangle]) -> float:
 
 
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
-    """The model's own size, somewhat larger or smaller, somewhat slimmer or stouter."""
+    """The model's own size, somewhat larger or smaller, slimmer or stouter; now and then quite another."""
+    if kind in SMALL and rng.random() < _ODD_SHARE:
+        a, b, c = np.exp(rng.uniform(np.log(0.03), np.log(0.35), 3))
+        return (float(a), float(b), float(c))
     x, y, z = MODELS[kind].size_m * np.exp(rng.normal(0.0, 0.08) + rng.normal(0.0, 0.05, 3))
     return (float(x), float(y), float(z))
 
@@ -120,13 +127,18 @@ def standing(
     rng: np.random.Generator,
 ) -> list[Item]:
     """Things at their spots, at one height."""
-    return [
-        Item(
-            f"{kind}_{n}", kind, size, varied_colour(kind, rng), (spot[0], spot[1], height_m + 0.001), spot[4]
-        )
-        for n, (kind, size, spot) in enumerate(zip(kinds, sizes, spots, strict=True))
-        if spot is not None
-    ]
+    items = []
+    for n, (kind, size, spot) in enumerate(zip(kinds, sizes, spots, strict=True)):
+        if spot is not None:
+            at = (spot[0], spot[1], height_m + 0.001)
+            odd = max(size) < SMALL_M and is_odd(kind, size)
+            items.append(Item(f"{kind}_{n}", kind, size, varied_colour(kind, rng), at, spot[4], odd))
+    return items
+
+
+def is_odd(kind: str, size_m: Vec3) -> bool:
+    """Whether this size is far from what such things measure."""
+    return bool(np.abs(np.log(np.array(size_m) / MODELS[kind].size_m)).max() > _ODD)
 
 
 def views(
@@ -147,3 +159,25 @@ def views(
         target = np.array(target_m) + rng.normal(0.0, 0.05, 3)
         found.append(look_at(target + distance * back, target, 640, 480, float(rng.uniform(0.78, 1.05))))
     return found
+
+
+Scene = tuple[list[Item], frozenset[str], list[View]]
+"""Things, the names of those that are background, and the cameras."""
+
+
+def training_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
+    """Scenes in which every model comes about equally often: small things on tables, all things on floors."""
+    small, large = _deck(SMALL, rng), _deck(LARGE, rng)
+    for number in range(count):
+        if number % 5 < 4:
+            items = table_scene([next(small) for _ in range(rng.integers(6, 14))], rng)
+            yield items, frozenset({"table"}), views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
+        else:
+            kinds = [next(large) for _ in range(4)] + [next(small) for _ in range(3)]
+            yield floor_scene(kinds, rng), frozenset(), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
+
+
+def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:
+    """All of them in random order, again and again."""
+    while True:
+        yield from (str(kind) for kind in rng.permutation(kinds))

@@ -21,10 +21,15 @@ from nodes.sim_node.world import World
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.scenes import Body, BodyOrder
 
+STRANGE = "strange"
+
 
 @dataclass(frozen=True)
 class Item:
-    """One thing to be put into a scene: a model at a size and in a colour, standing at a pose."""
+    """One thing to be put into a scene: a model at a size and in a colour, standing at a pose.
+
+    A `strange` one is so far from what its model should be that nobody is to recognise it.
+    """
 
     name: str
     kind: str
@@ -32,6 +37,12 @@ class Item:
     colour: Colour
     position_m: Vec3
     yaw_rad: float
+    strange: bool = False
+
+    @property
+    def label(self) -> str:
+        """What it is to be taken for."""
+        return STRANGE if self.strange else self.kind
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,98 @@
+"""From a cloud to its planes and objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.segmentation.grid import Floats, Grid, Mask, grid_of, spread
+from nodes.perception_node.segmentation.merging import Indices, Judge, merge
+from nodes.perception_node.segmentation.normals import normals
+from nodes.perception_node.segmentation.pairs import NAMES, features
+from nodes.perception_node.segmentation.patches import patches
+from nodes.perception_node.segmentation.planes import Plane, find_planes
+from nodes.perception_node.segmentation.statistics import Statistics, statistics
+
+LOWEST_M, HIGHEST_M = 0.009, 0.5
+"""What stands on a support lies this far above it."""
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """What of a cloud is what.
+
+    `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
+    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, from 1, 0 for none.
+    """
+
+    labels: NDArray[np.int32]
+    planes: tuple[Plane, ...]
+    plane_labels: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A cloud taken apart, before anything is put together again.
+
+    `of_plane`, `of_patch`: (h, w) of the working picture, the number of each cell's plane and patch, 0 for none.
+    """
+
+    grid: Grid
+    planes: tuple[Plane, ...]
+    of_plane: NDArray[np.int32]
+    of_patch: NDArray[np.int32]
+    statistics: Statistics
+
+
+def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
+    """The planes and objects of a cloud, organised or not."""
+    parts = taken_apart(cloud)
+    objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
+    return Segmentation(
+        spread(parts.grid, objects), parts.planes, spread(parts.grid, parts.of_plane)
+    )
+
+
+def taken_apart(cloud: Cloud) -> Parts:
+    """The planes of a cloud, and small patches of the rest."""
+    grid = grid_of(cloud)
+    rng = np.random.default_rng(0)  # the same cloud, the same answer
+    planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
+    where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
+    surface = normals(grid.points, where)
+    of_patch = patches(grid.points, surface, where)
+    known = statistics(of_patch, grid.points, surface, grid.colors, _support_axes(planes))
+    return Parts(grid, planes, of_plane, of_patch, known)
+
+
+def _candidates(
+    points: Floats, planes: tuple[Plane, ...], of_plane: NDArray[np.int32], *, known: bool
+) -> Mask:
+    """Cells that may be of objects: on no plane, and above a support where nobody knows what is up."""
+    where: Mask = np.isfinite(points[..., 2]) & (of_plane == 0)
+    if planes and not known:
+        height = planes[0].height_m(points)
+        where &= (height > LOWEST_M) & (height < HIGHEST_M)
+    return where
+
+
+def _support_axes(planes: tuple[Plane, ...]) -> Floats:
+    """(3, 4) from the camera frame to two axes of the lowest support and the height above it [m]."""
+    carrying = [plane for plane in planes if plane.kind in ("support", "floor")]
+    if not carrying:
+        return np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0]], np.float32)
+    plane = max(carrying, key=lambda plane: plane.points)
+    axes = np.linalg.svd(plane.normal[None, :])[2][1:]
+    turned = np.vstack([axes, plane.normal])
+    return np.column_stack([turned, (0.0, 0.0, -plane.offset_m)]).astype(np.float32)
+
+
+def _by_rule(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
+    """Convexity alone."""
+    rows = features(known, a, b)
+    of = {name: rows[:, i] for i, name in enumerate(NAMES)}
+    smooth = (of["bend"] > -0.1) & (of["concave"] < 0.3) & (of["bends"] > 0.5) & (of["wide"] > 0.2)
+    return np.where(smooth, 0.6 + 0.3 * of["like"], 0).astype(np.float32)
