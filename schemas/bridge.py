@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from msgspec import Struct
+from msgspec import Meta, Struct
 
 from schemas.commands import (
     Check,
@@ -44,6 +44,12 @@ class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     names: tuple[str, ...]
     together: bool = True
     """What only they use counts as their own; if not, only what one of them uses alone is its own."""
+
+
+class Recall(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """These commits again, for a follower that has missed them; those that there never were are left out."""
+
+    seqs: Annotated[tuple[int, ...], Meta(max_length=100)]
 
 
 class Transactions(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -96,6 +102,7 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "commits": (Transactions, tuple[Outcome, ...]),
     "load": (LoadDocument, Loaded),
     "snapshot": (SnapshotQuery, Snapshot),
+    "recall": (Recall, tuple[Commit, ...]),
     "star": (StarQuery, tuple[Star, ...]),
     "classes": (Classes, tuple[ClassInfo, ...]),
     "list": (List, tuple[Entity, ...]),

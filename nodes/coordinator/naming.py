@@ -1,10 +1,9 @@
-"""Names and places for what comes without."""
+"""Places for what comes without."""
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from schemas.entities import Entity, Size, Vector
 
@@ -13,16 +12,6 @@ _STEP_M = 0.5
 _GAP_M = 0.1
 _UNDERFOOT_M = 0.05
 _USUAL_SIZE: Size = (0.5, 0.5, 0.5)
-
-
-def free_name(class_name: str, taken: Container[str]) -> str:
-    """The class in lower case and the first number that is free: `chair1`."""
-    stem = re.sub(r"[^a-z0-9_.-]", "", class_name.lower())
-    stem = stem if stem[:1].isalpha() else f"_{stem}"
-    number = 1
-    while f"{stem}{number}" in taken:
-        number += 1
-    return f"{stem}{number}"
 
 
 def free_position(entities: Iterable[Entity], size_m: Size | None) -> Vector:

@@ -199,10 +199,9 @@ class Coordinator:
     # Running
 
     def _move(self, command: c.Move) -> Future[Any]:
-        entity = self._door.entity(command.name)
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
-            state = self._keeping.body_state(entity)
+            state = self._keeping.body_state(self._door.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
@@ -217,7 +216,9 @@ class Coordinator:
 
         return then(self._ask_sim("move", order, BodiesMoved), moved)
 
-    def _reset(self, _: c.Reset) -> Future[Any]:
+    def _reset(self, command: c.Reset) -> Future[Any]:
+        if self._config.truth == "perceived":
+            return self._ask_scene("reset", command, c.Done)
         return then(
             self._keeping.place_all(),
             lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
@@ -269,10 +270,13 @@ class Coordinator:
         self._waiting = still
 
     def _noted(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], c.Changed]:
-        """Where the scene owns existence, what is removed from the map only comes back."""
+        """Where the map does not own existence, what is removed from it only comes back."""
         if self._config.truth == "map":
             return change
-        note = "the scene is the truth here: what still stands in it comes back"
+        note = {
+            "scene": "the scene is the truth here: what still stands in it comes back",
+            "perceived": "perception is the truth here: what it still sees comes back",
+        }[self._config.truth]
 
         def noted(command: Any) -> c.Changed:
             changed = change(command)

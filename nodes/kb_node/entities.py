@@ -47,6 +47,7 @@ def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: 
         size_m=_size(reasoner, iri, said.get(v.HAS_SIZE, ())),
         preferred_reference=min(preferred, default=None),
         alternative_references=tuple(_references(reasoner, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
+        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,

@@ -24,6 +24,7 @@ from schemas.bridge import (
     Loaded,
     LoadTBox,
     Outcome,
+    Recall,
     SnapshotQuery,
     StarQuery,
     Transactions,
@@ -176,6 +177,10 @@ class KnowledgeBase:
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
         """Every entity, as of the last commit."""
         return self.map.snapshot()
+
+    def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
+        """Commits of the past, whole."""
+        return self._aside.submit(self._past.commits, query.seqs)
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""

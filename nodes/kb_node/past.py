@@ -39,6 +39,11 @@ class Past:
             seqs = self._journal.touching(query.name, after=first - 1, until=last)[-query.limit :]
         return tuple(_logged(self._journal.commit(seq)) for seq in seqs)
 
+    def commits(self, seqs: Iterable[int]) -> tuple[Commit, ...]:
+        """These commits, whole; without those that there never were."""
+        last = self._journal.last
+        return tuple(self._journal.commit(seq) for seq in seqs if 1 <= seq <= last)
+
     def entities(
         self, when: When, class_name: str | None = None, known: Iterable[str] = ()
     ) -> tuple[Entity, ...]:

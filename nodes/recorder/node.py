@@ -1,4 +1,4 @@
-"""The recorder on the wire: it follows commits, poses and the heartbeat of the knowledge base."""
+"""The recorder on the wire: it follows commits, poses, what is seen, and the knowledge base's heartbeat."""
 
 from __future__ import annotations
 
@@ -14,14 +14,16 @@ from nodes.recorder.map_state import MapState, missed
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
+from nodes.recorder.watching import Watching
 from schemas import keys
-from schemas.bridge import BRIDGE, SnapshotQuery, StarQuery
+from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
 from schemas.health import Health
 from schemas.scenes import Poses, Scene, SceneQuery
 
 _SCENE_LOST_S = 10.0
 """A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
+_RECALLED_AT_ONCE = 20
 
 
 class Recorder:
@@ -45,6 +47,7 @@ class Recorder:
         node.follow(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
+        Watching(node, recording, self._at)
 
     # The map
 
@@ -88,7 +91,8 @@ class Recorder:
 
     def _begin(self, snapshot: Snapshot, stars: Any) -> None:
         first = self._map.seq < 0
-        lost = [] if first else missed(self._map.seq, snapshot.seq, self._early)
+        after = snapshot.seq - 1 if first else self._map.seq
+        lost = missed(after, snapshot.seq, self._early)
         anew = snapshot.seq < self._map.seq
         self._map.begin(snapshot, stars)
         for commit in sorted(self._early, key=lambda commit: commit.seq):
@@ -99,13 +103,23 @@ class Recorder:
         if first or anew:
             count = len(self._map.entities)
             self._recording.note(f"{self._map.seq}  the recording goes on from here with {count} entities")
-        if lost:
-            numbers = ", ".join(map(str, lost))
-            self._recording.note(
-                f"{self._map.seq}  not heard: commit {numbers}; a snapshot fills the gap", warning=True
-            )
+        self._recall(lost)
         self._show_all()
         self._shown()
+
+    def _recall(self, seqs: list[int]) -> None:
+        """Record what was committed while nobody listened, and the commit that the recording starts with."""
+        for start in range(0, len(seqs), _RECALLED_AT_ONCE):
+            some = tuple(seqs[start : start + _RECALLED_AT_ONCE])
+            self._ask_kb("recall", Recall(seqs=some)).add_done_callback(self._on_recalled)
+
+    def _on_recalled(self, future: Future[tuple[Commit, ...]]) -> None:
+        if (error := future.exception()) is not None:
+            self._recording.note(f"commits are missing here: {error}", warning=True)
+            return
+        for commit in future.result():
+            self._at(commit.stamp_ns, commit.seq)
+            self._recording.commit(commit)
 
     def _on_health(self, health: Health) -> None:
         """A new knowledge base may know another map, or have made commits that nobody heard."""

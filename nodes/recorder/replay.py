@@ -71,9 +71,12 @@ def require_recording(path: Path) -> None:
 
 
 def read_commits(path: Path) -> list[RecordedCommit]:
-    """All commits in a recording, by number; it may still be growing. Raises BadFile."""
+    """All commits in a recording, by number; it may still be growing. Raises BadFile.
+
+    One that was both heard and recalled counts once.
+    """
     require_recording(path)
-    return sorted(_commits(path), key=lambda commit: commit.seq)
+    return sorted(set(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
 
 
 def _commits(path: Path) -> Iterator[RecordedCommit]:

@@ -64,6 +64,14 @@ def _sim_node(settings: Settings) -> None:
     run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
 
 
+def _perception_node(settings: Settings) -> None:
+    from nodes.perception_node.config import PerceptionConfig, TrackingConfig
+    from nodes.perception_node.node import run
+
+    tracking = TrackingConfig(when_gone=settings.when_gone)
+    run(PerceptionConfig(tracking, settings.network("perception_node")))
+
+
 def _recorder(settings: Settings) -> None:
     from nodes.recorder.config import RecorderConfig
     from nodes.recorder.node import run
@@ -77,6 +85,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
     "kb_node": _kb_node,
     "coordinator": _coordinator,
     "sim_node": _sim_node,
+    "perception_node": _perception_node,
     "recorder": _recorder,
 }
 

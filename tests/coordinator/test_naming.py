@@ -1,13 +1,9 @@
 from __future__ import annotations
 
 import math
-import re
 
-from hypothesis import given
-from hypothesis import strategies as st
-
-from nodes.coordinator.naming import DEFAULT_POSITION, free_name, free_position
-from schemas.entities import NAME_PATTERN, Pose, orientation_from_yaw
+from nodes.coordinator.naming import DEFAULT_POSITION, free_position
+from schemas.entities import Pose, orientation_from_yaw
 from tests.coordinator.test_keeper import entity
 
 
@@ -16,17 +12,6 @@ def standing(x, y, size, yaw=0.0):
 
     pose = Pose(position_m=(x, y, 0.0), orientation_wxyz=orientation_from_yaw(yaw))
     return msgspec.structs.replace(entity("box1", pose), size_m=size)
-
-
-def test_names_count_up_from_the_class():
-    assert free_name("Chair", set()) == "chair1"
-    assert free_name("Chair", {"chair1", "chair2"}) == "chair3"
-    assert free_name("Coffee_Machine", set()) == "coffee_machine1"
-
-
-@given(st.text(min_size=1, max_size=30))
-def test_every_class_gives_a_valid_name(class_name):
-    assert re.match(NAME_PATTERN, free_name(class_name, set()))
 
 
 def test_an_empty_map_gives_the_default_position():

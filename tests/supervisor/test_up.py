@@ -25,6 +25,13 @@ def up(data: Path, *words: str | Path) -> tuple[int, str]:
     return run.returncode, lines[0]
 
 
+def down(*words: str | Path) -> tuple[int, str]:
+    """Exit status of `semmap down`, and what it says."""
+    command = [Path(sys.executable).parent / "semmap", "down", *words]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    return run.returncode, (run.stdout + run.stderr).strip()
+
+
 @pytest.mark.parametrize(
     ("abox", "status", "said"),
     [
@@ -97,6 +104,14 @@ def test_one_system_a_data_folder(tmp_path):
         status, line = up(tmp_path)
         assert status == 1
         assert f"semmap down --data {tmp_path}" in line
-        down = [Path(sys.executable).parent / "semmap", "down", "--data", tmp_path]
-        assert subprocess.run(down, stdout=subprocess.DEVNULL).returncode == 0
-    assert subprocess.run(down, stderr=subprocess.DEVNULL).returncode == 3
+        assert down("--data", tmp_path) == (0, "stopped")
+    assert down("--data", tmp_path)[0] == 3
+
+
+def test_a_system_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
+        status, line = down("--data", tmp_path / "other")
+        assert status == 3
+        assert f"{tmp_path} ({system.endpoint})" in line
+        assert down("--connect", system.endpoint) == (0, "stopped")
+    assert down("--connect", system.endpoint)[0] == 3

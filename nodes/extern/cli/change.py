@@ -46,6 +46,7 @@ def add(client: Client, **fields: Any) -> None:
 @click.argument("name")
 @_describing
 @click.option("--class", "class_", metavar="CLASS")
+@click.option("--conflict", metavar="TEXT", help="What is seen against it; an empty text takes that back.")
 @talks
 def update(client: Client, **fields: Any) -> None:
     """Change what is named; what is not named stays."""

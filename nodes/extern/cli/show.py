@@ -45,6 +45,7 @@ def entity_card(e: Entity) -> Table:
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
+        **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "posed": provenance_text(e.pose_provenance),
@@ -90,7 +91,7 @@ def status_line(status: SystemStatus) -> str:
     verdicts = {
         True: "map and scene agree",
         False: "map and scene do not agree (yet)",
-        None: "no simulator runs",
+        None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
     }
     agree = verdicts[status.in_agreement]
     counts = f"{status.entities} entities, {status.bodies} bodies, commit {status.commit}"

@@ -1,0 +1,143 @@
+"""Perception of simulated rooms: what is found, what it is taken for, how far poses and sizes are off."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from benchmarks.perception.rooms import Room
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.pipeline import Look
+from nodes.training.scenes import Item, Shot, Stage
+from schemas.entities import Pose, Size
+from schemas.perception import Observation
+
+LEAST_PIXELS = 150
+"""A thing of which all cameras together see fewer is not asked for."""
+
+SAME_IOU = 0.5
+SMALL_M = 0.3
+
+Perceive = Callable[[Sequence[Cloud]], Look]
+
+
+@dataclass
+class Score:
+    """Sums over rooms. Errors are of things that were found and whole in view."""
+
+    asked: int = 0
+    found: int = 0
+    said: int = 0
+    right: int = 0
+    exact: int = 0
+    position_m: list[float] = field(default_factory=list)
+    size_m: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    wrong: list[tuple[str, str]] = field(default_factory=list)
+
+    def f1(self, hits: int) -> float:
+        """Of so many hits among what was asked for and what was said."""
+        return 2.0 * hits / max(1, self.asked + self.said)
+
+
+class Judge:
+    """Knows what is right: `class_of` a model, and what is above a class (without `Object`)."""
+
+    def __init__(self, class_of: Mapping[str, str], above: Mapping[str, Sequence[str]]) -> None:
+        self._class_of = class_of
+        self._above = {name: set(found) - {"Object"} for name, found in above.items()}
+
+    def exact(self, item: Item, said: str) -> bool:
+        """The very class."""
+        return said == self._class_of[item.kind]
+
+    def right(self, item: Item, said: str) -> bool:
+        """The class or one above it, below `Object`."""
+        return self.exact(item, said) or said in self._above[self._class_of[item.kind]]
+
+
+def shots(rooms: Iterable[Room], seed: int) -> Iterable[tuple[Room, Shot]]:
+    """Photograph the rooms."""
+    stage, rng = Stage(), np.random.default_rng(seed)
+    for room in rooms:
+        bodies = stage.show(room.items)
+        stage.paint({"floor": room.floor}, 0.35)
+        yield room, stage.shoot(bodies, room.views, rng)
+
+
+def judge_rooms(
+    photographed: Iterable[tuple[Room, Shot]], perceive: Perceive, judge: Judge, *, cameras: int = 2
+) -> Score:
+    """Perceive every room with so many of its cameras."""
+    score = Score()
+    for room, shot in photographed:
+        started = time.perf_counter()
+        look = perceive(shot.clouds[:cameras])
+        score.seconds.append(time.perf_counter() - started)
+        _count(score, room, shot, look, judge)
+    return score
+
+
+def _count(score: Score, room: Room, shot: Shot, look: Look, judge: Judge) -> None:
+    items = {item.name: item for item in room.items}
+    truth = [items[body.name] for body in shot.bodies]
+    poses = [body.pose for body in shot.bodies]
+    sizes = [body.size_m for body in shot.bodies]
+    overlap, pixels = _overlap(shot, look)
+    wanted = [
+        n for n, item in enumerate(truth) if item.name not in room.background and pixels[n] >= LEAST_PIXELS
+    ]
+    ignored = [n for n, item in enumerate(truth) if n not in wanted and item.name not in room.background]
+    said = [
+        o for o in range(len(look.observations.observations)) if not (overlap[ignored, o] > SAME_IOU).any()
+    ]
+    score.asked += len(wanted)
+    score.said += len(said)
+    iou = overlap[np.ix_(wanted, said)]
+    for row, column in zip(*linear_sum_assignment(-iou), strict=True):
+        if iou[row, column] <= SAME_IOU:
+            continue
+        n, observation = wanted[row], look.observations.observations[said[column]]
+        score.found += 1
+        score.right += judge.right(truth[n], observation.class_)
+        score.exact += judge.exact(truth[n], observation.class_)
+        if not judge.right(truth[n], observation.class_):
+            score.wrong.append((truth[n].kind, observation.class_))
+        if observation.whole and max(sizes[n]) <= SMALL_M:
+            score.position_m.append(position_error_m(observation, poses[n]))
+            score.size_m.append(size_error_m(observation, sizes[n]))
+
+
+def _overlap(shot: Shot, look: Look) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Intersection over union (bodies, observations) of pixels in all pictures; visible pixels a body."""
+    rows, columns = len(shot.bodies) + 1, len(look.observations.observations) + 1
+    both = np.zeros((rows, columns))
+    for owner, label, cloud in zip(shot.owners, look.labels, shot.clouds, strict=False):
+        seen = np.isfinite(cloud.points_camera[..., 2])
+        both += np.bincount(owner[seen] * columns + label[seen], minlength=rows * columns).reshape(
+            rows, columns
+        )
+    union = both.sum(axis=1, keepdims=True) + both.sum(axis=0, keepdims=True) - both
+    return (both / np.maximum(union, 1))[1:, 1:], both.sum(axis=1)[1:].astype(int)
+
+
+def position_error_m(observation: Observation, truth: Pose) -> float:
+    """Distance of the bottom centres."""
+    return float(np.linalg.norm(np.subtract(observation.pose.position_m, truth.position_m)))
+
+
+def size_error_m(observation: Observation, truth: Size) -> float:
+    """Mean error of the three extents; which horizontal side is called x does not matter."""
+    said, true = ([*sorted(size[:2]), size[2]] for size in (observation.size_m, truth))
+    return float(np.abs(np.subtract(said, true)).mean())
+
+
+def milliseconds(score: Score) -> float:
+    """Median time of a look."""
+    return 1e3 * median(score.seconds)
