@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.segmentation.grid import Floats, Grid, Mask, grid_of, spread
+from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
 from nodes.perception_node.segmentation.merging import Indices, Judge, merge
 from nodes.perception_node.segmentation.normals import normals
 from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.patches import patches
+from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
 from nodes.perception_node.segmentation.statistics import Statistics, statistics
 
@@ -35,37 +36,54 @@ class Segmentation:
 
 @dataclass(frozen=True)
 class Parts:
-    """A cloud taken apart, before anything is put together again.
+    """A picture taken apart, before anything is put together again.
 
     `of_plane`, `of_patch`: (h, w) of the working picture, the number of each cell's plane and patch, 0 for none.
     """
 
     grid: Grid
     planes: tuple[Plane, ...]
-    of_plane: NDArray[np.int32]
-    of_patch: NDArray[np.int32]
+    of_plane: Labels
+    of_patch: Labels
     statistics: Statistics
 
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
     """The planes and objects of a cloud, organised or not."""
+    if not cloud.organised:
+        picture, pixel = as_picture(cloud)
+        seen = segment(picture, learnt)
+        labels, plane_labels = (
+            np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
+        )
+        return Segmentation(labels, seen.planes, plane_labels)
     parts = taken_apart(cloud)
     objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
-    return Segmentation(
-        spread(parts.grid, objects), parts.planes, spread(parts.grid, parts.of_plane)
-    )
+    both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
+    return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
 
 
 def taken_apart(cloud: Cloud) -> Parts:
-    """The planes of a cloud, and small patches of the rest."""
+    """The planes of an organised cloud, and small patches of the rest."""
     grid = grid_of(cloud)
     rng = np.random.default_rng(0)  # the same cloud, the same answer
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
-    surface = normals(grid.points, where)
-    of_patch = patches(grid.points, surface, where)
-    known = statistics(of_patch, grid.points, surface, grid.colors, _support_axes(planes))
+    window = _window(where)
+    points, colors = grid.points[window], None if grid.colors is None else grid.colors[window]
+    surface = normals(points, where[window])
+    of_patch = np.zeros_like(of_plane)
+    of_patch[window] = patches(points, surface, where[window])
+    known = statistics(of_patch[window], points, surface, colors, _support_axes(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
+
+
+def _window(where: Mask) -> tuple[slice, slice]:
+    """What of a picture holds all of `where`."""
+    row, column = (np.flatnonzero(where.any(axis=axis)) for axis in (1, 0))
+    if not row.size:
+        return slice(0, 1), slice(0, 1)
+    return slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
 
 
 def _candidates(

@@ -7,8 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.grid import Floats, shifted
-from nodes.perception_node.segmentation.patches import Labels
+from nodes.perception_node.segmentation.grid import Floats, Labels, shifted
 
 Sums = NDArray[np.float64]
 
@@ -58,7 +57,7 @@ class Statistics:
 
 
 def statistics(
-    labels: Labels, points: Floats, normals: Floats, colors: Floats | None, support: Floats
+    labels: Labels, points: Floats, normals: Floats, colors: NDArray[np.uint8] | None, support: Floats
 ) -> Statistics:
     """Of patches `labels` (h, w), numbered from 1 without gaps.
 
@@ -68,7 +67,7 @@ def statistics(
     row, column = np.nonzero(labels)
     label = labels[row, column] - 1
     p, n = points[row, column], np.nan_to_num(normals[row, column])
-    c = np.zeros_like(p) if colors is None else np.nan_to_num(colors[row, column])
+    c = np.zeros_like(p) if colors is None else colors[row, column] / np.float32(255)
     squares = np.stack([p[:, i] * p[:, j] for i, j in _PRODUCTS], axis=1)
     values = np.concatenate([np.ones((len(p), 1)), p, squares, n, c, np.zeros((len(p), 1))], axis=1)
     inside = np.stack([np.bincount(label, weights=v, minlength=count) for v in values.T], axis=1)
@@ -96,7 +95,7 @@ def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.gene
         between[..., column] += sums + sums.T
 
 
-def _touching(between: Sums, labels: Labels, points: Floats, colors: Floats | None) -> None:
+def _touching(between: Sums, labels: Labels, points: Floats, colors: NDArray[np.uint8] | None) -> None:
     """Cells side by side."""
     count = between.shape[0]
     for shift in ((0, 1), (1, 0)):
@@ -107,8 +106,8 @@ def _touching(between: Sums, labels: Labels, points: Floats, colors: Floats | No
         step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
         off = 0.0 * z
         if colors is not None:
-            c, d = (view[where] for view in shifted(colors, *shift))
-            off = np.nan_to_num(np.abs(c - d).sum(axis=-1))
+            c, d = (view[where].astype(np.float32) for view in shifted(colors, *shift))
+            off = np.abs(c - d).sum(axis=-1) / 255
         _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step, COLOR_STEP: off})
         for first, second, front in ((a, b, step & (z < far)), (b, a, step & (far < z))):
             key = (first - 1) * count + (second - 1)

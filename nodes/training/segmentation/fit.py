@@ -10,14 +10,14 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 from nodes.perception_node.segmentation.trees import LEAVES, Trees
 from nodes.training.segmentation.examples import Rows
 
-TREES = 300
+TREES = 150
 
 
 def fit(rows: Rows, seed: int = 0) -> Trees:
     """Trees that tell pairs that are one object from those that are not."""
     model = HistGradientBoostingClassifier(
         max_iter=TREES,
-        learning_rate=0.06,
+        learning_rate=0.1,
         max_leaf_nodes=LEAVES,
         min_samples_leaf=20,
         l2_regularization=1.0,
