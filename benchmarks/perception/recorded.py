@@ -91,7 +91,7 @@ def by_group(scenes: Iterable[Scene], segments: Callable[[Scene], Labels]) -> di
 
 
 def measure(folder: Path, piles: int) -> list[Row]:
-    """By cross-validation over scenes, with whole groups left out, learnt from renderings alone; and baselines."""
+    """By cross-validation, with groups left out, learnt from renderings alone; baselines, and the time."""
     scenes = list(read_scenes(folder))
     rng = np.random.default_rng(1)
     heard = lessons(made_up(piles, rng), scenes, rng)
@@ -101,7 +101,7 @@ def measure(folder: Path, piles: int) -> list[Row]:
     strange = held_out(scenes, heard, [[n for n in names if group_of(n) == group] for group in groups])
     rendered = held_out(scenes, heard, [names])
     rows = [
-        Row("real scenes: objects found, F1, cross-validation over scenes", crossed["all"].f1, "", 0.95, 0.98),
+        Row("real scenes: objects, F1, cross-validation over scenes", crossed["all"].f1, "", 0.95, 0.98),
         *(Row(f"the same, {group}", crossed[group].f1) for group in groups),
         Row("the same, leave-one-group-out", strange["all"].f1, "", 0.85, 0.92),
         *(Row(f"the same, {group} left out", strange[group].f1) for group in groups),
@@ -115,9 +115,7 @@ def measure(folder: Path, piles: int) -> list[Row]:
     return rows
 
 
-def held_out(
-    scenes: Sequence[Scene], heard: Lessons, folds: Iterable[Sequence[str]]
-) -> Mapping[str, Counts]:
+def held_out(scenes: Sequence[Scene], heard: Lessons, folds: Iterable[Sequence[str]]) -> Mapping[str, Counts]:
     """Each fold's scenes by a model that learnt from all the others."""
     totals: dict[str, Counts] = {}
     for fold in folds:
