@@ -51,7 +51,7 @@ class Counts(NamedTuple):
 
     def plus(self, other: Counts) -> Counts:
         """Both together."""
-        return Counts(*(mine + theirs for mine, theirs in zip(self, other, strict=True)))
+        return Counts(self.objects + other.objects, self.found + other.found, self.matched + other.matched)
 
 
 def data_folder() -> Path:
