@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.fusion import fuse
-from nodes.perception_node.recognition.learnt import Learnt
+from nodes.perception_node.recognition.learnt import Learnt, shipped
 from nodes.perception_node.recognition.recognise import recognise
 from nodes.perception_node.sights import Sight, see
 from nodes.perception_node.things import Thing, thing_of
 from schemas.perception import CameraView, Observations
+
+__all__ = ["Learnt", "Look", "look", "observe", "shipped", "things_in"]
 
 
 @dataclass(frozen=True)
