@@ -25,8 +25,7 @@ from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.map_view import MapView, kinship_of
-from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.learnt import shipped
+from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
 from nodes.perception_node.tracks import Tracks
