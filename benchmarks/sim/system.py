@@ -144,7 +144,7 @@ def _until_followed(client: Client, watch: Watch, name: str, turn: int) -> tuple
 
     It is said to rest by the first poses that say so; they have the simulator's stamp.
     """
-    place = (-3.0 - 2.0 * (turn % 20), -3.0, 0.0)
+    place = (-3.0 - 2.0 * (turn % 10), -3.0 - 2.0 * (turn // 10), 0.0)
     watch.followed_ns.pop(name, None)
     asked_ns, at_rest_ns = time_ns(), 0
     client.move(name, place)
