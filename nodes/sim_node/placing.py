@@ -60,7 +60,7 @@ class Stage:
         felt = (model.geom_contype | model.geom_conaffinity) != 0
         for row, record in enumerate(self._records):
             if record.ghost:
-                geoms = np.flatnonzero(self._owner == row)
+                geoms = np.flatnonzero(self._owner == row)[: len(record.masks)]  # its own come first
                 felt[geoms] = [bool(contype | conaffinity) for contype, conaffinity in record.masks]
         self._felt: Ints = np.flatnonzero(felt)
         self._low, self._high = self._boxes()
