@@ -70,6 +70,11 @@ class Door:
             return self.entities[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
 
+    def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
+        """The entities, or those of a class by inference, in the order of their names."""
+        known = sorted(self.entities.items())
+        return tuple(e for _, e in known if class_name is None or class_name in e.types)
+
     def begin(self, snapshot: Snapshot) -> None:
         """Take over a snapshot, unless it is older than what is known."""
         if snapshot.seq >= self.seq:

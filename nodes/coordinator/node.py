@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -147,6 +148,7 @@ class Coordinator:
             self._door.classes = ClassNames(fetched[0])
             self._door.begin(future.result())
             self._has_map = True
+            gc.freeze()  # most of the map stays as it is: the collector need not look through it again
             self._node.ready(f"{len(self._door.entities)} entities")
             self._keep()
 
@@ -154,19 +156,24 @@ class Coordinator:
 
     # Asking
 
-    def _list(self, query: c.List) -> Future[Any]:
+    def _list(self, query: c.List) -> Any:
+        """What the door knows of now answers at once; the past is asked of the knowledge base."""
         if query.class_ is not None:
             query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
-        return then(self._later("list", query), lambda entities: self._formatted(entities, query))
+        if query.as_of is not None:
+            return then(self._later("list", query), lambda entities: self._formatted(entities, query.format))
+        entities = self._door.entities_of(query.class_)
+        if query.format == "json":
+            entities = tuple(map(self._with_body, entities))
+        return self._formatted(entities, query.format)
 
-    def _formatted(self, entities: tuple[Entity, ...], query: c.List) -> Any:
-        wanted = query.format
+    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
             iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
             return formats.legacy(entities, iris)
-        return entities if query.as_of is not None else tuple(map(self._with_body, entities))
+        return entities
 
     def _class_name(self, word: str, as_of: When | None) -> str:
         """The class that is meant; then there may have been others than now."""
@@ -177,10 +184,10 @@ class Coordinator:
                 raise
             return word
 
-    def _get(self, query: c.Get) -> Future[Any]:
+    def _get(self, query: c.Get) -> Any:
         if query.as_of is not None:
             return self._later("get", query)
-        return then(self._later("get", query), self._with_body)
+        return self._with_body(self._door.entity(query.name))
 
     def _with_body(self, entity: Entity) -> Entity:
         return structs.replace(entity, body=self._keeping.body_state(entity))

@@ -263,3 +263,11 @@ def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, sema
     door.take(semantic_map.commit(shared))
     door.change_together([c.Update(name=name, ref=f"the {name}") for name in ("a", "b")])
     assert [door.entity(name).preferred_reference for name in ("a", "b")] == ["the a", "the b"]
+
+
+def test_the_entities_of_a_class_are_those_of_the_map(door, semantic_map):
+    for i, class_ in enumerate(("Kitchen", "Living_Room_Table", "Chair", "Furniture")):
+        add(door, class_, f"e{9 - i}", at=(float(i), 0.0, 0.0))
+    for name, iri in semantic_map.classes.iris.items():
+        assert door.entities_of(name) == tuple(semantic_map.entities(iri))
+    assert door.entities_of(None) == tuple(semantic_map.entities())
