@@ -16,7 +16,9 @@ from schemas import errors
 
 @click.command()
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--labels", metavar="OUT.npy", type=click.Path(path_type=Path), help="Write each point's object.")
+@click.option(
+    "--labels", metavar="OUT.npy", type=click.Path(path_type=Path), help="Write each point's object."
+)
 @click.option(
     "--intrinsics",
     metavar="FILE.json",
@@ -26,8 +28,8 @@ from schemas import errors
 def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None) -> None:
     """Find the objects in FILE...: PCD or PLY clouds, or a colour and a depth picture (PNG).
 
-    Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for
-    background, 1 to n for the objects.
+    Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
+    0 for background, 1 to n for the objects.
     """
     from nodes.perception_node.files.reading import read_frames
     from nodes.perception_node.segmentation import segment

@@ -15,7 +15,7 @@ Labels = NDArray[np.int32]
 Mask = NDArray[np.bool_]
 
 WIDTH = 320
-"""About how many cells there are across. Pixels of a cell are averaged, which halves the noise of 640 pixels."""
+"""About how many cells there are across. The pixels of a cell are averaged, which halves a Kinect's noise."""
 
 _SAME_SURFACE = 0.015  # of the distance: pixels of one cell that lie deeper belong to what is behind
 _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -47,7 +47,7 @@ def grid_of(cloud: Cloud) -> Grid:
 
 
 def _averaged(source: Floats, step: int) -> Floats:
-    """Cells as the mean of those of their points that lie on the nearest surface; of big cells, of four points."""
+    """Cells as the mean of those of their points (at most four) that lie on the nearest surface."""
     height, width = (-(-side // step) for side in source.shape[:2])
     corners = [source[r::step, c::step] for r in (0, step // 2) for c in (0, step // 2)]
     planes = np.full((4, 3, height, width), np.nan, np.float32)

@@ -58,7 +58,7 @@ def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
 
 
 def _step(z: Floats, other: Floats) -> Mask:
-    return np.abs(z - other) > _STEP_M * np.maximum(z, z * z)
+    return np.asarray(np.abs(z - other) > _STEP_M * np.maximum(z, z * z))
 
 
 def grown(labels: Labels, points: Floats, where: Mask) -> Labels:

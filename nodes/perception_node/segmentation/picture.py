@@ -19,7 +19,7 @@ def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     """An organised cloud of the points of one that is not, and for each point (N,) the pixel it falls on.
 
     Points that fall on no pixel, and those that are not in front of the camera, have -1. Of several on one
-    pixel the nearest is in the picture. Where the cloud was a picture once, the pixels are those of that picture.
+    pixel the nearest is in the picture. Where the cloud was a picture once, its pixels are found again.
     """
     points = cloud.points_camera.reshape(-1, 3)
     pixel = np.full(len(points), -1, np.int64)
@@ -41,9 +41,8 @@ def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     picture[pixel[farthest_first]] = points[farthest_first]  # of several the last is kept
     colors = None
     if cloud.colors is not None:
-        colors = np.zeros((height * width, 3), np.uint8)
-        colors[pixel[farthest_first]] = cloud.colors.reshape(-1, 3)[farthest_first]
-        colors = colors.reshape(height, width, 3)
+        colors = np.zeros((height, width, 3), np.uint8)
+        colors.reshape(-1, 3)[pixel[farthest_first]] = cloud.colors.reshape(-1, 3)[farthest_first]
     return replace(cloud, points_camera=picture.reshape(height, width, 3), colors=colors), pixel
 
 

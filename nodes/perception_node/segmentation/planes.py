@@ -50,7 +50,7 @@ class Plane:
 
 def thickness_m(distance_m: Floats) -> Floats:
     """How far a plane's points may be off it: noise grows with the square of the distance."""
-    return np.maximum(np.float32(0.009), np.float32(0.006) * distance_m**2)
+    return np.asarray(np.maximum(0.009, 0.006 * distance_m**2), np.float32)
 
 
 def find_planes(

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
-from nodes.perception_node.segmentation.merging import Indices, Judge, merge
+from nodes.perception_node.segmentation.learnt import shipped
+from nodes.perception_node.segmentation.merging import Judge, merge
 from nodes.perception_node.segmentation.normals import normals
-from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.patches import patches
 from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
-from nodes.perception_node.segmentation.statistics import Statistics, statistics
+from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
 """What stands on a support lies this far above it."""
@@ -26,7 +26,7 @@ class Segmentation:
     """What of a cloud is what.
 
     `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
-    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, from 1, 0 for none.
+    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, 0 for none.
     """
 
     labels: NDArray[np.int32]
@@ -38,7 +38,7 @@ class Segmentation:
 class Parts:
     """A picture taken apart, before anything is put together again.
 
-    `of_plane`, `of_patch`: (h, w) of the working picture, the number of each cell's plane and patch, 0 for none.
+    `of_plane`, `of_patch`: (h, w) the number of each cell's plane and patch, 0 for none.
     """
 
     grid: Grid
@@ -49,7 +49,7 @@ class Parts:
 
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
-    """The planes and objects of a cloud, organised or not."""
+    """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
     if not cloud.organised:
         picture, pixel = as_picture(cloud)
         seen = segment(picture, learnt)
@@ -58,7 +58,7 @@ def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
         )
         return Segmentation(labels, seen.planes, plane_labels)
     parts = taken_apart(cloud)
-    objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
+    objects = np.append(np.int32(0), merge(parts.statistics, learnt or shipped()))[parts.of_patch]
     both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
     return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
 
@@ -74,7 +74,7 @@ def taken_apart(cloud: Cloud) -> Parts:
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
-    known = statistics(of_patch[window], points, surface, colors, _support_axes(planes))
+    known = statistics(of_patch[window], points, surface, colors, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 
 
@@ -97,20 +97,11 @@ def _candidates(
     return where
 
 
-def _support_axes(planes: tuple[Plane, ...]) -> Floats:
-    """(3, 4) from the camera frame to two axes of the lowest support and the height above it [m]."""
-    carrying = [plane for plane in planes if plane.kind in ("support", "floor")]
+def _upright(planes: tuple[Plane, ...]) -> Upright:
+    """The vertical of the largest plane on which things may stand; without one, the camera's."""
+    carrying = [plane for plane in planes if plane.kind in ("floor", "support")]
     if not carrying:
-        return np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0]], np.float32)
-    plane = max(carrying, key=lambda plane: plane.points)
-    axes = np.linalg.svd(plane.normal[None, :])[2][1:]
-    turned = np.vstack([axes, plane.normal])
-    return np.column_stack([turned, (0.0, 0.0, -plane.offset_m)]).astype(np.float32)
-
-
-def _by_rule(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
-    """Convexity alone."""
-    rows = features(known, a, b)
-    of = {name: rows[:, i] for i, name in enumerate(NAMES)}
-    smooth = (of["bend"] > -0.1) & (of["concave"] < 0.3) & (of["bends"] > 0.5) & (of["wide"] > 0.2)
-    return np.where(smooth, 0.6 + 0.3 * of["like"], 0).astype(np.float32)
+        return Upright(np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), np.zeros(0))
+    up = max(carrying, key=lambda plane: plane.points).normal
+    level = np.linalg.svd(up[None, :])[2][1:]
+    return Upright(np.vstack([level, up]), np.sort([plane.offset_m for plane in carrying]))

@@ -1,8 +1,9 @@
-"""Made-up scenes: household things on a table, apart, side by side and on one another, seen by a depth camera."""
+"""Made-up scenes: things on a table, apart, side by side and on one another, seen by a depth camera."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import mujoco
@@ -44,12 +45,13 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     """A table with 2 to 14 things on it."""
     models = [_thing(rng) for _ in range(int(rng.integers(2, 15)))]
     scene = _Scene(models)
+    view = _view(rng)
+    eye_m = view.map_from_camera[:2, 3]
     area = rng.uniform(0.15, 0.45)
     placed: list[int] = []
     for thing in range(len(models)):
-        scene.place(thing, placed, area, rng)
+        scene.place(thing, placed, area, eye_m, rng)
         placed.append(thing)
-    view = _view(rng)
     mujoco.mj_forward(scene.model, scene.data)
     rgb, depth_m = eye.see(scene.model, scene.data, view)
     geom = eye.segment(scene.model, scene.data, view)
@@ -62,7 +64,7 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
 def _thing(rng: np.random.Generator) -> Model:
     """A thing of the library at some size, or a plain box or cylinder."""
     if rng.random() < _PLAIN:
-        x, y, z = np.exp(rng.uniform(np.log(0.03), np.log(0.25), 3))
+        x, y, z = np.exp(rng.uniform(np.log(0.03), np.log(0.26), 3))
         colour = tuple(rng.uniform(0.1, 0.9, 3))
         if rng.random() < 0.6:
             part = box((x, y, z), (0.0, 0.0, z / 2), colour)
@@ -93,29 +95,38 @@ class _Scene:
         self.data = mujoco.MjData(self.model)
         self._sizes = [model.size_m for model in models]
 
-    def place(self, thing: int, placed: list[int], area_m: float, rng: np.random.Generator) -> None:
-        """Put a thing on the table, beside another one, or on top of one."""
+    def place(
+        self,
+        thing: int,
+        placed: list[int],
+        area_m: float,
+        eye_m: NDArray[np.float64],
+        rng: np.random.Generator,
+    ) -> None:
+        """Put a thing on the table, on top of another one, between one and the eye, or beside one."""
         pose = self.data.qpos[7 * thing : 7 * thing + 7]
         pose[3:] = _turn(rng)
         way = rng.random() if placed else 0.0
         spot = rng.uniform(-area_m, area_m, 2)
-        if way < 0.3:
+        if way < 0.25:
             self._lower(thing, spot)
             return
         other = int(rng.choice(placed))
         target = self.data.qpos[7 * other : 7 * other + 2].copy()
-        if way < 0.55:
+        if way < 0.5:
             self._lower(thing, target + rng.normal(0, 0.03, 2))
             if pose[2] > _HIGHEST_M - 0.1:
                 self._lower(thing, spot)
             return
         angle = rng.uniform(-math.pi, math.pi)
         away = np.array([math.cos(angle), math.sin(angle)])
+        if way < 0.75:
+            away = (eye_m - target) / np.linalg.norm(eye_m - target)
         self._lower(thing, target + away * (_PARKED_M / 2))
         height = pose[2]
         self._slide(thing, target, away, height)
         if rng.random() < 0.5:
-            pose[:2] += away * rng.uniform(0.0, 0.03)
+            pose[:2] += away * rng.uniform(0.0, 0.06)
 
     def _lower(self, thing: int, spot: NDArray[np.float64]) -> None:
         pose = self.data.qpos[7 * thing : 7 * thing + 7]
@@ -158,7 +169,7 @@ class _Scene:
         return bool((bodies == thing + 1).any())
 
 
-def _last_free(touches, start: float) -> float:
+def _last_free(touches: Callable[[float], bool], start: float) -> float:
     """The least distance, coming from `start`, before anything touches."""
     free = start
     while free > 0 and not touches(free - _STEP_M):
