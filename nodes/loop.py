@@ -80,8 +80,8 @@ class Node:
         """Like `ask`, without waiting; the future is resolved on this node's own thread."""
         future: Future[Any] = Future()
 
-        def answer(reply: Any) -> None:
-            self._events.put(lambda: _resolve(future, reply))
+        def answer(read: Callable[[], Any]) -> None:
+            self._events.put(lambda: settle(future, read))
 
         bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
         return future
@@ -192,13 +192,6 @@ class Node:
                 f"a fault in {self.name}, which goes on: {type(error).__name__}: {error}"
             )
         request.refuse(error)
-
-
-def _resolve(future: Future[Any], reply: Any) -> None:
-    if isinstance(reply, errors.SemmapError):
-        future.set_exception(reply)
-    else:
-        future.set_result(reply)
 
 
 def settle(future: Future[Any], execute: Callable[[], Any]) -> None:

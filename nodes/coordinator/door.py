@@ -123,14 +123,16 @@ class Door:
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest. Raises what the knowledge base refuses."""
         hand = self.hands.that_moved(name)
-        command = Update(id=_new_id(), source="scene", agent=hand.agent, name=name, reason=hand.reason)
-
-        def build(suffix: str) -> Talk[Transaction]:
-            (star,) = yield from _stars((name,))
-            update = transactions.update(command, self.entity(name), star, None, pose, suffix)
-            return structs.replace(update, verb=hand.verb)
-
-        hold(self._commit(build), self._ask)
+        command = Update(
+            id=_new_id(),
+            source="scene",
+            agent=hand.agent,
+            name=name,
+            at=pose.position_m,
+            orientation=pose.orientation_wxyz,
+            reason=hand.reason,
+        )
+        hold(self._commit_once(structs.replace(transactions.place(command), verb=hand.verb)), self._ask)
 
     def _changing(self, command: Add | Update) -> Talk[Changed]:
         return self._add(command) if isinstance(command, Add) else self._update(command)
@@ -167,11 +169,12 @@ class Door:
 
         def build(suffix: str) -> Talk[Transaction]:
             (star,) = yield from _stars((entity.name,))
-            return transactions.update(
-                command, self.entity(entity.name), star, found, self._pose(command), suffix
-            )
+            return transactions.update(command, self.entity(entity.name), star, found, suffix)
 
-        commit = yield from self._commit(build)
+        if all(change is None for change in (*changes, command.conflict)):
+            commit = yield from self._commit_once(transactions.place(command))
+        else:
+            commit = yield from self._commit(build)
         return Changed(
             commit=_seq(commit),
             text=f"updated {entity.name}" if commit else f"{entity.name} is like that already",
@@ -314,22 +317,13 @@ class Door:
         commit = yield from self._commit(build)
         return Changed(commit=_seq(commit), text=f"removed {len(names)}: {_few(names)}", names=names)
 
-    def _pose(self, command: Update) -> Pose | None:
-        before = self.entity(command.name).pose
-        if command.at is None and command.yaw is None and command.orientation is None:
-            return None
-        at = command.at or (before.position_m if before is not None else None)
-        if at is None:
-            raise errors.BadRequest(f"{command.name} has no position yet; give one with --at")
-        return pose_of(at, command.yaw, command.orientation, before)
-
     def _commit(self, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
         """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
         suffix = ""
         for attempt in range(_ATTEMPTS):
             transaction = yield from build(suffix)
             try:
-                return self._taken((yield Question("commit", transaction)))
+                return (yield from self._commit_once(transaction))
             except errors.PreconditionFailed:
                 if attempt == _ATTEMPTS - 1:
                     raise
@@ -338,6 +332,9 @@ class Door:
                     raise
                 suffix = f"_{self.seq + 1}"
         raise AssertionError("the last attempt returns or raises")
+
+    def _commit_once(self, transaction: Transaction) -> Talk[Commit | None]:
+        return self._taken((yield Question("commit", transaction)))
 
     def _taken(self, commit: Commit | None) -> Commit | None:
         if commit is not None:

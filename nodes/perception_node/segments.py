@@ -55,19 +55,18 @@ def cut_out(
     pixels, owner = pixels[order], owner[order]
     at_edge = _labels_at_edge(labels) if cloud.organised else frozenset()
     found = []
-    starts = np.flatnonzero(np.diff(owner, prepend=0))
-    for start, end in zip(starts, [*starts[1:], len(owner)], strict=True):
-        own = pixels[start:end]
+    for own in np.split(pixels, np.flatnonzero(np.diff(owner)) + 1) if len(pixels) else ():
+        label = int(labels.ravel()[own[0]])
         thin = own[:: max(1, -(-len(own) // MOST_POINTS))]
         found.append(
             Segment(
                 points=points_map.reshape(-1, 3)[thin],
                 colors=None if cloud.colors is None else cloud.colors.reshape(-1, 3)[thin],
-                label=int(owner[start]),
+                label=label,
                 eye=eye,
-                cut=int(owner[start]) in at_edge,
+                cut=label in at_edge,
                 count=len(own),
-                carrier=int(owner[start]) in carriers,
+                carrier=label in carriers,
             )
         )
     return found

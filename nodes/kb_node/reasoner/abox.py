@@ -92,7 +92,7 @@ class ABox(Equality):
     def _spread(self, node: int) -> None:
         """A node's kind grew: what that says of the node itself and of its neighbours."""
         kind = self.store.kind[node]
-        if kind.clash:
+        if kind.clash and not (self.is_literal(node) and self.store.is_bare(node)):
             one, other = kind.clash
             raise Clash(Member(node, one), Member(node, other))
         self.add_values(node)

@@ -8,8 +8,8 @@ asked for its walls without looking at the parts. Freed numbers are used again.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Iterable, Iterator
+from typing import Final, NamedTuple
 
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.terms import is_literal
@@ -105,6 +105,33 @@ class Adjacency:
             first = self.group[first]
 
 
+class NewEdge(NamedTuple):
+    """An edge of a layout: its ends by place, and its neighbours by their index in the layout, NONE for none."""
+
+    subject: int
+    predicate: int
+    object: int
+    source: int
+    after: int
+    before: int
+    group: int
+
+
+class Layout(NamedTuple):
+    """New individuals and their edges, as they are written at once.
+
+    A *place* counts the new individuals first, then the other objects.
+    """
+
+    kinds: tuple[Kind, ...]
+    """Those of the individuals."""
+    others: tuple[Kind, ...]
+    """Those of the other objects, which they have already if they are there."""
+    edges: tuple[NewEdge, ...]
+    heads: tuple[int, ...]
+    """The index of each individual's first edge."""
+
+
 class Store:
     """Terms, kinds and edges."""
 
@@ -135,7 +162,9 @@ class Store:
         if found is not None:
             return found
         kinds = self._kinds
-        kind = kinds.literal(term) if is_literal(term) else kinds.individual(term)
+        return self._new(term, kinds.literal(term) if is_literal(term) else kinds.individual(term))
+
+    def _new(self, term: Term, kind: Kind) -> int:
         if self._free_nodes:
             node = self._free_nodes.pop()
             self.terms[node], self.kind[node] = term, kind
@@ -193,6 +222,34 @@ class Store:
         self.out.link(subject, edge, predicate)
         self.into.link(object_, edge, predicate)
         return edge
+
+    def write(self, layout: Layout, individuals: Iterable[Term], others: Iterable[Term]) -> None:
+        """Add new individuals with their edges, all of which leave from them."""
+        new, numbers = self._new, self.numbers
+        nodes = [new(term, kind) for term, kind in zip(individuals, layout.kinds, strict=True)]
+        out, into = self.out, self.into
+        edges = layout.edges
+        while len(self._free_edges) < len(edges):
+            self._make_room()
+        left = len(self._free_edges) - len(edges)
+        ids = self._free_edges[left:]
+        del self._free_edges[left:]
+        ids.append(NONE)  # which is also its index
+        for node, first in zip(nodes, layout.heads, strict=True):
+            out.heads[node] = ids[first]
+        for term, kind in zip(others, layout.others, strict=True):
+            node = numbers.get(term, NONE)
+            nodes.append(new(term, kind) if node == NONE else node)
+        for edge, (s, p, o, source, after, before, group) in zip(ids, edges, strict=False):
+            node = nodes[o]
+            self.subject[edge], self.predicate[edge], self.object[edge] = nodes[s], p, node
+            self.source[edge] = source
+            out.after[edge], out.before[edge], out.group[edge] = ids[after], ids[before], ids[group]
+            if into.heads[node] == NONE:
+                into.heads[node] = edge
+                into.after[edge] = into.before[edge] = into.group[edge] = NONE
+            else:
+                into.link(node, edge, p)
 
     def _make_room(self) -> None:
         edges = range(len(self.subject), len(self.subject) + BLOCK)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -24,17 +23,12 @@ Plane = tuple[CameraFrame, NDArray[np.generic]]
 
 @dataclass(frozen=True)
 class Still:
-    """The world at one moment. `names` (ngeom,) is the body of each geom, "" for none."""
+    """The world at one moment, all of it copies. `names` (ngeom,) is the body of each geom, "" for none."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
     names: list[str]
     stamp_ns: int = field(default_factory=time.time_ns)
-
-    @staticmethod
-    def of(model: mujoco.MjModel, data: mujoco.MjData, names: list[str]) -> Still:
-        """A copy; the model is not copied, because the world replaces its model rather than change it."""
-        return Still(model, copy.copy(data), names)
 
 
 class Studio:
