@@ -21,6 +21,7 @@ from schemas.scenes import (
     Spawned,
 )
 from tests.conftest import running, until
+from tests.recorder.files import column
 
 TOP_Z = 0.74
 WORLD = f"""<mujoco>
@@ -34,19 +35,14 @@ WORLD = f"""<mujoco>
 </worldbody></mujoco>"""
 
 
-@pytest.fixture(params=["graphics", "raycast"])
-def system(request, tmp_path, monkeypatch):
-    if request.param == "raycast":
+@pytest.mark.parametrize("graphics", [True, False])
+def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, monkeypatch, graphics):
+    if not graphics:  # the cameras cast rays
         monkeypatch.setenv("MUJOCO_GL", "disabled")
     world = tmp_path / "world.xml"
     world.write_text(WORLD)
-    words = ("--abox", "none", "--world", world, "--truth", "perceived", "--perception", "--no-record")
-    with running(tmp_path / "data", *words) as system:
-        yield system
-
-
-def test_a_thing_put_on_the_table_is_known_moved_and_gone(system):
-    with system.client() as client:
+    words = ("--abox", "none", "--world", world, "--truth", "perceived", "--perception")
+    with running(tmp_path, *words) as system, system.client() as client:
         looks: list[Observations] = []
         bus.follow(client.session, keys.OBSERVATIONS, lambda _, seen: looks.append(seen))
         until(lambda: looks, "the cameras see")
@@ -74,6 +70,13 @@ def test_a_thing_put_on_the_table_is_known_moved_and_gone(system):
         assert status.truth == "perceived"
         assert "perception_node" in {node.node for node in status.nodes}
         assert not any(node.last_error for node in status.nodes)
+
+    (recording,) = (tmp_path / "recordings").glob("*.rrd")
+    labels = column(recording, "/map/perception/boxes", "Boxes3D:labels")
+    assert any(label.startswith(f"{bottle.name}: Bottle") for label in labels)
+    assert column(recording, "/map/perception/cloud", "Points3D:positions")
+    for camera in ("left", "right"):
+        assert column(recording, f"/map/perception/cameras/{camera}", "EncodedImage:blob")
 
 
 def there(client, x, y):
