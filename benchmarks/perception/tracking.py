@@ -1,7 +1,8 @@
 """Do things keep their names while they are moved about? The pipeline and the association, without the wire.
 
-Twenty things stand in cells of a table that two cameras see from opposite corners, noise on. One after the other is taken to a free
-cell and turned. Then the entity that stands where the thing really is must be the one that was it before.
+Twenty things stand in cells of a table that two cameras see from opposite corners, noise on. One after the
+other is taken to a free cell and turned. Then the entity that stands where the thing really is must be the
+one that was it before.
 """
 
 from __future__ import annotations
