@@ -3,7 +3,9 @@
 What was learnt by measuring (Zenoh 1.10.2): a session that has a Python callback keeps the process from
 exiting until it is closed, so sessions are context managers; a `get` that finds nobody comes back empty
 at once, so an empty answer is asked again until patience ends, and never read as an answer; a time-out
-comes as an error reply that is not ours.
+comes as an error reply that is not ours. The callback of a `get` is given a thread of its own unless it is
+declared direct, which takes longer than the whole round trip; and replies wait for the end of the query
+unless they need not be consolidated.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, NoReturn
 
 import zenoh
 from zenoh import ext
@@ -28,6 +30,7 @@ TIMEOUT_S = 30.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _JSON = "application/json"
+_AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
 @dataclass(frozen=True)
@@ -103,11 +106,13 @@ def ask(
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline = time.monotonic() + patience_s
     while True:
-        replies = session.get(key, payload=payload, encoding=encoding, timeout=timeout_s)
+        replies = session.get(
+            key, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+        )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
             return read_reply(key, reply, kind, timeout_s)
         if time.monotonic() > deadline:
-            raise _nobody(key)
+            _nobody(key)
         time.sleep(0.05)
 
 
@@ -130,26 +135,30 @@ def ask_later(
     verb: str,
     message: Any,
     kind: Any,
-    answer: Callable[[Any], None],
+    answer: Callable[[Callable[[], Any]], None],
     *,
     timeout_s: float = TIMEOUT_S,
 ) -> None:
-    """Like `ask`, without waiting: `answer` gets the reply or the error, once, on a thread of Zenoh's."""
+    """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
+
+    It is called once, on the thread with which Zenoh receives everything, so it should only queue.
+    """
     key = f"{prefix}/{verb}"
-    answers: list[Any] = []
+    waiting = [answer]
 
     def on_reply(reply: zenoh.Reply) -> None:
-        try:
-            answers.append(read_reply(key, reply, kind, timeout_s))
-        except errors.SemmapError as error:
-            answers.append(error)
+        if waiting:
+            waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
 
     def on_end() -> None:
-        answer(answers[0] if answers else _nobody(key))
+        if waiting:
+            waiting.pop()(lambda: _nobody(key))
 
-    handler = zenoh.handlers.Callback(on_reply, on_end)
+    handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    session.get(key, handler, payload=payload, encoding=encoding, timeout=timeout_s)
+    session.get(
+        key, handler, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+    )
 
 
 def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Any:
@@ -162,8 +171,8 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Any
     raise errors.from_message(codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage))
 
 
-def _nobody(key: str) -> errors.NoAnswer:
-    return errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
+def _nobody(key: str) -> NoReturn:
+    raise errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,7 +19,6 @@ from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
 from nodes.extern.client import Client, connect
 from schemas import commands, keys
-from schemas.errors import SemmapError
 
 IN_FLIGHT = 32
 
@@ -64,16 +63,14 @@ def _add(client: Client, name: str, i: int, random_: random.Random) -> None:
 
 def _sustained(client: Client, names: list[str], random_: random.Random) -> float:
     """Moves a second, all durable, `IN_FLIGHT` at a time, none refused."""
-    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[Callable[[], Any]] = queue.SimpleQueue()
 
     def send(name: str) -> None:
         command = commands.Update(name=name, at=pose(random_).position_m)
         bus.ask_later(client.session, keys.CMD, "update", command, commands.Changed, answers.put)
 
     def receive() -> None:
-        answer = answers.get(timeout=bus.TIMEOUT_S)
-        if isinstance(answer, SemmapError):
-            raise answer
+        answers.get(timeout=bus.TIMEOUT_S)()
 
     started = time.perf_counter()
     for i, name in enumerate(names):

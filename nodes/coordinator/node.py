@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -9,12 +10,15 @@ from typing import Any
 
 from msgspec import structs
 
+from nodes import bus
 from nodes.coordinator import formats
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
+from nodes.coordinator.talking import hold_later
+from nodes.coordinator.turns import Turns
 from nodes.loop import Node, open_node, settle, then
 from schemas import commands as c
 from schemas import errors, keys
@@ -27,7 +31,6 @@ from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Place
 
 _WAIT_S = 20.0
 _EARLY_S = 10.0
-_TOGETHER = 64
 _COMMIT_TIMEOUT_S = 10.0
 _LOAD_TIMEOUT_S = 300.0
 _SIM_TIMEOUT_S = 120.0
@@ -42,18 +45,18 @@ class Coordinator:
         self._node = node
         self._config = config
         self._door = Door(self._ask_kb)
+        self._turns = Turns(lambda changes: hold_later(self._door.together(changes), self._commit_later))
         self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
         self._fetching = False
         self._changed: set[str] = set()
-        self._put_aside: list[tuple[c.Add | c.Update, Future[c.Changed]]] = []
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
         door = self._door
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
-            c.Add: self._put_off,
-            c.Update: self._put_off,
+            c.Add: self._change,
+            c.Update: self._change,
             c.Remove: self._noted(door.remove),
             c.Clear: self._noted(door.clear),
             c.Load: door.load,
@@ -121,8 +124,8 @@ class Coordinator:
             )
 
     def _catch_up(self) -> None:
-        """Make the changes that were put off, and look at what commits changed; all the rest at each tick."""
-        self._change_together()
+        """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""
+        self._turns.go_on()
         if self._changed:
             names, self._changed = self._changed, set()
             self._keeping.keep(names)
@@ -147,6 +150,7 @@ class Coordinator:
             self._door.classes = ClassNames(fetched[0])
             self._door.begin(future.result())
             self._has_map = True
+            gc.freeze()  # most of the map stays as it is: the collector need not look through it again
             self._node.ready(f"{len(self._door.entities)} entities")
             self._keep()
 
@@ -154,19 +158,24 @@ class Coordinator:
 
     # Asking
 
-    def _list(self, query: c.List) -> Future[Any]:
+    def _list(self, query: c.List) -> Any:
+        """What the door knows of now answers at once; the past is asked of the knowledge base."""
         if query.class_ is not None:
             query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
-        return then(self._later("list", query), lambda entities: self._formatted(entities, query))
+        if query.as_of is not None:
+            return then(self._later("list", query), lambda entities: self._formatted(entities, query.format))
+        entities = self._door.entities_of(query.class_)
+        if query.format == "json":
+            entities = tuple(map(self._with_body, entities))
+        return self._formatted(entities, query.format)
 
-    def _formatted(self, entities: tuple[Entity, ...], query: c.List) -> Any:
-        wanted = query.format
+    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
             iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
             return formats.legacy(entities, iris)
-        return entities if query.as_of is not None else tuple(map(self._with_body, entities))
+        return entities
 
     def _class_name(self, word: str, as_of: When | None) -> str:
         """The class that is meant; then there may have been others than now."""
@@ -177,10 +186,10 @@ class Coordinator:
                 raise
             return word
 
-    def _get(self, query: c.Get) -> Future[Any]:
+    def _get(self, query: c.Get) -> Any:
         if query.as_of is not None:
             return self._later("get", query)
-        return then(self._later("get", query), self._with_body)
+        return self._with_body(self._door.entity(query.name))
 
     def _with_body(self, entity: Entity) -> Entity:
         return structs.replace(entity, body=self._keeping.body_state(entity))
@@ -230,32 +239,19 @@ class Coordinator:
 
     # Changing
 
-    def _put_off(self, command: c.Add | c.Update) -> Future[c.Changed]:
-        """Changes that come at the same time are made together, as soon as no other event waits."""
-        future: Future[c.Changed] = Future()
-        self._put_aside.append((command, future))
-        if len(self._put_aside) >= _TOGETHER:
-            self._change_together()
+    def _change(self, command: c.Add | c.Update) -> Future[Any]:
+        """In its turn; the reply waits for the body if that is wanted."""
+        made = self._turns.change(command)
+        if not command.wait:
+            return made
+        future: Future[Any] = Future()
+        made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
-    def _change_together(self) -> None:
-        """Make the changes that were put off, and answer them."""
-        if not self._put_aside:
-            return
-        changes, self._put_aside = self._put_aside, []
-        try:
-            results = self._door.change_together([command for command, _ in changes])
-        except Exception as error:
-            for _, future in changes:
-                future.set_exception(error)
-            return
-        for (command, future), result in zip(changes, results, strict=True):
-            if isinstance(result, errors.SemmapError):
-                future.set_exception(result)
-            elif command.wait:
-                self._waiting.append((result.names[0], time.monotonic() + _WAIT_S, result, future))
-            else:
-                future.set_result(result)
+    def _once_there_is_a_body(self, changed: c.Changed) -> Future[c.Changed]:
+        future: Future[c.Changed] = Future()
+        self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
+        return future
 
     def _answer_waiting(self) -> None:
         still = []
@@ -305,9 +301,9 @@ class Coordinator:
         def guarded(command: Any) -> Any:
             if not self._has_map:
                 return self._once_there_is_a_map(lambda: guarded(command))
-            if handle != self._put_off:
-                self._change_together()  # what came before it
-            return handle(command)
+            if isinstance(command, c.Add | c.Update):
+                return handle(command)
+            return self._turns.after(lambda: handle(command))
 
         return guarded
 
@@ -315,6 +311,9 @@ class Coordinator:
         long = verb in ("load", "load-tbox", "undo")
         timeout_s = _LOAD_TIMEOUT_S if long else _COMMIT_TIMEOUT_S
         return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], beating=long, timeout_s=timeout_s)
+
+    def _commit_later(self, verb: str, message: Any) -> Future[Any]:
+        return self._later(verb, message, timeout_s=_COMMIT_TIMEOUT_S, patience_s=bus.PATIENCE_S)
 
     def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)

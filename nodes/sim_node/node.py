@@ -52,7 +52,7 @@ class Simulator:
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._studio = Studio(config.cameras)
+        self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
         node.serve(
             keys.SIM,

@@ -34,8 +34,10 @@ class Still:
 class Studio:
     """Owns the thread, and on it the only OpenGL context."""
 
-    def __init__(self, config: CameraConfig) -> None:
+    def __init__(self, config: CameraConfig, segments_wanted: Callable[[], bool] = lambda: True) -> None:
+        """`segments_wanted()`: whether anybody looks at them just now; they cost as much as a picture."""
         self._config = config
+        self._segments_wanted = segments_wanted
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
         self._eye: Eye | None = None
         self._rng = np.random.default_rng(0)
@@ -82,7 +84,7 @@ class Studio:
             (_frame(still, camera, view, "rgb8"), rgb),
             (_frame(still, camera, view, "depth32f"), depth),
         ]
-        if config.segments:
+        if config.segments and self._segments_wanted():
             names, segments = segment_bodies(eye.segment(still.model, still.data, view), still.names)
             planes.append((_frame(still, camera, view, "segments16", names), segments))
         return planes
