@@ -6,9 +6,10 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes import bus
-from nodes.loop import Node
+from nodes.loop import Node, Relay
 from schemas import keys
 from schemas.bridge import BRIDGE
+from schemas.commands import Command
 
 _LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
 """What keeps the knowledge base busy; the heart goes on beating meanwhile."""
@@ -28,14 +29,16 @@ class Bridge:
         kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
         return self._node.ask(keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s)
 
-    def ask_later(self, verb: str, message: Any) -> Future[Any]:
-        """The same, without waiting; while nobody serves the key the error comes at once."""
-        return self._ask_later(verb, message, patience_s=0.0)
+    def ask_later(self, verb: str, message: Any, *, patience_s: float = 0.0) -> Future[Any]:
+        """The same, without waiting; `patience_s` while nobody serves the key."""
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], patience_s=patience_s)
 
     def change_later(self, verb: str, message: Any) -> Future[Any]:
         """The same, with the patience of `ask`."""
-        return self._ask_later(verb, message, patience_s=bus.PATIENCE_S)
+        return self.ask_later(verb, message, patience_s=bus.PATIENCE_S)
 
-    def _ask_later(self, verb: str, message: Any, *, patience_s: float) -> Future[Any]:
-        limits = {"timeout_s": _BESIDE_S.get(verb, bus.TIMEOUT_S), "patience_s": patience_s}
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+    def relay(self, command: Command) -> Relay:
+        """Let the knowledge base answer a command itself."""
+        verb = str(command.__struct_config__.tag)
+        timeout_s = _BESIDE_S.get(verb, bus.TIMEOUT_S)
+        return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], timeout_s)

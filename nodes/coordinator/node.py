@@ -6,7 +6,6 @@ import gc
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from functools import partial
 from typing import Any
 
 from msgspec import structs
@@ -33,7 +32,7 @@ from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Place
 _WAIT_S = 20.0
 _EARLY_S = 10.0
 _SIM_TIMEOUT_S = 120.0
-_PASSED_ON: tuple[type[c.Command], ...] = (
+_RELAYED: tuple[type[c.Command], ...] = (
     c.History,
     c.LastSeen,
     c.Check,
@@ -81,8 +80,7 @@ class Coordinator:
             c.Reset: self._reset,
             c.TakePicture: self._picture,
         }
-        for kind in _PASSED_ON:
-            functions[kind] = partial(self._bridge.ask_later, str(kind.__struct_config__.tag))
+        functions.update(dict.fromkeys(_RELAYED, self._bridge.relay))
         handlers = {
             verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
             for verb, kind in c.COMMANDS.items()
@@ -194,7 +192,7 @@ class Coordinator:
 
     def _get(self, query: c.Get) -> Any:
         if query.as_of is not None:
-            return self._bridge.ask_later("get", query)
+            return self._bridge.relay(query)
         return self._with_body(self._door.entity(query.name))
 
     def _with_body(self, entity: Entity) -> Entity:
