@@ -1,4 +1,4 @@
-"""Which observation is of which thing: optimal assignment on position, size and class."""
+"""How unlike an observation is a thing that is known, and which go together at the least cost."""
 
 from __future__ import annotations
 
@@ -19,18 +19,24 @@ B = TypeVar("B")
 FORBIDDEN = math.inf
 _PROHIBITIVE = 1e6
 _NEARBY_M = 0.05
-_UNLIKE = 0.4
-"""Sizes that differ by more (mean of |log ratio|) are not of one thing that seems to have another class."""
+_SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
+"""What stands in place is the thing if its size is no more unlike (mean of |log ratio|)."""
 _OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
-"""The same for what is recognised somewhere else: by a class and size alone, or by its size alone."""
+"""The same for what is recognised somewhere else: by a class and size, or by its size alone."""
+_HIDDEN_PART = 0.3
+"""How much it counts that an extent is smaller of what is seen in part."""
 
 
 class Target(NamedTuple):
-    """A thing that may be seen: where it was last, how big it is if that is known, and its class."""
+    """A thing that may be seen: where it was last, how big it is if that is known, and its class.
+
+    `whole`: its size was not only seen in part.
+    """
 
     pose: Pose
     size_m: Size | None
     class_: str
+    whole: bool = True
 
 
 def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
@@ -47,8 +53,8 @@ def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
     reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
     if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
         return FORBIDDEN
-    unlike, alien = size_unlike(size_m, seen), class_unlike(target.class_, seen, kinship)
-    if unlike > 2.0 * _UNLIKE or (alien > 0.5 and unlike > _UNLIKE):
+    unlike, alien = size_unlike(target, seen), class_unlike(target.class_, seen, kinship)
+    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
         return FORBIDDEN
     return aside / reach + unlike + alien
 
@@ -57,25 +63,21 @@ def cost_elsewhere(target: Target, seen: Observation, kinship: Kinship) -> float
     """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind."""
     if target.size_m is None or not kinship.related(target.class_, seen.class_):
         return FORBIDDEN
-    unlike = size_unlike(target.size_m, seen)
+    unlike = size_unlike(target, seen)
     if unlike > (_OF_ANY_KIND if ANYTHING in (seen.class_, target.class_) else _OF_A_KIND):
         return FORBIDDEN
     aside, above = _apart(target.pose, target.size_m, seen)
     return unlike + class_unlike(target.class_, seen, kinship) + 0.1 * math.hypot(aside, above)
 
 
-def fills(target: Target, seen: Observation) -> bool:
-    """Whether an observation that is of something else takes the place of a thing."""
-    if target.size_m is None or size_unlike(target.size_m, seen) > 2.0 * _UNLIKE:
-        return False
-    aside, above = _apart(target.pose, target.size_m, seen)
-    return aside < min(seen.size_m[:2]) / 2.0 and above < seen.size_m[2] / 2.0
-
-
-def size_unlike(size_m: Size, seen: Observation) -> float:
+def size_unlike(target: Target, seen: Observation) -> float:
     """Mean of |log ratio| of the extents, however turned; what is seen in part may be smaller."""
-    ratios = [math.log(b / a) for a, b in zip(_upright(size_m), _upright(seen.size_m), strict=True)]
-    return sum(abs(ratio) if ratio > 0.0 or seen.whole else 0.3 * abs(ratio) for ratio in ratios) / 3.0
+    if target.size_m is None:
+        return 0.0
+    pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
+    ratios = [math.log(now / before) for before, now in pairs]
+    shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
+    return sum(ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios) / 3.0
 
 
 def class_unlike(class_name: str, seen: Observation, kinship: Kinship) -> float:

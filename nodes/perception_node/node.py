@@ -1,15 +1,16 @@
 """Perception on the wire: the cameras' frames in, observations and commands out.
 
-Zenoh's threads only keep the newest frames; a thread of this node's own looks at them; the node's thread, which
+Zenoh's threads only keep the newest frames, and a thread of this node's own looks at them. The node's thread
 owns the tracks, compares what was seen with the map, and tells the map.
 """
 
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial
 from typing import Any
@@ -24,7 +25,7 @@ from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.map_view import MapView, kinship_of
-from nodes.perception_node.pipeline import Learnt, Look, look
+from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
 from nodes.perception_node.tracks import Tracks
@@ -38,6 +39,11 @@ from schemas.health import Health
 log = logging.getLogger(__name__)
 
 _TAKE_S = 0.5
+_COMPLAINT_S = 60.0
+"""What is wrong is over when it was not heard of for so long."""
+_NO_FRAMES_S = 5.0
+_CLOUD_S = 1.0
+"""A cloud is published no more often."""
 _REFUSED_S = 10.0
 """What was refused is not said again before that."""
 
@@ -45,10 +51,11 @@ _REFUSED_S = 10.0
 class Perception:
     """Binds the pipeline and the association to the wire."""
 
-    def __init__(self, node: Node, config: PerceptionConfig) -> None:
+    def __init__(self, node: Node, config: PerceptionConfig, look: Callable[[Sequence[Cloud]], Look]) -> None:
+        """`look(clouds)` tells what clouds of one moment show."""
         self._node = node
         self._config = config
-        self._learnt = Learnt()
+        self._see = look
         self._map = MapView()
         self._kinship = Kinship()
         self._tracks = Tracks()
@@ -57,17 +64,19 @@ class Perception:
         self._untold = 0
         self._told_commit = 0
         self._refused: dict[str, float] = {}
-        self._complaints: dict[str, str] = {}
+        self._complaints: dict[str, float] = {}
         self._frames = Frames()
         self._stopping = threading.Event()
         self._observations = bus.publisher(node.session, keys.OBSERVATIONS)
+        self._cloud_due = 0.0
+        self._looked_at = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
         node.follow(keys.COMMIT, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
         for plane in ("rgb", "depth"):
-            bus.follow_cameras(node.session, plane, self._keep, lambda reason: self._complain("", reason))
+            bus.follow_cameras(node.session, plane, self._keep, self._complain)
         self._eye = threading.Thread(target=self._watch, name="eye", daemon=True)
         self._eye.start()
 
@@ -82,7 +91,7 @@ class Perception:
         try:
             self._frames.put(frame, read)
         except errors.BadRequest as error:
-            self._complain(frame.camera, error.text)
+            self._complain(error.text)
 
     def _watch(self) -> None:
         while not self._stopping.is_set():
@@ -93,42 +102,42 @@ class Perception:
                     self._look(clouds)
             except Exception as error:
                 log.exception("fault in a look")
-                self._complain("", f"a look failed: {type(error).__name__}: {error}")
+                self._complain(f"a look failed: {type(error).__name__}: {error}")
 
     def _read(self, pair: Pair) -> Cloud | None:
         frame = pair.depth.frame
         try:
             cloud = read_cloud(pair)
         except errors.BadRequest as error:
-            self._complain(frame.camera, error.text)
+            self._complain(error.text)
             return None
         step = thinning(frame)
-        self._complain(
-            frame.camera,
-            f"camera {frame.camera}: of {frame.width} x {frame.height} pixels, one of {step} x {step} is used"
-            if step > 1
-            else "",
-        )
+        if step > 1:
+            size = f"{frame.width} x {frame.height} pixels"
+            self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
         return cloud
 
     def _look(self, clouds: Sequence[Cloud]) -> None:
         start = time.perf_counter()
-        found = look(clouds, self._learnt)
+        found = self._see(clouds)
         took_s = time.perf_counter() - start
         self._node.soon(lambda: self._on_look(clouds, found, took_s))
 
-    def _complain(self, camera: str, text: str) -> None:
-        """Say once what is wrong with a camera, and again when it is something else; "" for nothing."""
-        self._node.soon(lambda: self._on_complaint(camera, text))
+    def _complain(self, text: str) -> None:
+        self._node.soon(lambda: self._on_complaint(text))
 
     # What follows is the node's own thread's
 
-    def _on_complaint(self, camera: str, text: str) -> None:
-        if text and self._complaints.get(camera) != text:
+    def _on_complaint(self, text: str) -> None:
+        """Say what is wrong: once for as long as it goes on."""
+        now = time.monotonic()
+        if now - self._complaints.get(text, -math.inf) > _COMPLAINT_S:
             self._node.report(text)
-        self._complaints[camera] = text
+        self._complaints = {said: at for said, at in self._complaints.items() if now - at < _COMPLAINT_S}
+        self._complaints[text] = now
 
     def _on_look(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
+        self._looked_at = time.monotonic()
         seen = found.observations
         if self._map_is_current():
             result = associate(
@@ -144,8 +153,10 @@ class Perception:
             seen = structs.replace(seen, observations=tuple(structs.replace(o, entity=e) for o, e in named))
             self._tell(result.commands)
         self._observations.put(codec.encode(seen), encoding=codec.encoding_of(seen))
-        if self._cloud_is_wanted():
-            self._cloud.put(codec.encode(segmented_cloud(clouds, found)))
+        if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
+            self._cloud_due = time.monotonic() + _CLOUD_S
+            cloud = segmented_cloud(clouds, found)
+            self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
         self._node.describe(
             f"{len(clouds)} cameras, {len(seen.observations)} things seen, {1000 * took_s:.0f} ms a look"
         )
@@ -172,7 +183,7 @@ class Perception:
             self._told_commit = max(self._told_commit, done.result().commit or 0)
             return
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
-        self._on_complaint(subject_of(command), f"the map did not take what was seen: {error}")
+        self._on_complaint(f"the map did not take what was seen: {error}")
 
     def _on_commit(self, commit: Commit) -> None:
         if self._map.seq >= 0 and (not self._map.take(commit) or commit.tbox):
@@ -187,6 +198,8 @@ class Perception:
     def _tick(self) -> None:
         if self._map.seq < 0:
             self._fetch_map()
+        elif time.monotonic() - self._looked_at > _NO_FRAMES_S:
+            self._node.describe("no frames of cameras come")
 
     def _fetch_map(self) -> None:
         """Ask for the class table and a snapshot: at the start, and when a commit was missed."""
@@ -207,7 +220,7 @@ class Perception:
             (self._kinship,) = classes
             self._map.begin(future.result())
             self._told_commit = min(self._told_commit, self._map.seq)
-            self._node.ready("no camera heard of yet")
+            self._node.ready("no frames of cameras yet")
 
         self._ask_kb("classes", Classes()).add_done_callback(on_classes)
 
@@ -216,9 +229,10 @@ class Perception:
 
 
 def run(config: PerceptionConfig) -> None:
-    """Look until stopped."""
+    """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
+    learnt = shipped()
     with open_node("perception_node", config.network) as node:
-        perception = Perception(node, config)
+        perception = Perception(node, config, lambda clouds: look(clouds, learnt))
         try:
             node.run()
         finally:

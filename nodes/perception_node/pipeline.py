@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.fusion import fuse
-from nodes.perception_node.recognition.learnt import Learnt
+from nodes.perception_node.recognition.learnt import Learnt, shipped
 from nodes.perception_node.recognition.recognise import recognise
 from nodes.perception_node.sights import Sight, see
 from nodes.perception_node.things import Thing, thing_of
 from schemas.perception import CameraView, Observations
+
+__all__ = ["Learnt", "Look", "look", "look_at", "observe", "shipped", "things_in"]
 
 
 @dataclass(frozen=True)
@@ -35,14 +37,18 @@ def observe(clouds: Sequence[Cloud], learnt: Learnt) -> Observations:
 
 def look(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
     """Find the things that clouds, taken at the same time, show; what several of them see is one thing."""
-    sights = [see(cloud) for cloud in clouds]
+    return look_at([see(cloud) for cloud in clouds], learnt)
+
+
+def look_at(sights: Sequence[Sight], learnt: Learnt) -> Look:
+    """The same for clouds that were taken apart already."""
     things, labels = things_in(sights)
     found = recognise(things, learnt)
     numbers = np.zeros(len(found) + 1, np.int32)
     numbers[1:] = np.cumsum([observation is not None for observation in found])
     numbers[1:][[observation is None for observation in found]] = 0
     observations = Observations(
-        stamp_ns=max((cloud.stamp_ns for cloud in clouds), default=0),
+        stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
         observations=tuple(observation for observation in found if observation is not None),
     )

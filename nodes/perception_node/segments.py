@@ -19,7 +19,7 @@ class Segment:
 
     `points`: (N, 3), map frame [m]. `colors`: (N, 3) rgb, or None. `label`: its number in the view.
     `eye`: (3,), where the camera was [m]. `cut`: the picture's edge runs through it. `count`: how many points
-    it had before it was thinned.
+    it had before it was thinned. `carrier`: it is a plane on which things may stand, or a side of one.
     """
 
     points: Floats
@@ -28,6 +28,7 @@ class Segment:
     eye: NDArray[np.float64]
     cut: bool
     count: int
+    carrier: bool = False
 
 
 def map_points(cloud: Cloud, map_from_camera: NDArray[np.float64]) -> Floats:
@@ -41,7 +42,11 @@ def map_points(cloud: Cloud, map_from_camera: NDArray[np.float64]) -> Floats:
 
 
 def cut_out(
-    cloud: Cloud, points_map: Floats, labels: NDArray[np.int32], eye: NDArray[np.float64]
+    cloud: Cloud,
+    points_map: Floats,
+    labels: NDArray[np.int32],
+    eye: NDArray[np.float64],
+    carriers: frozenset[int] = frozenset(),
 ) -> list[Segment]:
     """The segments of one labelled view: `points_map` (H, W, 3), `labels` (H, W) with 0 for background."""
     pixels = np.flatnonzero((labels.ravel() > 0) & np.isfinite(points_map[..., 2]).ravel())
@@ -50,18 +55,18 @@ def cut_out(
     pixels, owner = pixels[order], owner[order]
     at_edge = _labels_at_edge(labels) if cloud.organised else frozenset()
     found = []
-    starts = np.flatnonzero(np.diff(owner, prepend=0))
-    for start, end in zip(starts, [*starts[1:], len(owner)], strict=True):
-        own = pixels[start:end]
+    for own in np.split(pixels, np.flatnonzero(np.diff(owner)) + 1) if len(pixels) else ():
+        label = int(labels.ravel()[own[0]])
         thin = own[:: max(1, -(-len(own) // MOST_POINTS))]
         found.append(
             Segment(
                 points=points_map.reshape(-1, 3)[thin],
                 colors=None if cloud.colors is None else cloud.colors.reshape(-1, 3)[thin],
-                label=int(owner[start]),
+                label=label,
                 eye=eye,
-                cut=int(owner[start]) in at_edge,
+                cut=label in at_edge,
                 count=len(own),
+                carrier=label in carriers,
             )
         )
     return found

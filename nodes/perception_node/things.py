@@ -16,6 +16,7 @@ _CELLS_ALONG = 40
 _CELL_M = (0.004, 0.02)
 _CROWDED = 4.0
 _BELOW_M = 0.03
+_BODY_M = 0.15
 
 
 @dataclass(frozen=True)
@@ -47,13 +48,19 @@ class Thing:
 
 
 def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
-    """Put the segments of one thing together; it stands on the highest support that is not above it."""
+    """Put the segments of one thing together; it stands on the highest support that is not above it.
+
+    Of a table often the top alone is seen, which is no support of its own.
+    """
     points = np.concatenate([segment.points for segment in segments])
     shades = [segment.colors for segment in segments if segment.colors is not None]
     colors = np.concatenate(shades) if len(shades) == len(segments) else None
     cells, shade = _cells(points, colors)
-    lowest = float(cells[:, 2].min())
-    support = max((height for height in supports_m if height < lowest + _BELOW_M), default=lowest)
+    lowest, highest = float(cells[:, 2].min()), float(cells[:, 2].max())
+    carrier = any(segment.carrier for segment in segments)
+    below = min(lowest, highest - _BODY_M) if carrier else lowest
+    floor = min(0.0, lowest) if carrier else lowest
+    support = max((height for height in supports_m if height < below + _BELOW_M), default=floor)
     return Thing(
         segments=tuple(segments),
         cells=cells,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import mujoco
@@ -59,12 +60,10 @@ class BodyIndex:
     origin_m: Floats = field(repr=False)
 
     @staticmethod
-    def of(model: mujoco.MjModel, records: dict[str, BodyRecord]) -> BodyIndex:
-        """Look every record's body up in `model`."""
+    def of(model: mujoco.MjModel, records: Mapping[str, BodyRecord], numbers: Mapping[str, int]) -> BodyIndex:
+        """Look every record's body up in `model`, given their `numbers` there."""
         names = tuple(records)
-        body = np.array(
-            [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names], dtype=np.int64
-        )
+        body = np.array([numbers[name] for name in names], dtype=np.int64)
         static = np.array([records[name].static for name in names], dtype=bool)
         joint = np.where(static, -1, model.body_jntadr[body]) if names else np.empty(0, np.int64)
         return BodyIndex(

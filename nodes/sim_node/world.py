@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -41,10 +42,11 @@ class World:
         self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
+        self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The compiled model: another one after each spawn and delete."""
+        """The compiled model; spawn and delete change it, or put another in its place."""
         return self._engine.model
 
     @property
@@ -60,7 +62,7 @@ class World:
     # what is asked
 
     def spawn(self, orders: Sequence[BodyOrder]) -> Spawned:
-        """Make bodies, all in one compilation; what cannot be made is told in `failed`, name by name."""
+        """Make bodies, all in one go; what cannot be made is told in `failed`, name by name."""
         newcomers: dict[str, tuple[BodyRecord, Model]] = {}
         failed: dict[str, str] = {}
         for order in orders:
@@ -77,7 +79,7 @@ class World:
         return Spawned(bodies=self._bodies(newcomers), failed=failed)
 
     def delete(self, names: Sequence[str]) -> Deleted:
-        """Take bodies away, all in one compilation; names that are not there are passed over."""
+        """Take bodies away, all in one go; names that are not there are passed over."""
         gone = [name for name in dict.fromkeys(names) if name in self._engine.records]
         if gone:
             disturbed = self._neighbours(gone)
@@ -150,6 +152,13 @@ class World:
             world=self.name,
             bodies=self._bodies(self._engine.records),
         )
+
+    def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
+        """Copies of the model and its state, and `body_names`; the model is shared until it changes."""
+        if self._copied != self._engine.revision:
+            self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
+        model, names = self._copy
+        return model, copy.copy(self.data), names
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""

@@ -26,6 +26,9 @@ _ODD_SHARE = 0.08
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
 
+CARRIERS = ("table", "table", "desk", "counter", "cabinet")
+"""What things stand on, tables more often than others."""
+
 Rectangle = tuple[float, float, float, float, float]
 """Middle x and y, extents along its own x and y [m], yaw [rad]."""
 
@@ -84,8 +87,9 @@ def _nearest(spot: Rectangle, others: Sequence[Rectangle]) -> float:
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
     """The model's own size, somewhat larger or smaller, slimmer or stouter; now and then quite another."""
     if kind in SMALL and rng.random() < _ODD_SHARE:
-        a, b, c = np.exp(rng.uniform(np.log(0.03), np.log(0.35), 3))
-        return (float(a), float(b), float(c))
+        factor = float(rng.choice([rng.uniform(0.4, 0.55), rng.uniform(1.9, 3.0)]))
+        x, y, z = MODELS[kind].size_m * np.exp(np.log(factor) + rng.normal(0.0, 0.2, 3))
+        return (float(x), float(y), float(z))
     x, y, z = MODELS[kind].size_m * np.exp(rng.normal(0.0, 0.08) + rng.normal(0.0, 0.05, 3))
     return (float(x), float(y), float(z))
 
@@ -105,7 +109,8 @@ def table_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
     sizes = [varied_size(kind, rng) for kind in kinds]
     crowded = rng.random() < 0.5
     gap = float(rng.uniform(0.001, 0.02)) if crowded else float(rng.uniform(0.03, 0.08))
-    table = Item("table", "table", (*area, height), varied_colour("table", rng), (0.0, 0.0, 0.0), 0.0)
+    kind = str(rng.choice(CARRIERS))
+    table = Item("table", kind, (*area, height), varied_colour(kind, rng), (0.0, 0.0, 0.0), 0.0)
     return [
         table,
         *standing(kinds, sizes, spread(kinds, sizes, area, gap, rng, crowded=crowded), height, rng),
@@ -131,7 +136,7 @@ def standing(
     for n, (kind, size, spot) in enumerate(zip(kinds, sizes, spots, strict=True)):
         if spot is not None:
             at = (spot[0], spot[1], height_m + 0.001)
-            odd = max(size) < SMALL_M and is_odd(kind, size)
+            odd = kind in SMALL and is_odd(kind, size)
             items.append(Item(f"{kind}_{n}", kind, size, varied_colour(kind, rng), at, spot[4], odd))
     return items
 
@@ -161,8 +166,8 @@ def views(
     return found
 
 
-Scene = tuple[list[Item], frozenset[str], list[View]]
-"""Things, the names of those that are background, and the cameras."""
+Scene = tuple[list[Item], list[View]]
+"""Things, and the cameras."""
 
 
 def training_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
@@ -170,11 +175,11 @@ def training_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
     small, large = _deck(SMALL, rng), _deck(LARGE, rng)
     for number in range(count):
         if number % 5 < 4:
-            items = table_scene([next(small) for _ in range(rng.integers(6, 14))], rng)
-            yield items, frozenset({"table"}), views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
+            items = table_scene([next(small) for _ in range(rng.integers(8, 19))], rng)
+            yield items, views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
         else:
             kinds = [next(large) for _ in range(4)] + [next(small) for _ in range(3)]
-            yield floor_scene(kinds, rng), frozenset(), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
+            yield floor_scene(kinds, rng), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
 
 
 def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:

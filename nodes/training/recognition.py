@@ -36,11 +36,11 @@ def gather(scenes: int, seed: int) -> Samples:
     """Samples from so many simulated scenes."""
     stage, rng = Stage(), np.random.default_rng(seed)
     found = []
-    for number, (items, background, views) in enumerate(training_scenes(scenes, rng)):
+    for number, (items, views) in enumerate(training_scenes(scenes, rng)):
         bodies = stage.show(items)
         red, green, blue = rng.uniform(0.2, 0.9, 3).tolist()
         stage.paint({"floor": (red, green, blue)}, light=float(rng.uniform(0.25, 0.45)))
-        samples = sampling.samples_of(stage.shoot(bodies, views, rng), items, number, background)
+        samples = sampling.samples_of(stage.shoot(bodies, views, rng), items, number)
         if samples is not None:
             found.append(samples)
     return sampling.joined(found)

@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.boxes import Box
+from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.pipeline import things_in
-from nodes.perception_node.recognition.recognise import features_of
+from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.sides import shifts, side_features
-from nodes.perception_node.sights import see
+from nodes.perception_node.segmentation.segment import LOWEST_M
+from nodes.perception_node.segments import map_points
+from nodes.perception_node.sights import Sight, labelled, see
 from nodes.perception_node.things import Thing
-from nodes.sim_node.models.parts import about, bounds, product, rotation_matrix
+from nodes.sim_node.models.parts import about, bounds, rotation_matrix
+from nodes.sim_node.models.parts import product as rotated
 from nodes.training.scenes import Item, Shot, tinted
+from schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
+_FEWEST = 40
+_FOUND = 6
+_CARRIER_M = 0.45
 _UNIT = np.ones(3)
 NOTHING = ""
 
@@ -63,22 +72,23 @@ def read(path: Path) -> Samples:
         return Samples(**{field.name: arrays[field.name] for field in fields(Samples)})
 
 
-def samples_of(shot: Shot, items: Sequence[Item], scene: int, background: frozenset[str]) -> Samples | None:
-    """Every thing that perception cuts out of a scene: by all its cameras together, and by each alone.
+def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
+    """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
 
-    Bodies named in `background` are no things. Segments that hold several things at once teach nothing and
-    are left out; small pieces of a thing are clutter.
+    Of one scene in `_FOUND` also what perception itself cuts out: segments that hold several things teach
+    nothing and are left out, pieces of a thing are clutter.
     """
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
-    sights = [see(cloud) for cloud in shot.clouds]
-    for views in _view_sets(len(shot.clouds)):
-        found, labels = things_in([sights[v] for v in views])
+    true = [_truly(cloud, owner, shot.bodies) for cloud, owner in zip(shot.clouds, shot.owners, strict=True)]
+    found = [see(cloud) for cloud in shot.clouds] if scene % _FOUND == 0 else []
+    for sights, views in product(filter(None, (found, true)), _view_sets(len(shot.clouds))):
+        cut, labels = things_in([sights[v] for v in views])
         owners = [shot.owners[v] for v in views]
-        for thing, name in zip(found, _owner_names(shot, labels, owners, len(found)), strict=True):
-            if name is None:
+        for thing, name in zip(cut, _owner_names(shot, labels, owners, len(cut)), strict=True):
+            if name is None or (name == NOTHING and sights is true):
                 continue
-            item = None if name in background or name == NOTHING else by_name[name]
+            item = by_name.get(name)
             things.append(thing)
             kinds.append(NOTHING if item is None else item.label)
             truths.append(item)
@@ -95,6 +105,20 @@ def samples_of(shot: Shot, items: Sequence[Item], scene: int, background: frozen
         shifts=np.array([_shifts(thing, item) for thing, item in zip(things, truths, strict=True)]),
         size_m=np.array([(np.nan,) * 3 if item is None else item.size_m for item in truths]),
     )
+
+
+def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Sight:
+    """The cloud cut up by the truth, but for what lies so near its support that it cannot be told from it."""
+    pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
+    points, depth = map_points(cloud, pose), cloud.points_camera[..., 2]
+    bottoms = np.array([0.0, *(body.pose.position_m[2] for body in bodies)], np.float32)
+    with np.errstate(invalid="ignore"):
+        out = points[..., 2] - bottoms[owner] > np.maximum(LOWEST_M, 0.006 * depth**2)
+    labels = np.where(out, owner, 0).astype(np.int32)
+    labels[(np.bincount(labels.ravel(), minlength=len(bodies) + 1) < _FEWEST)[labels]] = 0
+    carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)
+    bare = Sight(cloud, pose, points, labels, carriers, labels, tuple(sorted({0.0, *bottoms.tolist()})))
+    return labelled(bare, labels, carriers)
 
 
 def _view_sets(count: int) -> Iterator[tuple[int, ...]]:
@@ -137,7 +161,7 @@ def true_box(item: Item, yaw_rad: float) -> Box:
     turn = about("z", item.yaw_rad - yaw_rad)
     rotation = rotation_matrix(turn)
     parts = [
-        replace(part, centre=tuple(rotation @ part.centre), turn=product(turn, part.turn))
+        replace(part, centre=tuple(rotation @ part.centre), turn=rotated(turn, part.turn))
         for part in tinted(item).parts
     ]
     low, high = bounds(parts)

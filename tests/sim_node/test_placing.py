@@ -80,6 +80,16 @@ def test_a_ghost_turns_solid_when_the_other_is_deleted_and_can_be_moved_out():
     assert not bodies(world)["fridge2"].ghost
 
 
+def test_a_ghost_of_many_parts_turns_solid_too():
+    world = spawned(order("fridge1", "", pose(0, 0), size_m=FRIDGE), order("couch1", "couch", pose(0.2, 0)))
+    assert sum(b.ghost for b in bodies(world).values()) == 1
+    (ghost,) = (name for name, body in bodies(world).items() if body.ghost)
+    world.move([hand(ghost, pose(5, 0))])
+    assert not bodies(world)[ghost].ghost
+    world.step(1.0)
+    assert bodies(world)[ghost].pose.position_m == pytest.approx((5, 0, 0), abs=0.003)
+
+
 def test_a_body_moved_into_another_is_a_ghost():
     world = spawned(order("a", "", pose(0, 0), size_m=FRIDGE), order("b", "", pose(3, 0), size_m=FRIDGE))
     world.step(0.5)

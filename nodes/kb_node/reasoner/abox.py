@@ -92,7 +92,7 @@ class ABox(Equality):
     def _spread(self, node: int) -> None:
         """A node's kind grew: what that says of the node itself and of its neighbours."""
         kind = self.store.kind[node]
-        if kind.clash:
+        if kind.clash and not (self.is_literal(node) and self.store.is_bare(node)):
             one, other = kind.clash
             raise Clash(Member(node, one), Member(node, other))
         self.add_values(node)
@@ -139,6 +139,19 @@ class ABox(Equality):
         if step.special and not (step.of_values and s not in self.equals and store.out.is_alone(edge)):
             self._check(step, edge, s, o)
         return step
+
+    def is_plain(self, edge: int) -> bool:
+        """Whether nothing follows from an edge but the kinds that its ends have now."""
+        store = self.store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        if p <= DIFFERENT or store.source[edge] == DERIVED:
+            return False
+        step = self.steps.step(p, store.kind[s], store.kind[o])
+        rules = step.rules
+        if step.special or rules is not None:
+            of_values = (step.of_values or not step.special) and (rules is None or rules.of_values)
+            return of_values and store.out.is_alone(edge)
+        return True
 
     def _check(self, step: Step, edge: int, s: int, o: int) -> None:
         """The parts of a step that are about more than one edge, or that clash."""

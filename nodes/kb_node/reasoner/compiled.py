@@ -12,6 +12,8 @@ from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
 from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.schema_support import SchemaSupport
+from nodes.kb_node.reasoner.shapes import Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.shortcuts import depart, exchange
 from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
 from nodes.kb_node.reasoner.terms import (
@@ -50,6 +52,7 @@ class CompiledEngine:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
         self._abox = ABox(self._schema)
+        self._shapes = Shapes(self._abox)
         self._view = View(self._abox)
         self._told_by = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
@@ -59,54 +62,97 @@ class CompiledEngine:
         return self._size
 
     def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
-        """Delete and insert triples that are not of the schema; the individuals that this touched.
+        """Delete and insert triples; the individuals that this touched.
 
         Raises:
             Refused: it would contradict the rest; nothing has changed.
             NotCompilable: it is beyond this engine; nothing has changed.
         """
         abox = self._abox
-        retraction = Retraction(abox)
-        removed = retraction.delete(delete) if delete else []
+        if delete:
+            gone = exchange(abox, delete, insert) if insert else depart(abox, delete)
+            if gone is not None:
+                self._size += len(insert) - len(delete)
+                return frozenset(gone)
+            if any(map(is_schema, delete)):
+                raise NotCompilable("less of the schema")
         added: list[Triple] = []
+        removed: list[Triple] = []
+        touched: set[Term] = set()
+        retraction = Retraction(abox) if delete else None
         try:
-            types = [triple for triple in insert if triple[1] == TYPE]
-            edges = [triple for triple in insert if triple[1] != TYPE]
-            for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
-                for triple in batch:
-                    if triple[1] in (SAME_AS, DIFFERENT_FROM):
-                        self._check(triple)
-                    if abox.insert(triple):
-                        added.append(triple)
-                abox.run()
+            if retraction is None:
+                self._insert_runs(insert, added, touched)
+            else:
+                removed = retraction.delete(delete)
+                touched.update([s for s, _, _ in removed])
+                self._insert(insert, added, touched)
         except Clash as clash:
-            explanation = self._prover.prove(Support(abox, self._told_by).of_clash(clash.claims), None)
+            proof, terms = self._prover.proof(Support(abox, self._told_by).of_clash(clash.claims), None)
             self._undo(retraction, removed, added)
-            raise Refused(explanation) from None
+            if not removed:
+                self._shapes.refuse(insert, proof, terms)
+            raise Refused(proof.about(terms)) from None
         except NotCompilable:
             self._undo(retraction, removed, added)
             raise
-        touched = {triple[0] for triple in (*removed, *added)}
         touched.update(self._moved())
         abox.settle()
-        retraction.release()
+        if retraction is not None:
+            retraction.release()
         self._size += len(added) - len(removed)
         return frozenset(touched)
+
+    def _insert_runs(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
+        """Insert triples: run by run as far as what follows is known, and the others together."""
+        shapes = self._shapes
+        rest: list[Triple] = []
+        for run in shapes.runs(triples):
+            known = None if run.key is None else shapes.known.get(run.key, run)
+            if isinstance(known, Written) and shapes.write(known, run):
+                added += run.triples
+                touched.update(known.touched_of(run.individuals))
+            elif known is run:
+                self._insert(run.triples, added, touched)
+                shapes.learn(run)
+            elif isinstance(known, Contradiction) and not added:
+                raise Refused(known.of(run.individuals))
+            else:
+                rest += run.triples
+        if rest:
+            self._insert(rest, added, touched)
+
+    def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
+        """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
+        abox = self._abox
+        types = [triple for triple in triples if triple[1] == TYPE]
+        edges = [triple for triple in triples if triple[1] != TYPE]
+        for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
+            for triple in batch:
+                if is_schema(triple):
+                    raise NotCompilable(f"more of the schema: {triple}")
+                if triple[1] in (SAME_AS, DIFFERENT_FROM):
+                    self._check(triple)
+                if abox.insert(triple):
+                    added.append(triple)
+                    touched.add(triple[0])
+            abox.run()
 
     def _check(self, triple: Triple) -> None:
         check_compilable(triple)
         if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
             raise NotCompilable(f"classes or properties compared: {triple}")
 
-    def _undo(self, retraction: Retraction, removed: list[Triple], added: list[Triple]) -> None:
+    def _undo(self, retraction: Retraction | None, removed: list[Triple], added: list[Triple]) -> None:
         back = Retraction(self._abox)
         back.delete(added)
         for triple in removed:
             self._abox.insert(triple)
         self._abox.run()
         self._abox.settle()
-        retraction.release()
         back.release()
+        if retraction is not None:
+            retraction.release()
 
     def _moved(self) -> Iterator[Term]:
         """The individuals whose named classes are others now."""

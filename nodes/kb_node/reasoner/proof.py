@@ -6,34 +6,47 @@ individuals and other numbers in them have the same proof.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+import re
+from collections.abc import Iterable, Mapping, Sequence
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.sentences import sentence
+from nodes.kb_node.reasoner.sentences import local_name, sentence
 from nodes.kb_node.reasoner.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, literal
+from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
 from schemas.explanations import Explanation, Step, Term, Triple
 
 _MOST = 2000
 """Shapes remembered."""
 _FREE_DATATYPES = {iri(name)[1:-1] for name in ("xsd:float", "xsd:double")}
 """Datatypes whose values differ in nothing but themselves, as far as the memo is concerned."""
+_MARK = re.compile("\ue000(\\d+)\ue001")
+"""Stands for a term in a sentence that is to be filled in."""
 
 
-class _Proof(NamedTuple):
-    support: tuple[Triple, ...]
-    steps: tuple[Step, ...]
-    terms: tuple[Term, ...]
-    """The terms that another proof of the shape has others for."""
+class Proof:
+    """A proof, and the terms in it that another proof of the shape has others for."""
+
+    def __init__(self, explanation: Explanation, terms: tuple[Term, ...]) -> None:
+        self.explanation = explanation
+        self.terms = terms
+        self._text = _pieces(explanation, terms)
+
+    def about(self, terms: Sequence[Term]) -> Explanation:
+        """The same proof about other terms."""
+        goal, support, steps = _renamed(self.explanation, dict(zip(self.terms, terms, strict=True)))
+        if self._text is None:
+            text = sentence(goal, support, steps)
+        else:
+            text = "".join([_spoken(terms[part]) if isinstance(part, int) else part for part in self._text])
+        return Explanation(conclusion=goal, support=support, steps=steps, text=text)
 
 
 class Prover:
     """Explains, and remembers the shapes it has explained."""
 
     def __init__(self) -> None:
-        self._proofs: dict[tuple[object, ...], _Proof] = {}
+        self._proofs: dict[tuple[object, ...], Proof] = {}
 
     def prove(self, triples: Iterable[Triple], goal: Triple | None) -> Explanation:
         """Explain why `goal` follows from `triples`, or with None why they are inconsistent.
@@ -43,17 +56,22 @@ class Prover:
         Raises:
             ValueError: it does not follow.
         """
+        proof, terms = self.proof(triples, goal)
+        return proof.explanation if terms == proof.terms else proof.about(terms)
+
+    def proof(self, triples: Iterable[Triple], goal: Triple | None) -> tuple[Proof, tuple[Term, ...]]:
+        """The proof of the shape, and the terms that it is now about."""
         triples = list(triples)
         shape, terms = _shape(triples, goal)
         proof = self._proofs.get(shape)
         if proof is None:
             support, steps = _shrink(triples, goal)
+            text = sentence(goal, support, steps)
+            explanation = Explanation(conclusion=goal, support=support, steps=steps, text=text)
             if len(self._proofs) >= _MOST:
                 self._proofs.clear()
-            self._proofs[shape] = _Proof(support, steps, terms)
-        else:
-            support, steps = _renamed(proof, dict(zip(proof.terms, terms, strict=True)))
-        return Explanation(conclusion=goal, support=support, steps=steps, text=sentence(goal, support, steps))
+            proof = self._proofs[shape] = Proof(explanation, terms)
+        return proof, terms
 
 
 def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object, ...], tuple[Term, ...]]:
@@ -86,20 +104,59 @@ def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value 
     return (len(numbers), datatype, same)
 
 
-def _renamed(proof: _Proof, names: dict[Term, Term]) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:
-    def renamed(triple: Triple) -> Triple:
-        s, p, o = triple
-        return (names.get(s, s), p, names.get(o, o))
+def _renamed(
+    explanation: Explanation, names: Mapping[Term, Term]
+) -> tuple[Triple | None, tuple[Triple, ...], tuple[Step, ...]]:
+    """Goal, support and steps with other terms."""
+    renamed: dict[Triple, Triple] = {}
+    name = names.get
+
+    def other(fact: Triple) -> Triple:
+        found = renamed.get(fact)
+        if found is None:
+            s, p, o = fact
+            found = renamed[fact] = (name(s, s), p, name(o, o))
+        return found
 
     steps = tuple(
-        Step(
-            rule=step.rule,
-            premises=tuple(map(renamed, step.premises)),
-            conclusion=step.conclusion and renamed(step.conclusion),
-        )
-        for step in proof.steps
+        [
+            Step(
+                rule=step.rule,
+                premises=tuple([other(fact) for fact in step.premises]),
+                conclusion=step.conclusion and other(step.conclusion),
+            )
+            for step in explanation.steps
+        ]
     )
-    return tuple(map(renamed, proof.support)), steps
+    goal = explanation.conclusion
+    return goal and other(goal), tuple([other(fact) for fact in explanation.support]), steps
+
+
+def _pieces(explanation: Explanation, terms: Sequence[Term]) -> list[str | int] | None:
+    """The sentence in pieces: text, and the numbers of the terms that are named in between.
+
+    None when a mark is in the text as it is.
+    """
+    if _MARK.search(explanation.text):
+        return None
+    marks = {term: _mark(term, i) for i, term in enumerate(terms)}
+    pieces: list[str | int] = list(_MARK.split(sentence(*_renamed(explanation, marks))))
+    pieces[1::2] = map(int, pieces[1::2])
+    return pieces
+
+
+def _mark(term: Term, number: int) -> Term:
+    """A term of the same sort that is spoken as a number between marks."""
+    text = f"\ue000{number}\ue001"
+    if is_literal(term):
+        return f'"{text}{term[term.rindex(chr(34)) :]}'
+    return f"<{text}>" if is_named(term) else f"_:{text}"
+
+
+def _spoken(term: Term) -> str:
+    if is_literal(term):
+        return literal(term).text
+    return local_name(term) if is_named(term) else term[2:]
 
 
 def _shrink(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:

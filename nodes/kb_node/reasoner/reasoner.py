@@ -8,7 +8,6 @@ from typing import NamedTuple
 from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.general import GeneralEngine
-from nodes.kb_node.reasoner.split import is_schema
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 
@@ -59,7 +58,7 @@ class Reasoner:
         """
         delete, insert = list(delete), list(insert)
         engine = self._engine
-        if isinstance(engine, CompiledEngine) and not any(map(is_schema, (*delete, *insert))):
+        if isinstance(engine, CompiledEngine):
             try:
                 return Change(engine.apply(delete, insert))
             except Refused as refused:

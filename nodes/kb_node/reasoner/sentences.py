@@ -87,7 +87,7 @@ class _Speaker:
             return f'"{literal(term).text}"'
         if term.startswith("_:"):
             return self._anonymous(term)
-        return _local_name(term)
+        return local_name(term)
 
     def a(self, term: Term) -> str:
         name = self.name(term)
@@ -166,7 +166,8 @@ class _Speaker:
 
 
 @lru_cache(maxsize=4096)
-def _local_name(term: Term) -> str:
+def local_name(term: Term) -> str:
+    """How an IRI is called: its last part."""
     return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
 
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from nodes.perception_node.boxes import Box, Numbers
-from nodes.perception_node.recognition.features import colour, geometry, shape
+from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.learnt import CLUTTER, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
 from nodes.perception_node.recognition.vote import answer, expected_sizes, leaves
@@ -19,11 +17,6 @@ from schemas.perception import Observation
 _CANDIDATES = 5
 _CLUTTER = 0.5
 _WORTH_SAYING = 0.01
-
-
-def features_of(things: Sequence[Thing]) -> list[Numbers]:
-    """For each voter (N, its own number) what it looks at."""
-    return [np.array([look(thing) for thing in things]) for look in (geometry, shape, colour)]
 
 
 def recognise(things: Sequence[Thing], learnt: Learnt) -> list[Observation | None]:

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.segmentation.pairs import candidates
-from nodes.perception_node.segmentation.statistics import Statistics
+from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
-Indices = NDArray[np.int64]
 Judge = Callable[[Statistics, Indices, Indices], NDArray[np.float32]]
 """How likely the pairs of patches (a, b) are one object: (N,)."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nodes.perception_node.segmentation.grid import Floats, Mask
 
@@ -12,53 +11,50 @@ RADIUS = 2
 
 _GATE_M = 0.02  # deeper neighbours belong to something else
 _FEWEST = 6
+_REACH = np.arange(-RADIUS, RADIUS + 1, dtype=np.float32)
+_DOWN, _ACROSS = (offset.ravel() for offset in np.meshgrid(_REACH, _REACH, indexing="ij"))
+_ONE = np.ones_like(_DOWN)
+_MOMENTS = np.stack([_ONE, _ACROSS, _DOWN, _ACROSS**2, _DOWN**2, _ACROSS * _DOWN], axis=1)
 
 
 def normals(points: Floats, where: Mask) -> Floats:
     """(h, w, 3) unit normals towards the camera of the points (h, w, 3) [m] in `where`, elsewhere NaN.
 
-    On a plane 1/z is linear in x/z and y/z, and a camera's noise is about even in 1/z: so the plane is
-    fitted there, to the cells of the window that are about as deep as its middle.
+    On a plane 1/z is linear in the pixel, and a camera's noise is about even in 1/z: so the plane is fitted
+    there, to the cells of the window that are about as deep as its middle.
     """
     out = np.full(points.shape, np.nan, np.float32)
-    width = points.shape[1] + 2 * RADIUS
-    padded = np.pad(points, ((RADIUS, RADIUS), (RADIUS, RADIUS), (0, 0)), constant_values=np.nan)
-    z = padded[..., 2].ravel()
-    inverse = 1 / z
-    ray_x, ray_y = padded[..., 0].ravel() * inverse, padded[..., 1].ravel() * inverse
     row, column = np.nonzero(where)
+    z = np.pad(points[..., 2], RADIUS, constant_values=np.nan)
+    width = z.shape[1]
     middle = (row + RADIUS) * width + column + RADIUS
-    reach = np.arange(-RADIUS, RADIUS + 1)
-    window = middle[:, None] + (reach[:, None] * width + reach[None, :]).ravel()  # (N, 25)
-    near = np.abs(z[window] - z[middle, None]) < _GATE_M * np.maximum(1, z[middle, None] ** 2)
-    x = _masked(ray_x[window] - ray_x[middle, None], near)
-    y = _masked(ray_y[window] - ray_y[middle, None], near)
-    q = _masked(inverse[window] - inverse[middle, None], near)
-    count = np.maximum(near.sum(axis=1), 1)
-    mean_x, mean_y, mean_q = x.sum(axis=1) / count, y.sum(axis=1) / count, q.sum(axis=1) / count
-
-    def moment(a: Floats, b: Floats, mean_a: Floats, mean_b: Floats) -> Floats:
-        return np.einsum("ij,ij->i", a, b) / count - mean_a * mean_b
-
-    xx, yy, xy = moment(x, x, mean_x, mean_x), moment(y, y, mean_y, mean_y), moment(x, y, mean_x, mean_y)
-    xq, yq = moment(x, q, mean_x, mean_q), moment(y, q, mean_y, mean_q)
+    window = z.ravel()[middle[:, None] + (_DOWN * width + _ACROSS).astype(np.int64)]  # (N, 25)
+    deep = z.ravel()[middle]
+    near = np.abs(window - deep[:, None]) < _GATE_M * np.maximum(1, deep**2)[:, None]  # NaN is not
+    inverse = np.where(near, 1 / window - (1 / deep)[:, None], np.float32(0))
+    count, x, y, xx, yy, xy = (near.astype(np.float32) @ _MOMENTS).T
+    q, xq, yq = (inverse @ _MOMENTS[:, :3]).T
+    count = np.maximum(count, 1)
+    x, y, q = x / count, y / count, q / count
+    xx, yy, xy = xx / count - x * x, yy / count - y * y, xy / count - x * y
+    xq, yq = xq / count - x * q, yq / count - y * q
     determinant = xx * yy - xy * xy
-    good = (count >= _FEWEST) & (determinant > 1e-3 * np.maximum(xx, yy) ** 2)
+    good = (count >= _FEWEST) & (determinant > 0.02)
     determinant = np.where(good, determinant, 1)
-    slope_x, slope_y = (xq * yy - yq * xy) / determinant, (yq * xx - xq * xy) / determinant
-    # the plane in rays from the camera: slope_x * x/z + slope_y * y/z + rest = 1/z
-    rest = mean_q - slope_x * mean_x - slope_y * mean_y + inverse[middle]
-    rest = rest - slope_x * ray_x[middle] - slope_y * ray_y[middle]
+    across, down = (xq * yy - yq * xy) / determinant, (yq * xx - xq * xy) / determinant
+    # as a plane of rays: slope_x * x/z + slope_y * y/z + rest = 1/z
+    rays = points[..., :2] / points[..., 2:]
+    slope_x, slope_y = across / _pitch(rays[..., 0], axis=1), down / _pitch(rays[..., 1], axis=0)
+    ray_x, ray_y = rays[row, column].T
+    rest = 1 / deep + q - across * x - down * y - slope_x * ray_x - slope_y * ray_y
     found = -np.stack([slope_x, slope_y, rest], axis=-1)
     found /= np.linalg.norm(found, axis=-1, keepdims=True)
     out[row[good], column[good]] = found[good]
     return out
 
 
-def _masked(values: Floats, mask: Mask) -> Floats:
-    return np.where(mask, values, np.float32(0))
-
-
-def angle_between(a: NDArray[np.floating], b: NDArray[np.floating]) -> NDArray[np.floating]:
-    """Angles [rad] between unit vectors (..., 3)."""
-    return np.arccos(np.clip(np.einsum("...i,...i->...", a, b), -1, 1))
+def _pitch(rays: Floats, axis: int) -> np.float32:
+    """From one cell's ray to the next: (h, w) along `axis`."""
+    steps = np.diff(rays, axis=axis)
+    steps = steps[np.isfinite(steps)]
+    return np.median(steps) if steps.size else np.float32(1)

@@ -6,9 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.segmentation import statistics as s
-from nodes.perception_node.segmentation.statistics import Statistics
-
-Indices = NDArray[np.int64]
+from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 NAMES = (
     *("log_small", "log_big", "ratio"),
@@ -17,10 +15,13 @@ NAMES = (
     *("flat_small", "flat_big", "flat_both", "flatter", "long_both", "curved_small", "curved_big"),
     *("facing", "off_big", "off_small", "turned_out", "color_apart"),
     *("sight", "blocked", "open", "hidden_small", "hidden_big", "apart"),
-    *("low_small", "high_small", "low_big", "high_big", "small_on_big", "big_on_small", "levels"),
+    *("low_small", "tall_small", "low_big", "tall_big", "small_on_big", "big_on_small", "levels"),
+    *("tops_apart", "bottoms_apart"),
     *("side_both", "width_both", "tall_both", "filled", "footprint"),
 )
 """The columns of `features`, in order. `small` and `big` are the two patches, by their cells."""
+
+_SUPPORT_M = 0.02
 
 
 def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool_]:
@@ -29,7 +30,7 @@ def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool
     wide = between[..., s.WIDE] + between[..., s.TOUCH] > 0
     middles = statistics.inside[:, s.POINT] / statistics.inside[:, s.COUNT, None]
     near = np.linalg.norm(middles[:, None] - middles[None], axis=-1) < reach_m
-    may = wide | (near & (between[..., s.BLOCKED] > 0))
+    may: NDArray[np.bool_] = wide | (near & (between[..., s.BLOCKED] > 0))
     np.fill_diagonal(may, False)
     return may
 
@@ -74,9 +75,11 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
         np.abs(color).sum(axis=1),
         *(border[:, s.SIGHT], border[:, s.BLOCKED] / sight, border[:, s.OPEN] / sight),
         *(few[:, s.HIDDEN] / root, many[:, s.HIDDEN] / np.sqrt(count_big), distance),
-        *(of.low[small, 2], of.high[small, 2], of.low[big, 2], of.high[big, 2]),
+        *(_above_support(of, small), of.high[small, 2] - of.low[small, 2]),
+        *(_above_support(of, big), of.high[big, 2] - of.low[big, 2]),
         *(of.low[small, 2] - of.high[big, 2], of.low[big, 2] - of.high[small, 2]),
         np.minimum(of.high[small, 2], of.high[big, 2]) - np.maximum(of.low[small, 2], of.low[big, 2]),
+        *(np.abs(of.high[small, 2] - of.high[big, 2]), np.abs(of.low[small, 2] - of.low[big, 2])),
         *(sides.max(axis=1), sides.min(axis=1), high[:, 2] - low[:, 2]),
         (area_big + area_small) / np.maximum(np.prod(sides, axis=1), 1e-6),
         area_small / np.maximum(area_big, 1e-6),
@@ -85,7 +88,7 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
 
 
 def _shape(sums: s.Sums) -> tuple[s.Sums, s.Sums, s.Sums]:
-    """Middle (N, 3) [m], standard deviations along the main axes from the least (N, 3) [m], mean normal (N, 3)."""
+    """Middle [m], standard deviations along the main axes from the least [m], mean normal: (N, 3) each."""
     count = sums[:, s.COUNT, None]
     middle = sums[:, s.POINT] / count
     xx, yy, zz, xy, xz, yz = (sums[:, s.SQUARES] / count).T
@@ -93,3 +96,13 @@ def _shape(sums: s.Sums) -> tuple[s.Sums, s.Sums, s.Sums]:
     covariance = squares - middle[:, :, None] * middle[:, None, :]
     spread = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance), 1e-10))
     return middle, spread, sums[:, s.NORMAL] / count
+
+
+def _above_support(of: Statistics, patches: Indices) -> s.Sums:
+    """(N,) how far the lowest points of patches are above what carries things beneath them [m]."""
+    if not of.supports.size:
+        return np.zeros(len(patches))
+    low = of.low[patches, 2]
+    beneath = np.searchsorted(of.supports, low + _SUPPORT_M) - 1
+    above: s.Sums = low - of.supports[np.maximum(beneath, 0)]
+    return above

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.segmentation.grid import Floats, Mask, shifted
-
-Labels = NDArray[np.int32]
+from nodes.perception_node.segmentation.grid import Floats, Labels, Mask, shifted
 
 _CONCAVE = np.sin(np.radians(15))
 _CONVEX = np.sin(np.radians(30))
@@ -40,10 +37,17 @@ def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
 def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
     """Cells at which two sides meet."""
     cut: Mask = ~np.isfinite(normals[..., 0])
+    p, n = (np.ascontiguousarray(np.moveaxis(of, -1, 0)) for of in (points, normals))  # (3, h, w) is faster
+    height, width = cut.shape
     for rows, columns in _ACROSS:
-        (p, q), (m, n) = shifted(points, rows, columns), shifted(normals, rows, columns)
-        middle = cut[rows // 2 : cut.shape[0] - rows // 2, columns // 2 : cut.shape[1] - columns // 2]
-        middle |= _bent(p, q, m, n)
+        end = (height - rows, width - columns)
+        apart = p[:, rows:, columns:] - p[:, : end[0], : end[1]]
+        turn = n[:, rows:, columns:] - n[:, : end[0], : end[1]]
+        # sine of the bend times the distance, positive where convex: the normals turn away from one another
+        bend = (turn * apart).sum(axis=0)
+        length = np.sqrt((apart * apart).sum(axis=0))
+        middle = cut[rows // 2 : height - rows // 2, columns // 2 : width - columns // 2]
+        middle |= (bend < -_CONCAVE * length) | (bend > _CONVEX * length)
     for rows, columns in ((0, 1), (1, 0)):
         z, far = shifted(points[..., 2], rows, columns)
         here, there = shifted(cut, rows, columns)
@@ -53,37 +57,30 @@ def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
     return cut & where
 
 
-def _bent(p: Floats, q: Floats, m: Floats, n: Floats) -> Mask:
-    """Whether the surface bends too much between points p and q with normals m and n."""
-    apart = q - p
-    length = np.maximum(np.linalg.norm(apart, axis=-1), 1e-6)
-    # sine of the bend, positive where convex: the normals turn away from one another
-    bend = np.einsum("...i,...i->...", n - m, apart) / length
-    return (bend < -_CONCAVE) | (bend > _CONVEX)
-
-
 def _step(z: Floats, other: Floats) -> Mask:
-    return np.abs(z - other) > _STEP_M * np.maximum(z, z * z)
+    return np.asarray(np.abs(z - other) > _STEP_M * np.maximum(z, z * z))
 
 
-def grown(labels: Labels, points: Floats, where: Mask, rounds: int = _GROWTH) -> Labels:
-    """Labels spread over cells of `where` without one, each to the label of the nearest cell around it."""
-    labels = labels.copy()
-    height, width = labels.shape
-    for _ in range(rounds):
-        row, column = np.nonzero(where & (labels == 0))
-        best = np.full(row.size, np.inf, np.float32)
-        new = np.zeros(row.size, np.int32)
-        for dr, dc in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-            r, c = np.clip(row + dr, 0, height - 1), np.clip(column + dc, 0, width - 1)
-            step = np.abs(points[r, c, 2] - points[row, column, 2])
-            takes = (labels[r, c] > 0) & (step < best) & ~_step(points[row, column, 2], points[r, c, 2])
-            best[takes] = step[takes]
-            new[takes] = labels[r, c][takes]
-        if not new.any():
+def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
+    """Labels spread over cells of `where` without one, each to the label of the nearest cell at its side."""
+    padded = np.pad(labels, 1)
+    width = padded.shape[1]
+    z = np.pad(points[..., 2], 1, constant_values=np.nan).ravel()
+    flat = padded.ravel()
+    free = np.flatnonzero(np.pad(where & (labels == 0), 1))
+    for _ in range(_GROWTH):
+        sides = free[:, None] + np.array([1, -1, width, -width])
+        deep = z[free][:, None]
+        off = np.where(flat[sides] > 0, np.abs(z[sides] - deep), np.float32(np.inf))
+        off[~(off <= _STEP_M * np.maximum(deep, deep * deep))] = np.inf
+        best = off.argmin(axis=1)
+        index = np.arange(len(free))
+        takes = np.isfinite(off[index, best])
+        if not takes.any():
             break
-        labels[row, column] = new
-    return labels
+        flat[free[takes]] = flat[sides[index, best][takes]]
+        free = free[~takes]
+    return padded[1:-1, 1:-1]
 
 
 def _numbered(labels: Labels) -> Labels:

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.segmentation.grid import Floats, Grid, Mask, grid_of, spread
-from nodes.perception_node.segmentation.merging import Indices, Judge, merge
+from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
+from nodes.perception_node.segmentation.merging import Judge, merge
 from nodes.perception_node.segmentation.normals import normals
 from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.patches import patches
+from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
-from nodes.perception_node.segmentation.statistics import Statistics, statistics
+from nodes.perception_node.segmentation.statistics import Indices, Statistics, Upright, statistics
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
 """What stands on a support lies this far above it."""
@@ -25,7 +26,7 @@ class Segmentation:
     """What of a cloud is what.
 
     `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
-    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, from 1, 0 for none.
+    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, 0 for none.
     """
 
     labels: NDArray[np.int32]
@@ -35,37 +36,54 @@ class Segmentation:
 
 @dataclass(frozen=True)
 class Parts:
-    """A cloud taken apart, before anything is put together again.
+    """A picture taken apart, before anything is put together again.
 
-    `of_plane`, `of_patch`: (h, w) of the working picture, the number of each cell's plane and patch, 0 for none.
+    `of_plane`, `of_patch`: (h, w) the number of each cell's plane and patch, 0 for none.
     """
 
     grid: Grid
     planes: tuple[Plane, ...]
-    of_plane: NDArray[np.int32]
-    of_patch: NDArray[np.int32]
+    of_plane: Labels
+    of_patch: Labels
     statistics: Statistics
 
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
     """The planes and objects of a cloud, organised or not."""
+    if not cloud.organised:
+        picture, pixel = as_picture(cloud)
+        seen = segment(picture, learnt)
+        labels, plane_labels = (
+            np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
+        )
+        return Segmentation(labels, seen.planes, plane_labels)
     parts = taken_apart(cloud)
     objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
-    return Segmentation(
-        spread(parts.grid, objects), parts.planes, spread(parts.grid, parts.of_plane)
-    )
+    both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
+    return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
 
 
 def taken_apart(cloud: Cloud) -> Parts:
-    """The planes of a cloud, and small patches of the rest."""
+    """The planes of an organised cloud, and small patches of the rest."""
     grid = grid_of(cloud)
     rng = np.random.default_rng(0)  # the same cloud, the same answer
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
-    surface = normals(grid.points, where)
-    of_patch = patches(grid.points, surface, where)
-    known = statistics(of_patch, grid.points, surface, grid.colors, _support_axes(planes))
+    window = _window(where)
+    points, colors = grid.points[window], None if grid.colors is None else grid.colors[window]
+    surface = normals(points, where[window])
+    of_patch = np.zeros_like(of_plane)
+    of_patch[window] = patches(points, surface, where[window])
+    known = statistics(of_patch[window], points, surface, colors, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
+
+
+def _window(where: Mask) -> tuple[slice, slice]:
+    """What of a picture holds all of `where`."""
+    row, column = (np.flatnonzero(where.any(axis=axis)) for axis in (1, 0))
+    if not row.size:
+        return slice(0, 1), slice(0, 1)
+    return slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
 
 
 def _candidates(
@@ -79,15 +97,14 @@ def _candidates(
     return where
 
 
-def _support_axes(planes: tuple[Plane, ...]) -> Floats:
-    """(3, 4) from the camera frame to two axes of the lowest support and the height above it [m]."""
-    carrying = [plane for plane in planes if plane.kind in ("support", "floor")]
+def _upright(planes: tuple[Plane, ...]) -> Upright:
+    """The vertical of the largest plane on which things may stand; without one, the camera's."""
+    carrying = [plane for plane in planes if plane.kind in ("floor", "support")]
     if not carrying:
-        return np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0]], np.float32)
-    plane = max(carrying, key=lambda plane: plane.points)
-    axes = np.linalg.svd(plane.normal[None, :])[2][1:]
-    turned = np.vstack([axes, plane.normal])
-    return np.column_stack([turned, (0.0, 0.0, -plane.offset_m)]).astype(np.float32)
+        return Upright(np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), np.zeros(0))
+    up = max(carrying, key=lambda plane: plane.points).normal
+    level = np.linalg.svd(up[None, :])[2][1:]
+    return Upright(np.vstack([level, up]), np.sort([plane.offset_m for plane in carrying]))
 
 
 def _by_rule(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:

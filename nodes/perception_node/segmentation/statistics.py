@@ -7,15 +7,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.grid import Floats, shifted
-from nodes.perception_node.segmentation.patches import Labels
+from nodes.perception_node.segmentation.grid import Floats, Labels, shifted
 
 Sums = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 # columns of `Statistics.inside`
 COUNT, POINT, SQUARES, NORMAL, COLOR, HIDDEN = 0, slice(1, 4), slice(4, 10), slice(10, 13), slice(13, 16), 16
 INSIDE = 17
-_PRODUCTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+_FIRST, _SECOND = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
 
 # columns of `Statistics.between`, for the ordered pair (a, b)
 TOUCH, STEP, BEFORE, COLOR_STEP, BENDS, BEND, CONCAVE, DEEP, CONVEX, LIKE, WIDE = range(11)
@@ -28,13 +28,25 @@ _SAMPLES = 12
 _SINES = np.sin(np.radians((20, 45)))
 
 
+@dataclass(frozen=True)
+class Upright:
+    """What is level and what is up. `axes`: (3, 3) rows of two level axes and the vertical, camera frame.
+
+    `supports`: (S,) the heights along the vertical on which things may stand, rising.
+    """
+
+    axes: Sums
+    supports: Sums
+
+
 @dataclass
 class Statistics:
     """What is known of P patches; row 0 is the first.
 
-    `inside`: (P, INSIDE) sums over cells. `low`, `high`: (P, 3) bounds along two axes of the support
-    and above it [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first is in
-    front of the second, is not symmetric. `owner`: (P,) the patch that each was merged into, at first itself.
+    `inside`: (P, INSIDE) sums over cells. `low`, `high`: (P, 3) bounds along two level axes and the
+    vertical [m]. `between`: (P, P, BETWEEN) sums over borders; only BEFORE, how often the first is in front
+    of the second, is not symmetric. `owner`: (P,) the patch that each was merged into, at first itself.
+    `supports`: see `Upright`.
     """
 
     inside: Sums
@@ -42,6 +54,7 @@ class Statistics:
     high: Sums
     between: Sums
     owner: NDArray[np.int64]
+    supports: Sums
 
     def merge(self, a: int, b: int) -> None:
         """Patch a becomes the union of a and b; b's row is left as it was, and means nothing any more."""
@@ -58,33 +71,31 @@ class Statistics:
 
 
 def statistics(
-    labels: Labels, points: Floats, normals: Floats, colors: Floats | None, support: Floats
+    labels: Labels, points: Floats, normals: Floats, colors: NDArray[np.uint8] | None, upright: Upright
 ) -> Statistics:
-    """Of patches `labels` (h, w), numbered from 1 without gaps.
-
-    `support`: (3, 4) from the camera frame to two axes of the support and the height above it [m].
-    """
+    """Of patches `labels` (h, w), numbered from 1 without gaps."""
     count = int(labels.max(initial=0))
     row, column = np.nonzero(labels)
-    label = labels[row, column] - 1
+    order = np.argsort(labels[row, column], kind="stable")
+    row, column = row[order], column[order]
+    starts = np.searchsorted(labels[row, column], np.arange(1, count + 1))
     p, n = points[row, column], np.nan_to_num(normals[row, column])
-    c = np.zeros_like(p) if colors is None else np.nan_to_num(colors[row, column])
-    squares = np.stack([p[:, i] * p[:, j] for i, j in _PRODUCTS], axis=1)
-    values = np.concatenate([np.ones((len(p), 1)), p, squares, n, c, np.zeros((len(p), 1))], axis=1)
-    inside = np.stack([np.bincount(label, weights=v, minlength=count) for v in values.T], axis=1)
-    placed = p @ support[:, :3].T + support[:, 3]
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    order = np.argsort(label, kind="stable")
-    if count:
-        starts = np.searchsorted(label[order], np.arange(count))
-        low = np.minimum.reduceat(placed[order], starts, axis=0).astype(np.float64)
-        high = np.maximum.reduceat(placed[order], starts, axis=0).astype(np.float64)
+    values = np.zeros((len(p), INSIDE))
+    values[:, COUNT], values[:, POINT], values[:, NORMAL] = 1, p, n
+    values[:, SQUARES] = p[:, _FIRST] * p[:, _SECOND]
+    if colors is not None:
+        values[:, COLOR] = colors[row, column] / np.float32(255)
+    placed = p @ upright.axes.T
+    inside, low, high = (
+        ufunc.reduceat(of, starts, axis=0).astype(np.float64) if count else np.zeros((0, of.shape[1]))
+        for ufunc, of in ((np.add, values), (np.minimum, placed), (np.maximum, placed))
+    )
     between = np.zeros((count, count, BETWEEN))
     _touching(between, labels, points, colors)
     _bending(between, labels, points, normals)
-    _seen_between(between, labels, points, inside)
+    _seen_between(between, labels, points, inside[:, POINT][:, 2])
     inside[:, HIDDEN] = _hidden(labels, points, count)
-    return Statistics(inside, low, high, between, np.arange(count))
+    return Statistics(inside, low, high, between, np.arange(count), upright.supports)
 
 
 def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.generic]]) -> None:
@@ -96,7 +107,7 @@ def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.gene
         between[..., column] += sums + sums.T
 
 
-def _touching(between: Sums, labels: Labels, points: Floats, colors: Floats | None) -> None:
+def _touching(between: Sums, labels: Labels, points: Floats, colors: NDArray[np.uint8] | None) -> None:
     """Cells side by side."""
     count = between.shape[0]
     for shift in ((0, 1), (1, 0)):
@@ -107,8 +118,8 @@ def _touching(between: Sums, labels: Labels, points: Floats, colors: Floats | No
         step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
         off = 0.0 * z
         if colors is not None:
-            c, d = (view[where] for view in shifted(colors, *shift))
-            off = np.nan_to_num(np.abs(c - d).sum(axis=-1))
+            c, d = (view[where].astype(np.float32) for view in shifted(colors, *shift))
+            off = np.abs(c - d).sum(axis=-1) / 255
         _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step, COLOR_STEP: off})
         for first, second, front in ((a, b, step & (z < far)), (b, a, step & (far < z))):
             key = (first - 1) * count + (second - 1)
@@ -140,16 +151,16 @@ def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats) -> 
         _add(between, a, b, columns)
 
 
-def _seen_between(between: Sums, labels: Labels, points: Floats, inside: Sums) -> None:
+def _seen_between(between: Sums, labels: Labels, points: Floats, depth_sums: Sums) -> None:
     """What stands in the line between the middles of two patches: something nearer, or open space."""
     count = between.shape[0]
-    if count < 2:
-        return
+    size = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     row, column = np.nonzero(labels)
-    label = labels[row, column] - 1
-    size = inside[:, COUNT]
-    middle = np.stack([np.bincount(label, weights=w, minlength=count) / size for w in (row, column)], axis=1)
-    depth = inside[:, POINT][:, 2] / size
+    label = labels[row, column]
+    middle = np.stack(
+        [np.bincount(label, weights=of, minlength=count + 1)[1:] / size for of in (row, column)], axis=1
+    )
+    depth = depth_sums / size
     a, b = np.triu_indices(count, 1)
     t = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     place = middle[a, None] * (1 - t[:, None]) + middle[b, None] * t[:, None]

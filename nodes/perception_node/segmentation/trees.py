@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +15,12 @@ LEAVES = 16
 class Trees:
     """A sum of T trees over features, turned into a probability.
 
-    Each question "is the feature at most the threshold" that is answered *no* excludes the leaves below its *yes*;
-    the first leaf that is left, counted from the left, is the tree's. `feature`, `threshold`, `keeps`: (Q,) of all
-    questions, tree by tree; `keeps` has the bits of the leaves that a *no* leaves. `first`: (T,) each tree's first
-    question. `value`: (T, LEAVES). `bias` is added to the sum.
+    All questions of all trees are asked at once: "is the feature at most the threshold?" A *no* rules out the
+    leaves below the question's *yes*, and of the leaves that no answer rules out the leftmost is the tree's.
+
+    `feature`, `threshold`, `keeps`: (Q,) of all questions, tree by tree; `keeps` has a bit for each leaf that
+    a *no* does not rule out. `first`: (T,) each tree's first question. `value`: (T, LEAVES) what each leaf
+    adds to the sum, and `bias` what is added to it besides.
     """
 
     feature: NDArray[np.int32]
@@ -35,7 +36,7 @@ class Trees:
         left = np.bitwise_and.reduceat(np.where(no, self.keeps, np.uint16(0xFFFF)), self.first, axis=1)
         leaf = _LOWEST_BIT[left & -left]
         total = self.value[np.arange(len(self.value)), leaf].sum(axis=1) + np.float32(self.bias)
-        return 1 / (1 + np.exp(-total))
+        return np.asarray(1 / (1 + np.exp(-total)), np.float32)
 
 
 _LOWEST_BIT = np.zeros(1 << 16, np.uint8)

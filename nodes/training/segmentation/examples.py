@@ -10,17 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.segmentation.merging import Indices, merge
+from nodes.perception_node.segmentation.grid import spread
+from nodes.perception_node.segmentation.merging import merge
 from nodes.perception_node.segmentation.pairs import features
 from nodes.perception_node.segmentation.segment import taken_apart
-from nodes.perception_node.segmentation.statistics import Statistics
+from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 
 @dataclass(frozen=True)
 class Example:
-    """A scene taken apart. `overlap`: (P, objects + 1) points of each patch on each object, 0 being none of them.
+    """A scene taken apart.
 
-    `sources`: the recorded scenes in it, none if it was made up.
+    `overlap`: (P, objects + 1) points of each patch on each object, 0 being none of them. `sources`: the
+    recorded scenes in it, none if it was made up.
     """
 
     statistics: Statistics
@@ -39,7 +41,7 @@ class Rows(NamedTuple):
 def example(cloud: Cloud, truth: NDArray[np.int32], sources: frozenset[str] = frozenset()) -> Example:
     """`truth`: (H, W) the number of the object of each point, 0 for background."""
     parts = taken_apart(cloud)
-    of_patch = np.append(parts.of_patch.ravel(), np.int32(0))[parts.grid.cells]
+    of_patch = spread(parts.grid, parts.of_patch)
     shape = (int(of_patch.max(initial=0)) + 1, int(truth.max(initial=0)) + 1)
     pairs = of_patch.ravel() * shape[1] + truth.ravel()
     overlap = np.bincount(pairs, minlength=shape[0] * shape[1]).reshape(shape)
@@ -56,7 +58,9 @@ def own_way(of: Example, probability: Callable[[NDArray[np.float32]], NDArray[np
     return _met(of, lambda rows, _: probability(rows))
 
 
-def _met(of: Example, decide: Callable[[NDArray[np.float32], NDArray[np.bool_]], NDArray[np.floating]]) -> Rows:
+def _met(
+    of: Example, decide: Callable[[NDArray[np.float32], NDArray[np.bool_]], NDArray[np.floating]]
+) -> Rows:
     met: list[Rows] = []
 
     def judge(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:

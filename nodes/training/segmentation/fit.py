@@ -10,14 +10,14 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 from nodes.perception_node.segmentation.trees import LEAVES, Trees
 from nodes.training.segmentation.examples import Rows
 
-TREES = 300
+TREES = 150
 
 
 def fit(rows: Rows, seed: int = 0) -> Trees:
     """Trees that tell pairs that are one object from those that are not."""
     model = HistGradientBoostingClassifier(
         max_iter=TREES,
-        learning_rate=0.06,
+        learning_rate=0.1,
         max_leaf_nodes=LEAVES,
         min_samples_leaf=20,
         l2_regularization=1.0,
@@ -31,7 +31,10 @@ def fit(rows: Rows, seed: int = 0) -> Trees:
 
 def trees_of(grown: list[Any], bias: float) -> Trees:
     """From scikit-learn's arrays of nodes, one a tree."""
-    feature, threshold, keeps, first = [], [], [], []
+    feature: list[int] = []
+    threshold: list[float] = []
+    keeps: list[int] = []
+    first: list[int] = []
     value = np.zeros((len(grown), LEAVES), np.float32)
     for tree, nodes in enumerate(grown):
         first.append(len(feature))
@@ -55,7 +58,9 @@ def trees_of(grown: list[Any], bias: float) -> Trees:
 
         descend(0)
         if len(feature) == first[-1]:  # a tree of one leaf asks nothing
-            feature.append(0), threshold.append(np.inf), keeps.append(0xFFFF)
+            feature.append(0)
+            threshold.append(np.inf)
+            keeps.append(0xFFFF)
     return Trees(
         feature=np.array(feature, np.int32),
         threshold=np.nextafter(np.array(threshold), np.inf).astype(np.float32),
