@@ -29,13 +29,14 @@ class Bridge:
         kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
         return self._node.ask(keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s)
 
-    def ask_later(self, verb: str, message: Any, *, patience_s: float = 0.0) -> Future[Any]:
-        """The same, without waiting; `patience_s` while nobody serves the key."""
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], patience_s=patience_s)
+    def ask_later(self, verb: str, message: Any) -> Future[Any]:
+        """The answer when it comes; while nobody serves the key an error, at once."""
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
 
     def change_later(self, verb: str, message: Any) -> Future[Any]:
-        """The same, with the patience of `ask`."""
-        return self.ask_later(verb, message, patience_s=bus.PATIENCE_S)
+        """The same, as long and as patient as `ask`."""
+        limits = {"timeout_s": _USUALLY_S, "patience_s": bus.PATIENCE_S}
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
 
     def relay(self, command: Command) -> Relay:
         """Let the knowledge base answer a command itself."""

@@ -10,24 +10,24 @@ from typing import Any
 
 from msgspec import structs
 
-from nodes.coordinator import formats
+from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
+from nodes.coordinator.running import Running
 from nodes.coordinator.talking import hold, hold_later
 from nodes.coordinator.turns import Results, Turns
-from nodes.loop import Node, open_node, settle, then
+from nodes.loop import Node, open_node, settle
 from schemas import commands as c
 from schemas import errors, keys
 from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Snapshot
-from schemas.entities import BodyState, Entity, Pose, orientation_from_yaw
+from schemas.entities import BodyState
 from schemas.health import Health
-from schemas.moments import When
-from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
+from schemas.scenes import Poses
 
 _WAIT_S = 20.0
 _EARLY_S = 10.0
@@ -64,6 +64,8 @@ class Coordinator:
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
         door = self._door
+        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
+        running = Running(config.truth, door, self._keeping, self._ask_sim)
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
             c.Add: self._change,
             c.Update: self._change,
@@ -71,14 +73,14 @@ class Coordinator:
             c.Clear: self._noted(door.clear),
             c.Load: door.load,
             c.Undo: door.undo,
-            c.List: self._list,
-            c.Get: self._get,
-            c.Status: self._status,
-            c.Move: self._move,
-            c.Pause: lambda m: self._ask_scene("pause", m, c.Done),
-            c.StepOnce: lambda m: self._ask_scene("step", m, c.Done),
-            c.Reset: self._reset,
-            c.TakePicture: self._picture,
+            c.List: answers.list,
+            c.Get: answers.get,
+            c.Status: answers.status,
+            c.Move: running.move,
+            c.Pause: running.pause,
+            c.StepOnce: running.step,
+            c.Reset: running.reset,
+            c.TakePicture: running.picture,
         }
         functions.update(dict.fromkeys(_RELAYED, self._bridge.relay))
         handlers = {
@@ -156,90 +158,6 @@ class Coordinator:
             self._keep()
 
         self._bridge.ask_later("classes", c.Classes()).add_done_callback(on_classes)
-
-    # Asking
-
-    def _list(self, query: c.List) -> Any:
-        """What the door knows of now answers at once; the past is asked of the knowledge base."""
-        if query.class_ is not None:
-            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
-        if query.as_of is not None:
-            return then(
-                self._bridge.ask_later("list", query),
-                lambda entities: self._formatted(entities, query.format),
-            )
-        entities = self._door.entities_of(query.class_)
-        if query.format == "json":
-            entities = tuple(map(self._with_body, entities))
-        return self._formatted(entities, query.format)
-
-    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
-        if wanted == "lu4r":
-            return formats.lu4r(entities)
-        if wanted == "legacy":
-            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
-            return formats.legacy(entities, iris)
-        return entities
-
-    def _class_name(self, word: str, as_of: When | None) -> str:
-        """The class that is meant; then there may have been others than now."""
-        try:
-            return self._door.classes.find(word).name
-        except errors.UnknownClass:
-            if as_of is None:
-                raise
-            return word
-
-    def _get(self, query: c.Get) -> Any:
-        if query.as_of is not None:
-            return self._bridge.relay(query)
-        return self._with_body(self._door.entity(query.name))
-
-    def _with_body(self, entity: Entity) -> Entity:
-        return structs.replace(entity, body=self._keeping.body_state(entity))
-
-    def _status(self, _: c.Status) -> c.SystemStatus:
-        return c.SystemStatus(
-            truth=self._config.truth,
-            commit=self._door.seq,
-            entities=len(self._door.entities),
-            bodies=len(self._keeping.scene.bodies),
-            in_agreement=self._keeping.in_agreement(),
-            nodes=self._health.nodes(),
-            problems=tuple(self._keeping.problems()),
-        )
-
-    # Running
-
-    def _move(self, command: c.Move) -> Future[Any]:
-        body = self._keeping.scene.bodies.get(command.name)
-        if body is None:
-            state = self._keeping.body_state(self._door.entity(command.name))
-            raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
-        pose = Pose(position_m=command.at, orientation_wxyz=orientation)
-        order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
-
-        def moved(reply: BodiesMoved) -> c.Moved:
-            if command.name in reply.failed:
-                raise errors.Refused(reply.failed[command.name])
-            self._door.hands.let_go(command)
-            x, y, z = command.at
-            return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
-
-        return then(self._ask_sim("move", order, BodiesMoved), moved)
-
-    def _reset(self, command: c.Reset) -> Future[Any]:
-        if self._config.truth == "perceived":
-            return self._ask_scene("reset", command, c.Done)
-        return then(
-            self._keeping.place_all(),
-            lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
-        )
-
-    def _picture(self, m: c.TakePicture) -> Future[Any]:
-        query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
-        return self._ask_scene("picture", query, Picture)
 
     # Changing
 
@@ -319,11 +237,6 @@ class Coordinator:
             return self._turns.after(lambda: handle(command))
 
         return guarded
-
-    def _ask_scene(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        if not self._keeping.scene.known:
-            raise errors.NoAnswer("no simulator runs")
-        return self._ask_sim(verb, message, kind)
 
     def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
         return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
