@@ -34,6 +34,8 @@ _SIZE = (640, 480)
 _FOVY_RAD = 2 * math.atan(240 / 525)
 _PARKED_M = 20.0
 _STEP_M, _FINE_M = 0.02, 0.0005
+_FOCAL_BASELINE_PX_M, _NEAREST_M = 525.0 * 0.075, 0.3
+_SHADOW_MARGIN_PX = 1.0
 
 
 class Pile(NamedTuple):
@@ -62,7 +64,7 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     geom = eye.segment(scene.model, scene.data, view)
     body = np.where(geom >= 0, scene.model.geom_bodyid[geom], 0)
     if rng.random() > _FAULTLESS:
-        depth_m = kinect_noise(depth_m, rng)
+        depth_m = kinect_noise(np.where(shadowed(depth_m), np.float32(0), depth_m), rng)
     cloud = Cloud(back_project(depth_m, view.intrinsics), rgb, None, view.intrinsics)
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
 
@@ -237,3 +239,15 @@ def _view(rng: np.random.Generator) -> View:
     )
     target = np.array([*rng.uniform(-0.1, 0.1, 2), 0.05])
     return look_at(target + distance * away, target, *_SIZE, _FOVY_RAD)
+
+
+def shadowed(depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(H, W) what a Kinect's projector does not light, because something nearer is in its way.
+
+    A pixel's disparity says in which of the projector's columns it is. A row's columns rise from left to
+    right, but for what is behind: it shares its column with something farther right.
+    """
+    disparity = _FOCAL_BASELINE_PX_M / np.maximum(depth_m, _NEAREST_M)
+    column = np.where(depth_m > 0, np.arange(depth_m.shape[1]) - disparity, np.inf)
+    lowest_right = np.minimum.accumulate(column[:, ::-1], axis=1)[:, ::-1]
+    return (depth_m > 0) & (column > lowest_right + _SHADOW_MARGIN_PX)
