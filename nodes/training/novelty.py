@@ -17,7 +17,7 @@ _FOLDS = 4
 _LEFT_OUT = 0.12
 _ROUNDS = 12
 _AXES = 30
-_SHARE = 0.15
+_SHARE = 0.05
 """How many of the things that are met are of no class that was learnt; nobody knows, so it is a guess."""
 
 
