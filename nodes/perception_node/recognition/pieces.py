@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.features import features_of
@@ -16,6 +15,7 @@ from nodes.perception_node.things import Thing
 _NEAR_M = 0.015
 _DOUBTFUL = 0.6
 _ROUNDS = 4
+_MOST_PAIRS = 12
 _GAIN = 0.05
 _PIECE = 0.5
 
@@ -25,31 +25,39 @@ Join = Callable[[Thing, Thing], Thing]
 def put_together(
     things: Sequence[Thing], learnt: Learnt, join: Join
 ) -> tuple[list[Thing], Numbers, list[list[int]]]:
-    """Join neighbours that are recognised better as one.
+    """Join neighbours that are recognised better as one, the pair that gains most first.
 
     Returns the things, (N, K) probabilities of their leaves, and for each the numbers of `things` in it.
     """
-    parts, members = list(things), [[n] for n in range(len(things))]
-    chances = leaves(learnt, features_of(parts)) if parts else np.empty((0, len(learnt.classes)))
+    if not things:
+        return [], np.empty((0, len(learnt.classes))), []
+    parts = list(things)
+    members: list[tuple[int, ...]] = [(n,) for n in range(len(things))]
+    chances = leaves(learnt, features_of(parts))
+    tried: dict[tuple[tuple[int, ...], tuple[int, ...]], tuple[Thing, Numbers]] = {}
     for _ in range(_ROUNDS):
-        known, piece = _judged(chances, learnt)
-        pairs = _doubtful_neighbours(parts, known, piece)
-        if not pairs:
+        pairs = _doubtful_neighbours(parts, *_judged(chances, learnt))[:_MOST_PAIRS]
+        new = [(a, b) for a, b in pairs if (members[a], members[b]) not in tried]
+        wholes = [join(parts[a], parts[b]) for a, b in new]
+        if wholes:
+            together = leaves(learnt, features_of(wholes))
+            for (a, b), whole, chance in zip(new, wholes, together, strict=True):
+                tried[members[a], members[b]] = whole, chance
+        gains = [_gain(tried[members[a], members[b]][1], chances[[a, b]], learnt) for a, b in pairs]
+        if max(gains, default=0.0) <= 0.0:
             break
-        wholes = [join(parts[a], parts[b]) for a, b in pairs]
-        together = leaves(learnt, features_of(wholes))
-        sure = _judged(together, learnt)[0]
-        apart = np.array(
-            [max(known[a], known[b]) - (2 * _GAIN if piece[[a, b]].max() > _PIECE else 0.0) for a, b in pairs]
-        )
-        best = int((sure - apart).argmax())
-        if sure[best] < apart[best] + _GAIN:
-            break
-        a, b = pairs[best]
-        parts[a], members[a], chances[a] = wholes[best], members[a] + members[b], together[best]
+        a, b = pairs[int(np.argmax(gains))]
+        parts[a], chances[a] = tried[members[a], members[b]]
+        members[a] += members[b]
         del parts[b], members[b]
         chances = np.delete(chances, b, axis=0)
-    return parts, chances, members
+    return parts, chances, [list(numbers) for numbers in members]
+
+
+def _gain(whole: Numbers, apart: Numbers, learnt: Learnt) -> float:
+    """How much surer the whole (K,) is than the surer of two (2, K); a mere piece may even cost a little."""
+    known, piece = _judged(np.vstack([whole, apart]), learnt)
+    return float(known[0] - known[1:].max()) + (_GAIN if piece[1:].max() > _PIECE else -_GAIN)
 
 
 def _judged(chances: Numbers, learnt: Learnt) -> tuple[Numbers, Numbers]:
