@@ -64,11 +64,11 @@ class Frames:
         key, now = (frame.camera, frame.encoding), time.monotonic()
         with self._news:
             before = self._planes.get(key)
-            if before is not None and now - before[1] < _SILENT_S:
-                if frame.stamp_ns <= before[0].frame.stamp_ns:
-                    raise BadRequest(
-                        f"camera {frame.camera}: a frame of the past is passed over; stamps must grow"
-                    )
+            speaking = before is not None and now - before[1] < _SILENT_S
+            if before is not None and speaking and frame.stamp_ns <= before[0].frame.stamp_ns:
+                raise BadRequest(
+                    f"camera {frame.camera}: a frame of the past is passed over; stamps must grow"
+                )
             self._planes[key] = Plane(frame, read), now
             self._pair_up(frame)
 

@@ -13,7 +13,8 @@ from schemas.entities import Entity, Size, distance_m, free_name, rounded
 
 AGENT = "perception_node"
 MISSING = "not seen where it should stand"
-"""The conflict of an entity that is gone."""
+DISPLACED = "something else is seen in its place"
+"""The conflicts of an entity that is gone."""
 
 _SURE, _UNSURE = 0.6, 0.25
 """What one class has more and another has less of the votes than, if the one contradicts the other."""
@@ -62,12 +63,14 @@ def proposals(tracks: Iterable[Track], taken: Set[str], kinship: Kinship) -> dic
 def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig) -> Update | Remove | None:
     """What the map must be told of an entity, if anything; what it is only of perception's own."""
     own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
-    if track.unseen >= config.gone_looks:
-        return _gone(entity, own, config)
-    if track.unseen or track.looks < config.rest_looks:
+    if track.is_gone(config):
+        return _gone(entity, track, own, config)
+    if track.unseen or track.odd or track.looks < config.rest_looks:
         return None
     changes: dict[str, Any] = {}
-    if _has_moved(entity, track, config):
+    if has_moved(entity, track, config):
+        if track.looks < (config.rest_looks if track.left else config.nudge_looks):
+            return None
         pose = rounded(track.pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
     class_name = _other_class(entity, track, kinship, config)
@@ -85,16 +88,18 @@ def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig)
     )
 
 
-def _gone(entity: Entity, own: bool, config: TrackingConfig) -> Update | Remove | None:
+def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
     reason = f"{entity.name} is no longer where it was"
     if own and config.when_gone == "remove":
         return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
-    if entity.conflict == MISSING:
+    conflict = DISPLACED if track.odd else MISSING
+    if entity.conflict == conflict:
         return None
-    return Update(source="perception", agent=AGENT, reason=reason, name=entity.name, conflict=MISSING)
+    return Update(source="perception", agent=AGENT, reason=reason, name=entity.name, conflict=conflict)
 
 
-def _has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
+def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
+    """Whether a thing was last seen elsewhere than the map says, or turned."""
     if entity.pose is None:
         return True
     slack = slack_m(track.size_m, config.moved_m)
@@ -123,7 +128,7 @@ def _described(
         changes["class_"] = class_name
         if entity.preferred_reference == kinship.label(entity.class_):
             changes["ref"] = kinship.label(class_name)
-    if track.whole and track.looks >= config.confirm_looks and _is_resized(entity, track, config):
+    if track.whole and track.looks >= config.nudge_looks and _is_resized(entity, track, config):
         changes["size"] = _to_millimetres(track.size_m)
     return changes
 
@@ -139,7 +144,9 @@ def _conflict(entity: Entity, track: Track, class_name: str, kinship: Kinship) -
     """What is seen against an operator's word; what was seen before stays until the word is borne out."""
     if class_name and not kinship.is_a(class_name, entity.class_):
         return f"looks like a {class_name}"
-    borne_out = entity.conflict == MISSING or kinship.is_a(track.votes.belief(kinship), entity.class_)
+    borne_out = entity.conflict in (MISSING, DISPLACED) or kinship.is_a(
+        track.votes.belief(kinship), entity.class_
+    )
     return "" if borne_out else entity.conflict
 
 

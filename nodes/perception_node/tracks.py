@@ -23,7 +23,8 @@ class Track:
     """Observations tied to one thing: `pose` and `size_m` are their mean since it came to rest.
 
     `looks` is how often it was seen since then, `unseen` how often in a row it should have been seen since
-    and was not. `whole`: it was seen unhidden and uncut. `told` is the map's pose at the last look.
+    and was not, `odd` how often in a row something of another size filled its place. `whole`: it was seen
+    unhidden and uncut. `told` is the map's pose at the last look; `left`: that place is seen empty.
     """
 
     pose: Pose
@@ -31,14 +32,20 @@ class Track:
     votes: Votes = field(default_factory=Votes)
     looks: int = 0
     unseen: int = 0
+    odd: int = 0
     whole: bool = False
     told: Pose | None = None
+    left: bool = False
+
+    def is_gone(self, config: TrackingConfig) -> bool:
+        """Whether it is sure that it is no longer where it was."""
+        return self.unseen >= config.gone_looks or self.odd >= config.odd_looks
 
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """One more observation of it."""
         votes = self.votes.cast(seen.class_, seen.probability)
         if self.whole and not seen.whole and _within(seen, self, config.still_m):
-            return replace(self, votes=votes, looks=self.looks + 1, unseen=0)  # a part of it, where it was
+            return replace(self, votes=votes, looks=self.looks + 1, unseen=0, odd=0)  # a part, where it was
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
         still = (
             self.looks > 0
@@ -51,13 +58,13 @@ class Track:
             size_m = self.size_m
         whole = self.whole or seen.whole
         looks = self.looks + 1 if still else 1
-        return replace(self, pose=pose, size_m=size_m, votes=votes, looks=looks, unseen=0, whole=whole)
+        return replace(self, pose=pose, size_m=size_m, votes=votes, looks=looks, unseen=0, odd=0, whole=whole)
 
-    def miss(self, place: Sight) -> Track:
-        """It was not seen, and this is what is seen where it should be."""
+    def miss(self, place: Sight, *, odd: bool) -> Track:
+        """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
         if place == "hidden":
             return self
-        return replace(self, unseen=self.unseen + 1 if place == "open" else 0)
+        return replace(self, unseen=self.unseen + 1 if place == "open" else 0, odd=self.odd + 1 if odd else 0)
 
     def _mean(self, pose: Pose, size_m: Size) -> tuple[Pose, Size]:
         share = 1.0 / min(self.looks + 1, _MEMORY)

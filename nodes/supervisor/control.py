@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import configparser
+import contextlib
 import hashlib
 import io
 import os
@@ -99,7 +100,7 @@ class Supervisor:
         try:
             self._rpc().supervisor.shutdown()
         except (OSError, xmlrpc.client.Error):
-            others = ", ".join(f"{other.data} ({other.settings.listen})" for other in running())
+            others = ", ".join(f"{other.data} ({settings.listen})" for other, settings in running())
             hint = f"; with --data one may stop that in {others}" if others else ""
             raise errors.NoAnswer(f"no system runs on the data in {self.data}{hint}") from None
         deadline = time.monotonic() + 2 * _STOP_WAIT_S
@@ -154,15 +155,17 @@ class Supervisor:
         return text.getvalue()
 
 
-def running() -> list[Supervisor]:
-    """All of this user's that answer on this machine."""
+def running() -> list[tuple[Supervisor, Settings]]:
+    """All of this user's that answer on this machine, with what they were started with."""
     found = []
     for socket in sorted(Path(tempfile.gettempdir()).glob(_SOCKET.format("*"))):
         try:
             log = _rpc(socket).supervisor.getAllProcessInfo()[0]["logfile"]
         except (OSError, xmlrpc.client.Error):
             continue
-        found.append(Supervisor(Path(log).parent.parent))
+        supervisor = Supervisor(Path(log).parent.parent)
+        with contextlib.suppress(errors.BadRequest, OSError):  # another version's settings, or none
+            found.append((supervisor, supervisor.settings))
     return found
 
 

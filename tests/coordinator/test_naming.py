@@ -25,6 +25,13 @@ def test_the_place_is_beside_what_stands_at_the_default_position():
     assert math.hypot(x - 2.0, y - 2.0) < 2.0
 
 
+def test_a_place_is_found_for_big_things_and_in_crowds():
+    crowd = [standing(2.0 + i, 2.0 + j, (1.0, 1.0, 1.0)) for i in range(-40, 40) for j in range(-40, 40)]
+    for size in ((1.0, 1.0, 1.0), (1000.0, 1000.0, 1000.0)):
+        x, y, _ = free_position(crowd, size)
+        assert math.hypot(x - 2.0, y - 2.0) > 40.0
+
+
 def test_a_rug_is_no_obstacle():
     assert free_position([standing(2.0, 2.0, (2.0, 2.0, 0.01))], None) == DEFAULT_POSITION
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.perception_node.telling import MISSING
+from nodes.perception_node.telling import DISPLACED, MISSING
 from schemas.commands import Add, Remove, Update
 from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
 
@@ -98,6 +98,14 @@ def test_an_operators_is_marked_missing_and_found_elsewhere():
     assert (update.name, update.at, update.conflict) == ("my_cup", (3.0, 1.0, 0.7), "")
 
 
+def test_an_operators_thing_of_unknown_size_is_looked_for_at_its_classs_usual_size_if_there_is_one():
+    table = Table().told(
+        [structs.replace(entity(name, kind, at(x, 1)), size_m=None) for name, kind, x in
+         (("my_cup", "Cup", 1), ("my_thing", "Object", 2))]
+    )  # fmt: skip
+    assert [(command.name, command.conflict) for command in table.looks(20)] == [("my_cup", MISSING)]
+
+
 def test_what_is_hidden_stays():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)
@@ -119,7 +127,7 @@ def test_something_else_in_its_place_is_something_else():
     table.looks(5)
     table.things = [seen("Bottle", at(1, 1))]
     commands = table.looks(20)
-    assert [type(command) for command in commands] == [Add, Remove]
+    assert [type(command) for command in commands] == [Remove, Add]
     assert {e.class_ for e in table.entities.values()} == {"Bottle"}
 
 
@@ -218,10 +226,10 @@ def test_whatever_is_seen_and_said_the_map_comes_to_rest_and_holds_what_is_there
     assert all(table.taken_for)
     assert len(set(table.taken_for)) == len(there)
     standing = {thing.pose for thing in table.things}
-    empty = [
-        e for name, e in table.entities.items() if e.pose not in standing and name not in table.taken_for
-    ]
-    assert all(e.shape_provenance.source == "operator" and e.conflict == MISSING for e in empty)
+    unseen = [e for name, e in table.entities.items() if name not in table.taken_for]
+    assert all(e.shape_provenance.source == "operator" for e in unseen)
+    assert all(e.conflict == MISSING for e in unseen if e.pose not in standing)
+    assert all(e.conflict in (MISSING, DISPLACED) for e in unseen if e.pose in standing)
 
 
 @settings(deadline=None, max_examples=40)

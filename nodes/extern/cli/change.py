@@ -26,6 +26,7 @@ _describing = _options(
     vector_option("--size", metavar="X Y Z", help="Extent along its own axes [m]."),
     click.option("--ref", metavar="TEXT", help="What people call it."),
     click.option("--alt", multiple=True, metavar="TEXT", help="What they call it too; may be repeated."),
+    click.option("--confidence", type=float, metavar="P", help="How sure that is, 0 to 1."),
     click.option("--wait", is_flag=True, help="Reply when its body stands in the scene."),
     click.option("--id", "id", metavar="ID", help="Command id: the same one twice is executed once."),
 )

@@ -98,7 +98,7 @@ def down(data: Path | None, connect: str | None) -> None:
     from nodes.supervisor.control import Supervisor, running
 
     if data is None and connect is not None:
-        data = next((s.data for s in running() if connect in (s.settings.listen, s.settings.reachable)), None)
+        data = next((s.data for s, said in running() if connect in (said.listen, said.reachable)), None)
         if data is None:
             raise errors.NoAnswer(f"no system of this machine listens on {connect}")
     Supervisor((data or default_data()).resolve()).shut_down()
@@ -156,7 +156,7 @@ def _settings(
         "listen": listen,
         "connect": connect,
         "window": window,
-        "models": None if models is None else str(models.resolve()),
+        "models": None if models is None else _folder(models),
         "camera_hz": camera_hz or (_PERCEPTION_HZ if perception else 0.0),
         "camera_size": camera_size,
         "camera_noise": camera_noise,
@@ -179,6 +179,12 @@ def _settings_before(data: Path) -> Settings | None:
     except (OSError, errors.BadRequest):
         return None
     return settings if (data / JOURNAL).exists() and Path(settings.world).exists() else None
+
+
+def _folder(path: Path) -> str:
+    if not path.is_dir():
+        raise errors.BadFile(f"{path} is no folder")
+    return str(path.resolve())
 
 
 def _existing(path: Path) -> str:

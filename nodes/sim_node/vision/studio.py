@@ -35,7 +35,7 @@ class Studio:
     """Owns the thread, and on it the only OpenGL context."""
 
     def __init__(self, config: CameraConfig, segments_wanted: Callable[[], bool] = lambda: True) -> None:
-        """`segments_wanted()` tells whether anybody looks at them just now: they cost as much as a picture."""
+        """`segments_wanted()`: whether anybody looks at them just now; they cost as much as a picture."""
         self._config = config
         self._segments_wanted = segments_wanted
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
