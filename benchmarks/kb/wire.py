@@ -41,7 +41,7 @@ class Wire(NamedTuple):
 def measure(folder: Path, size: int, *, sim: bool, repeat: int) -> Wire:
     """Serve the journal in `folder`, of `size` entities named `e<i>`, and send it commands."""
     random_ = random.Random(size)
-    with _running(folder, sim=sim) as (client, start_s):
+    with running(folder, *([] if sim else ["--no-sim"])) as (client, start_s):
         if sim:
             _settle(client)
         names = [f"e{random_.randrange(size)}" for _ in range(repeat)]
@@ -101,11 +101,11 @@ def _memory(client: Client) -> dict[str, float]:
 
 
 @contextmanager
-def _running(folder: Path, *, sim: bool) -> Iterator[tuple[Client, float]]:
+def running(folder: Path, *words: str) -> Iterator[tuple[Client, float]]:
     """A client of `semmap up` on a port of its own, and how long the start took [s]; stopped at the end."""
     endpoint = _free_endpoint()
-    words = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
-    command = [str(Path(sys.executable).with_name("semmap")), "up", *words, *([] if sim else ["--no-sim"])]
+    usual = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
+    command = [str(Path(sys.executable).with_name("semmap")), "up", *usual, *words]
     started = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:

@@ -58,10 +58,10 @@ class Client:
         self.session = session
         self._signed: dict[str, Any] = {"source": source, "agent": agent}
 
-    def send(self, command: commands.Command, *, timeout_s: float = _LONG_S) -> Any:
-        """Send any command and return its reply."""
+    def send(self, command: commands.Command, *, kind: Any = None, timeout_s: float = _LONG_S) -> Any:
+        """Send any command and return its reply, of the usual type for it or of `kind`."""
         verb = str(command.__struct_config__.tag)
-        kind = commands.REPLIES[type(command)]
+        kind = kind or commands.REPLIES[type(command)]
         return bus.ask(self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s)
 
     # To change
@@ -173,8 +173,8 @@ class Client:
 
         `as_of` a commit's number, seconds since 1970 or ISO 8601: those of then.
         """
-        reply = self.send(commands.List(class_=class_, as_of=with_offset(as_of)))
-        entities: tuple[Entity, ...] = codec.convert(reply, tuple[Entity, ...])
+        command = commands.List(class_=class_, as_of=with_offset(as_of))
+        entities: tuple[Entity, ...] = self.send(command, kind=tuple[Entity, ...])
         return entities
 
     def list_as(

@@ -140,6 +140,19 @@ class ABox(Equality):
             self._check(step, edge, s, o)
         return step
 
+    def is_plain(self, edge: int) -> bool:
+        """Whether nothing follows from an edge but the kinds that its ends have now."""
+        store = self.store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        if p <= DIFFERENT or store.source[edge] == DERIVED:
+            return False
+        step = self.steps.step(p, store.kind[s], store.kind[o])
+        rules = step.rules
+        if step.special or rules is not None:
+            of_values = (step.of_values or not step.special) and (rules is None or rules.of_values)
+            return of_values and store.out.is_alone(edge)
+        return True
+
     def _check(self, step: Step, edge: int, s: int, o: int) -> None:
         """The parts of a step that are about more than one edge, or that clash."""
         if self.store.kind[o].clash and self.is_literal(o):

@@ -13,6 +13,7 @@ from nodes.kb_node.reasoner.retraction import Retraction
 from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.shapes import Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.shortcuts import depart, exchange
 from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
 from nodes.kb_node.reasoner.terms import (
@@ -67,31 +68,38 @@ class CompiledEngine:
             Refused: it would contradict the rest; nothing has changed.
             NotCompilable: it is beyond this engine; nothing has changed.
         """
-        if any(map(is_schema, delete)):
-            raise NotCompilable("less of the schema")
         abox = self._abox
+        if delete:
+            gone = exchange(abox, delete, insert) if insert else depart(abox, delete)
+            if gone is not None:
+                self._size += len(insert) - len(delete)
+                return frozenset(gone)
+            if any(map(is_schema, delete)):
+                raise NotCompilable("less of the schema")
         added: list[Triple] = []
+        removed: list[Triple] = []
         touched: set[Term] = set()
-        retraction = Retraction(abox)
-        removed = retraction.delete(delete) if delete else []
+        retraction = Retraction(abox) if delete else None
         try:
-            if delete:
-                self._insert(insert, added, touched)
-            else:
+            if retraction is None:
                 self._insert_runs(insert, added, touched)
+            else:
+                removed = retraction.delete(delete)
+                touched.update([s for s, _, _ in removed])
+                self._insert(insert, added, touched)
         except Clash as clash:
             proof, terms = self._prover.proof(Support(abox, self._told_by).of_clash(clash.claims), None)
             self._undo(retraction, removed, added)
-            if not delete:
+            if not removed:
                 self._shapes.refuse(insert, proof, terms)
             raise Refused(proof.about(terms)) from None
         except NotCompilable:
             self._undo(retraction, removed, added)
             raise
-        touched.update([triple[0] for triple in removed])
         touched.update(self._moved())
         abox.settle()
-        retraction.release()
+        if retraction is not None:
+            retraction.release()
         self._size += len(added) - len(removed)
         return frozenset(touched)
 
@@ -100,28 +108,29 @@ class CompiledEngine:
         shapes = self._shapes
         rest: list[Triple] = []
         for run in shapes.runs(triples):
-            known = shapes.known.get(run.key, run) if run.key is not None else None
-            if known is run:
-                self._insert(run.triples, added, touched)
-                shapes.learn(run)
-            elif isinstance(known, Written) and shapes.write(known, run):
+            known = None if run.key is None else shapes.known.get(run.key, run)
+            if isinstance(known, Written) and shapes.write(known, run):
                 added += run.triples
                 touched.update(known.touched_of(run.individuals))
+            elif known is run:
+                self._insert(run.triples, added, touched)
+                shapes.learn(run)
             elif isinstance(known, Contradiction) and not added:
                 raise Refused(known.of(run.individuals))
             else:
                 rest += run.triples
-        self._insert(rest, added, touched)
+        if rest:
+            self._insert(rest, added, touched)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
-        """Insert triples and draw all conclusions; the new ones among them are `added`, for they may be undone."""
+        """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
         abox = self._abox
         types = [triple for triple in triples if triple[1] == TYPE]
         edges = [triple for triple in triples if triple[1] != TYPE]
         for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
             for triple in batch:
                 if is_schema(triple):
-                    raise NotCompilable(f"an axiom: {triple}")
+                    raise NotCompilable(f"more of the schema: {triple}")
                 if triple[1] in (SAME_AS, DIFFERENT_FROM):
                     self._check(triple)
                 if abox.insert(triple):
@@ -134,15 +143,16 @@ class CompiledEngine:
         if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
             raise NotCompilable(f"classes or properties compared: {triple}")
 
-    def _undo(self, retraction: Retraction, removed: list[Triple], added: list[Triple]) -> None:
+    def _undo(self, retraction: Retraction | None, removed: list[Triple], added: list[Triple]) -> None:
         back = Retraction(self._abox)
         back.delete(added)
         for triple in removed:
             self._abox.insert(triple)
         self._abox.run()
         self._abox.settle()
-        retraction.release()
         back.release()
+        if retraction is not None:
+            retraction.release()
 
     def _moved(self) -> Iterator[Term]:
         """The individuals whose named classes are others now."""

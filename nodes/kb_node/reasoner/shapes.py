@@ -1,8 +1,8 @@
 """Runs of triples about new individuals: what follows is worked out once for each shape.
 
-Two runs have one *shape* if they differ in nothing but the names of the new individuals, and in which individuals
-and literals of the same kind they relate them to. Where nothing follows but kinds, a run of a known shape is
-written down as it will stand, without looking at any rule.
+Two runs have one *shape* if they differ in nothing but the names of the new individuals, and in which other
+individuals and literals, of the same kinds, these are related to. Where nothing follows but kinds, a run of a
+known shape is written down as it will stand, without looking at any rule.
 """
 
 from __future__ import annotations
@@ -12,11 +12,10 @@ from itertools import count
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner.abox import ABox
-from nodes.kb_node.reasoner.axioms import DIFFERENT
 from nodes.kb_node.reasoner.kinds import Kind
 from nodes.kb_node.reasoner.proof import Proof
 from nodes.kb_node.reasoner.split import is_schema
-from nodes.kb_node.reasoner.store import DERIVED, NONE, VALUE, Layout, NewEdge
+from nodes.kb_node.reasoner.store import NONE, VALUE, Layout, NewEdge
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Explanation, Term, Triple
 
@@ -82,38 +81,41 @@ class Shapes:
         places: dict[Term, int] = {}
         others: list[Term] = []
         key: list[object] = []
+        append = key.append
         for at, (s, p, o) in enumerate(triples):
             subject = places.get(s)
             if subject is None:
                 if at > start:
                     yield Run(tuple(key) if is_plain else None, triples[start:at], places, others)
                     start, is_plain, places, others, key = at, True, {}, [], []
+                    append = key.append
                 subject = places[s] = 0
                 if s in numbers:
                     is_plain = False
-            key += (subject, p)
+            append(subject)
+            append(p)
             if p == TYPE:
-                key.append(o)
+                append(o)
                 continue
             node = numbers.get(o)
             if node is not None:
-                key.append(kinds[node])
+                append(kinds[node])
                 others.append(o)
             elif o[0] == '"':
-                key.append(literal(o))
+                append(literal(o))
                 others.append(o)
             else:
                 place = places.get(o)
                 if place is None:
                     place = places[o] = len(places)
-                key.append(place)
+                append(place)
             if at - start == _LONGEST:
                 is_plain = False
         if triples:
             yield Run(tuple(key) if is_plain else None, triples[start:], places, others)
 
     def write(self, written: Written, run: Run) -> bool:
-        """Write down what a run of a known shape leaves; False, and nothing done, if a constant is not as it was."""
+        """Write down what a run of a known shape leaves; False, and nothing done, if it cannot be."""
         store, others = self._abox.store, run.others
         if written.constants:
             kinds = written.layout.others[len(others) :]
@@ -167,7 +169,7 @@ class Shapes:
         edges |= {edge: next(place) for edge in values}
         if any(edge not in edges for node in individuals for edge in store.out.all(node)):
             return None
-        if not all(map(self._is_plain, edges)) or not abox.equals.keys().isdisjoint(individuals):
+        if not all(map(abox.is_plain, edges)) or not abox.equals.keys().isdisjoint(individuals):
             return None
         known = [e for e, to in edges.items() if to >= len(places)]
         said = [(store.subject[e], store.predicate[e]) for e in known if store.source[e] != VALUE]
@@ -189,21 +191,10 @@ class Shapes:
         store, predicate = self._abox.store, self._abox.schema.property(triple[1])
         return store.edge(store.numbers[triple[0]], predicate, store.numbers[triple[2]])
 
-    def _is_plain(self, edge: int) -> bool:
-        """Whether nothing follows from an edge but the kinds that its ends have now."""
-        store, is_alone = self._abox.store, self._abox.store.out.is_alone(edge)
-        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
-        if p <= DIFFERENT or store.source[edge] == DERIVED:
-            return False
-        step = self._abox.steps.step(p, store.kind[s], store.kind[o])
-        is_checked = not step.special or (step.of_values and is_alone)
-        return is_checked and (step.rules is None or (step.rules.of_values and is_alone))
-
     def _new_edge(self, edge: int, edges: dict[int, int], individuals: list[int]) -> NewEdge:
         store, out = self._abox.store, self._abox.store.out
         subject = individuals.index(store.subject[edge])
-        is_first = out.before[edge] == NONE  # only the first of a group leads to the next group
-        links = (out.after[edge], out.before[edge], out.group[edge] if is_first else NONE)
+        links = (out.after[edge], out.before[edge], out.group[edge])
         places = [_index(other, edges) for other in links]
         return NewEdge(subject, store.predicate[edge], edges[edge], store.source[edge], *places)
 

@@ -8,7 +8,7 @@ asked for its walls without looking at the parts. Freed numbers are used again.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Set
 from typing import Final, NamedTuple
 
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
@@ -17,7 +17,8 @@ from schemas.explanations import Term
 
 NONE: Final = -1
 BLOCK: Final = 256
-"""Edges that room is made for at once."""
+"""Nodes or edges that room is made for at once."""
+_ROOM: Final = array("i", [NONE]) * BLOCK
 ASSERTED, VALUE, DERIVED = 0, 1, 2
 """Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
 
@@ -26,12 +27,12 @@ class Adjacency:
     """The edges that leave (or enter) each node, in groups of one predicate.
 
     `heads[node]` is the first edge of the node's first group, `group[edge]` leads from there to the first
-    edge of the next group, `after` and `before` within a group.
+    edge of the next group, `after` and `before` within a group. All are NONE for an edge in no list.
     """
 
     __slots__ = ("after", "before", "group", "heads", "predicate")
 
-    def __init__(self, predicate: array[int]) -> None:
+    def __init__(self, predicate: list[int]) -> None:
         self.predicate = predicate
         self.heads = array("i")
         self.after = array("i")
@@ -43,21 +44,19 @@ class Adjacency:
         head = first = self.heads[node]
         if head == NONE:
             self.heads[node] = edge
-            self.before[edge] = self.after[edge] = self.group[edge] = NONE
             return
         column, group = self.predicate, self.group
         while first != NONE and column[first] != predicate:
             first = group[first]
-        self.before[edge] = NONE
         if first == NONE:
-            self.after[edge], group[edge] = NONE, head
+            group[edge] = head
             self.heads[node] = edge
             return
         # behind the first of its group, so that the chain of groups stays as it is
         second = self.after[first]
         self.after[first], self.before[edge] = edge, first
-        self.after[edge] = second
         if second != NONE:
+            self.after[edge] = second
             self.before[second] = edge
 
     def unlink(self, node: int, edge: int) -> None:
@@ -65,21 +64,34 @@ class Adjacency:
         before, after = self.before[edge], self.after[edge]
         if after != NONE:
             self.before[after] = before
+            self.after[edge] = NONE
         if before != NONE:
             self.after[before] = after
+            self.before[edge] = NONE
             return
-        replacement = after
-        if after == NONE:
-            replacement = self.group[edge]
-        else:
-            self.group[after] = self.group[edge]
+        group = self.group
+        next_group = replacement = group[edge]
+        if next_group != NONE:
+            group[edge] = NONE
+        if after != NONE:
+            group[after] = next_group
+            replacement = after
         first = self.heads[node]
         if first == edge:
             self.heads[node] = replacement
             return
-        while self.group[first] != edge:
-            first = self.group[first]
-        self.group[first] = replacement
+        while group[first] != edge:
+            first = group[first]
+        group[first] = replacement
+
+    def clear(self, edge: int) -> None:
+        """Forget the neighbours of an edge whose whole list goes."""
+        if self.after[edge] != NONE:
+            self.after[edge] = NONE
+        if self.before[edge] != NONE:
+            self.before[edge] = NONE
+        if self.group[edge] != NONE:
+            self.group[edge] = NONE
 
     def is_alone(self, edge: int) -> bool:
         """Whether a node has no other edge with the edge's predicate."""
@@ -106,7 +118,7 @@ class Adjacency:
 
 
 class NewEdge(NamedTuple):
-    """An edge of a layout: its ends by place, and its neighbours by their index in the layout, NONE for none."""
+    """An edge of a layout: its ends by place, its neighbours by their index in the layout or NONE."""
 
     subject: int
     predicate: int
@@ -139,9 +151,9 @@ class Store:
         self._kinds = kinds
         self.terms: list[Term] = []
         self.kind: list[Kind] = []
-        self.subject = array("i")
-        self.predicate = array("i")
-        self.object = array("i")
+        self.subject: list[int] = []
+        self.predicate: list[int] = []
+        self.object: list[int] = []
         self.source = bytearray()
         self.out = Adjacency(self.predicate)
         self.into = Adjacency(self.predicate)
@@ -162,23 +174,23 @@ class Store:
         if found is not None:
             return found
         kinds = self._kinds
-        return self._new(term, kinds.literal(term) if is_literal(term) else kinds.individual(term))
-
-    def _new(self, term: Term, kind: Kind) -> int:
-        if self._free_nodes:
-            node = self._free_nodes.pop()
-            self.terms[node], self.kind[node] = term, kind
-        else:
-            node = len(self.terms)
-            self.terms.append(term)
-            self.kind.append(kind)
-            self._places.append(NONE)
-            self.out.heads.append(NONE)
-            self.into.heads.append(NONE)
-        self.numbers[term] = node
+        kind = kinds.literal(term) if is_literal(term) else kinds.individual(term)
+        node = self._free_nodes_for(1).pop()
+        self.terms[node], self.kind[node], self.numbers[term] = term, kind, node
         if kind.mask and kind.excluded is None:
             self.file(node, kind, kind)
         return node
+
+    def _free_nodes_for(self, count: int) -> list[int]:
+        """At least so many free numbers to pop; such nodes are bare and filed nowhere."""
+        free = self._free_nodes
+        while len(free) < count:
+            free.extend(range(len(self.terms) + BLOCK - 1, len(self.terms) - 1, -1))
+            self.terms.extend([""] * BLOCK)
+            self.kind.extend([self._kinds.nothing] * BLOCK)
+            for column in (self._places, self.out.heads, self.into.heads):
+                column.extend(_ROOM)
+        return free
 
     def is_bare(self, node: int) -> bool:
         """Whether a node has no edges."""
@@ -190,11 +202,14 @@ class Store:
         told = kind.excluded is None and kind.given
         if told or not self.is_bare(node):
             return False
-        self.file(node, kind, None)
+        self._forget(node)
+        return True
+
+    def _forget(self, node: int) -> None:
+        self.file(node, self.kind[node], None)
         del self.numbers[self.terms[node]]
         self.terms[node] = ""
         self._free_nodes.append(node)
-        return True
 
     def file(self, node: int, old: Kind, new: Kind | None) -> None:
         """List an individual under its new kind instead of its old one; with None no more."""
@@ -214,60 +229,105 @@ class Store:
 
     def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
         """Store a new edge."""
-        if not self._free_edges:
-            self._make_room()
-        edge = self._free_edges.pop()
+        edge = self._free_edges_for(1).pop()
         self.subject[edge], self.predicate[edge], self.object[edge] = subject, predicate, object_
-        self.source[edge] = source
+        if source != ASSERTED:
+            self.source[edge] = source
         self.out.link(subject, edge, predicate)
         self.into.link(object_, edge, predicate)
         return edge
 
-    def write(self, layout: Layout, individuals: Iterable[Term], others: Iterable[Term]) -> None:
+    def write(self, layout: Layout, individuals: Collection[Term], others: Collection[Term]) -> None:
         """Add new individuals with their edges, all of which leave from them."""
-        new, numbers = self._new, self.numbers
-        nodes = [new(term, kind) for term, kind in zip(individuals, layout.kinds, strict=True)]
-        out, into = self.out, self.into
-        edges = layout.edges
-        while len(self._free_edges) < len(edges):
-            self._make_room()
-        left = len(self._free_edges) - len(edges)
-        ids = self._free_edges[left:]
-        del self._free_edges[left:]
-        ids.append(NONE)  # which is also its index
-        for node, first in zip(nodes, layout.heads, strict=True):
-            out.heads[node] = ids[first]
+        terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self._places
+        free = self._free_nodes_for(len(individuals) + len(others))
+        nodes: list[int] = []
+        free_edges = self._free_edges_for(len(layout.edges))
+        left = len(free_edges) - len(layout.edges)
+        edges = free_edges[left:]
+        del free_edges[left:]
+        edges.append(NONE)  # which is also its index
+        heads = self.out.heads
+        for term, kind, first in zip(individuals, layout.kinds, layout.heads, strict=True):
+            node = free.pop()
+            nodes.append(node)
+            terms[node], kinds[node], numbers[term] = term, kind, node
+            if first != NONE:
+                heads[node] = edges[first]
+            if kind.mask:
+                places[node] = len(kind.nodes)
+                kind.nodes.append(node)
         for term, kind in zip(others, layout.others, strict=True):
             node = numbers.get(term, NONE)
-            nodes.append(new(term, kind) if node == NONE else node)
-        for edge, (s, p, o, source, after, before, group) in zip(ids, edges, strict=False):
+            if node == NONE:
+                node = free.pop()
+                terms[node], kinds[node], numbers[term] = term, kind, node
+            nodes.append(node)
+        subject, predicate, object_ = self.subject, self.predicate, self.object
+        group, heads, link = self.out.group, self.into.heads, self.into.link
+        for edge, (s, p, o, source, after, before, next_group) in zip(edges, layout.edges, strict=False):
             node = nodes[o]
-            self.subject[edge], self.predicate[edge], self.object[edge] = nodes[s], p, node
-            self.source[edge] = source
-            out.after[edge], out.before[edge], out.group[edge] = ids[after], ids[before], ids[group]
-            if into.heads[node] == NONE:
-                into.heads[node] = edge
-                into.after[edge] = into.before[edge] = into.group[edge] = NONE
+            subject[edge], predicate[edge], object_[edge] = nodes[s], p, node
+            if next_group != NONE:
+                group[edge] = edges[next_group]
+            if source != ASSERTED or after != NONE or before != NONE:
+                self.source[edge] = source
+                self.out.after[edge], self.out.before[edge] = edges[after], edges[before]
+            if heads[node] == NONE:
+                heads[node] = edge
             else:
-                into.link(node, edge, p)
+                link(node, edge, p)
 
-    def _make_room(self) -> None:
-        edges = range(len(self.subject), len(self.subject) + BLOCK)
-        room = array("i", [NONE]) * BLOCK
-        for column in (self.subject, self.predicate, self.object):
-            column.extend(room)
-        for side in (self.out, self.into):
-            for column in (side.after, side.before, side.group):
-                column.extend(room)
-        self.source.extend(bytes(BLOCK))
-        self._free_edges.extend(reversed(edges))
+    def _free_edges_for(self, count: int) -> list[int]:
+        """At least so many free numbers to pop; such edges are in no list, and asserted."""
+        free = self._free_edges
+        while len(free) < count:
+            free.extend(range(len(self.subject) + BLOCK - 1, len(self.subject) - 1, -1))
+            for row in (self.subject, self.predicate, self.object):
+                row.extend(_ROOM)
+            for side in (self.out, self.into):
+                for column in (side.after, side.before, side.group):
+                    column.extend(_ROOM)
+            self.source.extend(bytes(BLOCK))
+        return free
 
     def remove(self, edge: int) -> None:
         """Forget an edge."""
         self.out.unlink(self.subject[edge], edge)
         self.into.unlink(self.object[edge], edge)
+        self._free_edge(edge)
+
+    def _free_edge(self, edge: int) -> None:
         self.predicate[edge] = NONE
+        if self.source[edge] != ASSERTED:
+            self.source[edge] = ASSERTED
         self._free_edges.append(edge)
+
+    def turn(self, edge: int, term: Term) -> None:
+        """Let an edge lead to another literal, and forget the old one if nobody has it any more."""
+        old = self.object[edge]
+        self.into.unlink(old, edge)
+        if self.into.heads[old] == NONE:
+            self._forget(old)
+        self.object[edge] = node = self.node(term)
+        self.into.link(node, edge, self.predicate[edge])
+
+    def erase(self, nodes: Set[int], edges: Iterable[int]) -> None:
+        """Forget individuals and all edges that leave from them, where no other enters."""
+        out, into = self.out, self.into
+        for edge in edges:
+            node = self.object[edge]
+            if node in nodes:
+                into.clear(edge)
+            else:
+                into.unlink(node, edge)
+                if into.heads[node] == NONE:
+                    self.release(node)
+            out.clear(edge)
+            self._free_edge(edge)
+        for node in nodes:
+            out.heads[node] = into.heads[node] = NONE
+            self._forget(node)
 
     def edge(self, subject: int, predicate: int, object_: int) -> int:
         """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""

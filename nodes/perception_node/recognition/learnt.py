@@ -105,7 +105,7 @@ def load(path: Path = SHIPPED) -> Learnt:
                 sure=float(text["sure"]),
                 story=text["story"],
             )
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, EOFError, ValueError, KeyError) as error:
         raise BadFile(f"{path} does not hold what recognition learnt: {error}") from None
 
 
