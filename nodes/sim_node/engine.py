@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -26,9 +26,10 @@ class Engine:
     every change of the model.
     """
 
-    def __init__(self, ground: mujoco.MjSpec) -> None:
-        """A world of which nothing but the ground is there yet."""
+    def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles."""
         groundwork.prepare(ground)
+        self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
@@ -164,7 +165,7 @@ class Engine:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
         time = self.data.time if self.revision else 0.0
-        self.model = spec.compile()
+        self.model = build.compiled(spec, self._meanwhile)
         self.data = mujoco.MjData(self.model)
         self.data.time = time
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}

@@ -35,9 +35,19 @@ class World:
     Positions are bottom centres in the map frame, which is MuJoCo's world frame. One thread owns a World.
     """
 
-    def __init__(self, mjcf: Path | None = None, *, models: ModelSource = library_model) -> None:
-        """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile."""
-        self._engine = Engine(groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor())
+    def __init__(
+        self,
+        mjcf: Path | None = None,
+        *,
+        models: ModelSource = library_model,
+        meanwhile: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile.
+
+        `meanwhile` is called again and again while something takes its time.
+        """
+        ground = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
+        self._engine = Engine(ground, meanwhile)
         self._models = models
         self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
