@@ -56,6 +56,10 @@ class Engine:
         """Whether there is a body of this name, or a part of one of the world's own."""
         return name in self.records or self._ground.body(name) is not None
 
+    def shape(self, name: str) -> Model | None:
+        """The model that a body was made from; None for the world's own, and for one that is not there."""
+        return self._shapes.get(name)
+
     # bodies come, go and change
 
     def add(self, newcomers: Sequence[tuple[BodyRecord, Model]]) -> None:
