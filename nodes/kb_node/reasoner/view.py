@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from itertools import chain
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.axioms import DIFFERENT, SAME
-from nodes.kb_node.reasoner.store import ASSERTED, NONE
+from nodes.kb_node.reasoner.store import ASSERTED
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
 from schemas.explanations import Term, Triple
 
