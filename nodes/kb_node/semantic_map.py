@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
 
 from nodes.kb_node import entities, rdf_files, tboxes
 from nodes.kb_node.classes import ClassTable
+from nodes.kb_node.entities import About
 from nodes.kb_node.journal import Checkpoint, Journal, Marks, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
@@ -122,7 +123,7 @@ class SemanticMap:
         self._require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
         retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
-        inserted = tuple(t for t in wanted if t not in held)
+        inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
         if not retracted and not inserted:
             return None
         for triple in retracted:
@@ -204,14 +205,16 @@ class SemanticMap:
 
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
-        named = {*transaction.require, *transaction.retract, *transaction.insert}
+        groups = transaction.require, transaction.retract, transaction.insert
+        known = set(filter(self.reasoner.mentions, {s for triples in groups for s, _, _ in triples}))
         held: set[Triple] = set()
         many: set[Term] = set()
-        for subject in {s for s, _, _ in named}:
+        for subject in known:
             said = list(islice(self.reasoner.asserted(subject), _FEW))
             held.update(said)
             if len(said) == _FEW:
                 many.add(subject)
+        named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
         return {t for t in named if t in held or (t[0] in many and self.has(t))}
 
     def _is_subject(self, term: Term) -> bool:
@@ -288,7 +291,7 @@ class SemanticMap:
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), concerned)
+            commit = self._with_effects(commit, set(), concerned, self.reasoner.about)
             make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes = before
@@ -297,10 +300,13 @@ class SemanticMap:
 
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        owners = self._owners(commit)
+        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
+        known = set(filter(self.reasoner.mentions, subjects))
+        owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change.touched)
+            about = entities.about(self.reasoner, commit.inserted, subjects - known)
+            commit = self._with_effects(commit, owners, change.touched, about)
             make_durable(commit)
         except BaseException:
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
@@ -320,22 +326,22 @@ class SemanticMap:
         self._show(commit.changed)
         return commit
 
-    def _owners(self, commit: Commit) -> set[Term]:
-        """Whose stars the commit's triples belong to, before it and after it.
+    def _with_effects(
+        self, commit: Commit, owners: Set[Term], touched: Set[Term], about: About
+    ) -> Commit:
+        """`commit` with the entities that it changed and those that it removed.
 
-        Who comes to own a node only by the commit is itself a subject of its triples.
+        `owners` are those to whose stars its triples belong, before it or after it.
         """
-        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
-        return {owner for s in subjects for owner in entities.owners(self.reasoner, s)}
-
-    def _with_effects(self, commit: Commit, owners: set[Term], touched: Iterable[Term]) -> Commit:
-        """`commit` with the entities that it changed and those that it removed."""
         changed: dict[str, Entity] = {}
         removed: list[Departed] = []
-        for iri in sorted(owners.union(touched)):
+        provenance = commit.provenance
+        types, spatial = self.reasoner.types, self.classes.spatial
+        concerned = (i for i in owners | touched if self._known(i) or not types(i).isdisjoint(spatial))
+        for iri in sorted(concerned):
             known = self._known(iri)
             self._progress()
-            entity = self._read(iri, commit.provenance)
+            entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []
                 continue

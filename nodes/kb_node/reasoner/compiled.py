@@ -168,6 +168,18 @@ class CompiledEngine:
             if triple in self._schema_triples:
                 yield triple
 
+    def about(self, subject: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject: predicate to objects."""
+        objects = self._view.about(subject)
+        for triple in self._schema.closure.match(subject):
+            if triple in self._schema_triples:
+                objects.setdefault(triple[1], []).append(triple[2])
+        return objects
+
+    def mentions(self, term: Term) -> bool:
+        """Whether a triple has a term as its subject or object."""
+        return term in self._abox.store.numbers or bool(self._schema.closure.match(term))
+
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted.
 

@@ -86,6 +86,14 @@ class Reasoner:
         """The asserted triples of a pattern."""
         return self._engine.asserted(s, p, o)
 
+    def about(self, subject: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
+        return self._engine.about(subject)
+
+    def mentions(self, term: Term) -> bool:
+        """Whether a triple may have a term as its subject or object: what is not mentioned is new."""
+        return self._engine.mentions(term)
+
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
