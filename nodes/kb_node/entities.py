@@ -48,8 +48,9 @@ def read_entity(
 ) -> Entity | None:
     """The Entity that the triples about `iri` describe, all of it by `provenance`; None if it is no entity.
 
-    `about` is where to look the triples up, if not in the reasoner. Raises BadRequest for an entity that cannot be named, or whose star makes no sense: a number that is none,
-    is not finite or is out of all bounds, a size that is not positive.
+    `about` is where to look the triples up, if not in the reasoner. Raises BadRequest for an entity that
+    cannot be named, or whose star makes no sense: a number that is none, is not finite or is out of all
+    bounds, a size that is not positive.
     """
     types = reasoner.types(iri)
     if types.isdisjoint(classes.spatial):
@@ -173,7 +174,7 @@ def _pose(about: About, iri: Term, nodes: Collection[Term]) -> Pose | None:
     position = [_number(iri, p, said) for p in v.COORDINATE_XYZ]
     if None in position:
         return None
-    orientation = [_number(iri, p, said) for p in v.ORIENTATION_WXYZ]
+    orientation = [_number(iri, p, said) if p in said else None for p in v.ORIENTATION_WXYZ]
     if None in orientation:
         return Pose(position_m=tuple(position))  # type: ignore[arg-type]
     try:
@@ -198,7 +199,7 @@ def _number(iri: Term, predicate: Term, said: Objects) -> float | None:
     terms = said.get(predicate)
     if not terms:
         return None
-    term = min(terms)
+    [term] = terms if len(terms) == 1 else [min(terms)]
     try:
         value = float(term[1 : term.rindex('"')]) if term[0] == '"' else math.nan
     except ValueError:

@@ -20,8 +20,8 @@ from msgspec import Struct
 
 from schemas import codec, errors
 from schemas.commits import Commit
-from schemas.entities import Provenance
-from schemas.explanations import Term, Triple
+from schemas.entities import Entity
+from schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
 
@@ -62,24 +62,14 @@ class Damaged(errors.Refused):
         self.last_good = seq - 1
 
 
-class Marks(Struct, frozen=True, array_like=True):
-    """The commits that last changed an entity at all, its pose, its class or size, what it is called."""
-
-    any: int
-    pose: int
-    shape: int
-    references: int
-
-
 class Checkpoint(Struct, frozen=True, kw_only=True):
     """The ABox after commit `seq`: start-up replays only what came later."""
 
     seq: int
     triples: tuple[Triple, ...] = ()
-    marks: dict[Term, Marks] = {}
-    """Entity to its marks."""
-    commits: dict[int, Provenance] = {}
-    """The commits that `marks` name."""
+    entities: tuple[Entity, ...] = ()
+    read_by: bytes = b""
+    """The code that read the entities from the triples."""
 
 
 class Journal:
