@@ -17,6 +17,8 @@ T = TypeVar("T")
 
 DENSE_FROM: Final = 64 << 20
 """Bytes; Zenoh carries messages of up to 256 MB, and a map of a million triples is more."""
+LARGEST: Final = 4 << 30
+"""Bytes that a message may unfold to."""
 _DENSE: Final = b"x"
 """How zlib's format begins, and no MessagePack map."""
 _encoder = msgspec.msgpack.Encoder()
@@ -46,13 +48,25 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
         if looks_like_json(payload):
             return msgspec.json.decode(payload, type=kind)
         if payload[:1] == _DENSE:
-            payload = zlib.decompress(payload)
+            payload = _unfolded(payload)
         decoder = _decoders.get(kind)
         if decoder is None:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
         return decoder.decode(payload)  # type: ignore[no-any-return]
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, zlib.error) as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+
+
+def _unfolded(payload: bytes) -> bytes:
+    unfolding = zlib.decompressobj()
+    try:
+        content = unfolding.decompress(payload, LARGEST)
+    except zlib.error as error:
+        raise BadRequest(f"malformed message: it is no valid MessagePack, JSON or zlib: {error}") from None
+    if not unfolding.eof:
+        reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
+        raise BadRequest(f"malformed message: it {reason}")
+    return content
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:

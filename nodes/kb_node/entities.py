@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
@@ -24,7 +24,7 @@ _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
-Objects = Mapping[Term, Collection[Term]]
+Objects = Mapping[Term, Sequence[Term]]
 """What is asserted of a subject: predicate to objects."""
 About = Callable[[Term], Objects]
 
@@ -167,52 +167,58 @@ def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 
-def _pose(about: About, iri: Term, nodes: Collection[Term]) -> Pose | None:
+def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:
     if not nodes:
         return None
     said = about(min(nodes))
-    position = [_number(iri, p, said) for p in v.COORDINATE_XYZ]
-    if None in position:
+    position = _numbers(iri, v.COORDINATE_XYZ, said)
+    if position is None:
         return None
-    orientation = [_number(iri, p, said) if p in said else None for p in v.ORIENTATION_WXYZ]
-    if None in orientation:
-        return Pose(position_m=tuple(position))  # type: ignore[arg-type]
+    orientation = _numbers(iri, v.ORIENTATION_WXYZ, said)
+    if orientation is None:
+        return Pose(position_m=position)  # type: ignore[arg-type]
     try:
-        return Pose(position_m=tuple(position), orientation_wxyz=tuple(orientation))  # type: ignore[arg-type]
+        return Pose(position_m=position, orientation_wxyz=orientation)  # type: ignore[arg-type]
     except ValueError as error:
         raise errors.BadRequest(f"{v.local_name(iri)}: {error}") from None
 
 
-def _size(about: About, iri: Term, nodes: Collection[Term]) -> tuple[float, float, float] | None:
+def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float, float] | None:
     if not nodes:
         return None
-    said = about(min(nodes))
-    size = [_number(iri, p, said) for p in v.SIZE_XYZ]
-    if None in size:
+    size = _numbers(iri, v.SIZE_XYZ, about(min(nodes)))
+    if size is not None and min(size) <= 0:
+        raise errors.BadRequest(f"{v.local_name(iri)}: the size {size} must be positive")
+    return size  # type: ignore[return-value]
+
+
+def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[float, ...] | None:
+    """One number a predicate; None where one is missing."""
+    if said.keys().isdisjoint(predicates):
         return None
-    if any(extent <= 0 for extent in size):  # type: ignore[operator]
-        raise errors.BadRequest(f"{v.local_name(iri)}: the size {tuple(size)} must be positive")
-    return tuple(size)  # type: ignore[return-value]
+    found: list[float] = []
+    for predicate in predicates:
+        terms = said.get(predicate, ())
+        if not terms:
+            continue
+        term = terms[0] if len(terms) == 1 else min(terms)
+        try:
+            value = float(term[1 : term.rindex('"')]) if term[0] == '"' else math.nan
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= REACH_M:
+            text = v.lexical(term) if term[0] == '"' else v.local_name(term)
+            raise errors.BadRequest(
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {text}; it must be a number"
+                f" from -{REACH_M:g} to {REACH_M:g}"
+            )
+        found.append(value)
+    return tuple(found) if len(found) == len(predicates) else None
 
 
-def _number(iri: Term, predicate: Term, said: Objects) -> float | None:
-    terms = said.get(predicate)
-    if not terms:
-        return None
-    [term] = terms if len(terms) == 1 else [min(terms)]
-    try:
-        value = float(term[1 : term.rindex('"')]) if term[0] == '"' else math.nan
-    except ValueError:
-        value = math.nan
-    if not abs(value) <= REACH_M:
-        text = v.lexical(term) if term.startswith('"') else v.local_name(term)
-        raise errors.BadRequest(
-            f"{v.local_name(iri)}: {v.local_name(predicate)} is {text}; it must be a number"
-            f" from -{REACH_M:g} to {REACH_M:g}"
-        )
-    return value
-
-
-def _references(about: About, nodes: Collection[Term]) -> list[str]:
-    texts = (sorted(about(node).get(v.LEXICAL_REFERENCE, ())) for node in sorted(nodes))
-    return [v.lexical(text) for some in texts for text in some if text.startswith('"')]
+def _references(about: About, nodes: Sequence[Term]) -> list[str]:
+    found: list[str] = []
+    for node in sorted(nodes):
+        texts = sorted(about(node).get(v.LEXICAL_REFERENCE, ()))
+        found += [v.lexical(text) for text in texts if text[0] == '"']
+    return found

@@ -384,7 +384,7 @@ class SemanticMap:
 
 @contextmanager
 def _uncollected() -> Iterator[None]:
-    """No garbage collection: a change of a map makes much and drops little, which is looked through in vain."""
+    """No garbage collection: a change of the map makes much and drops little."""
     was_on = gc.isenabled()
     gc.disable()
     try:

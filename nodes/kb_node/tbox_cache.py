@@ -24,16 +24,29 @@ def reasoner(tbox: Collection[Triple], folder: Path) -> Reasoner:
 
     What is in `folder` counts only for the same triples and the same code, and if it is not damaged.
     """
+    closed = _read(_path(tbox, folder))
+    found = Reasoner(tbox, closed=closed)
+    if closed is None:
+        keep(found.closed, tbox, folder)
+    return found
+
+
+def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
+    """Write down the closure of a TBox, if it has one of its own and the folder takes it."""
+    if closed is None:
+        return
+    body = zlib.compress(pack(closed), 1)
+    with suppress(OSError):  # then the next start works it out again
+        for old in folder.glob(f"*{_SUFFIX}"):
+            old.unlink(missing_ok=True)
+        _path(tbox, folder).write_bytes(_digest(body) + body)
+
+
+def _path(tbox: Collection[Triple], folder: Path) -> Path:
     name = hashlib.blake2b(fingerprint.of_code(), digest_size=_DIGEST_BYTES)
     for triple in sorted(tbox):
         name.update("\n".join(triple).encode())
-    path = folder / f"{name.hexdigest()}{_SUFFIX}"
-    closed = _read(path)
-    found = Reasoner(tbox, closed=closed)
-    if closed is None and found.closed is not None:
-        with suppress(OSError):  # then the next start works it out again
-            _write(path, found.closed)
-    return found
+    return folder / f"{name.hexdigest()}{_SUFFIX}"
 
 
 def _read(path: Path) -> Facts | None:
@@ -43,13 +56,6 @@ def _read(path: Path) -> Facts | None:
         return unpack(zlib.decompress(body)) if content == _digest(body) + body else None
     except (OSError, zlib.error, MsgspecError):
         return None
-
-
-def _write(path: Path, closed: Facts) -> None:
-    for old in path.parent.glob(f"*{_SUFFIX}"):
-        old.unlink(missing_ok=True)
-    body = zlib.compress(pack(closed), 1)
-    path.write_bytes(_digest(body) + body)
 
 
 def _digest(body: bytes) -> bytes:
