@@ -15,7 +15,8 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from demo.checks import check_export, check_picture, check_recording
@@ -82,6 +83,21 @@ class Tour:
         status = self.ask("status")
         assert isinstance(status, dict)
         return next(int(n["pid"]) for n in status["nodes"] if n["node"] == node)
+
+    @contextmanager
+    def watching(self, *words: str, shows: tuple[str, ...]) -> Iterator[None]:
+        """Watch meanwhile, and show what was seen: a line with each of `shows`, in this order."""
+        watch = self.background(*words)
+        time.sleep(2.0)
+        yield
+        time.sleep(1.0)
+        watch.send_signal(signal.SIGINT)
+        print(f"$ {shlex.join(('semmap', *words))}")
+        lines = watch.communicate()[0].splitlines()
+        print(*lines, sep="\n", flush=True)
+        rest = iter(lines)
+        if not all(any(text in line for line in rest) for text in shows):
+            self.failures.append(f"{' '.join(words)} did not show {', '.join(shows)}")
 
     def _show(self, words: list[str], status: int, holds: str) -> str:
         print(f"$ {shlex.join(words)}", flush=True)
@@ -156,17 +172,28 @@ def tour(t: Tour) -> None:
     )
     t.until("the put was executed", lambda: t.ask("get", "beer7")["preferred_reference"] == "my beer")  # type: ignore[index]
 
-    t.tell("Watch changes as they happen")
-    watching = t.background("watch")
-    time.sleep(1.5)
-    t.do("add", "Apple", "apple9", "--at", "1.3", "1.3", "0")
-    t.do("remove", "apple9")
-    time.sleep(0.5)
-    watching.send_signal(signal.SIGINT)
-    seen = watching.communicate()[0]
-    print(seen, end="")
-    if seen.count("apple9") < 2:
-        t.failures.append("watch did not show the coming and going of apple9")
+    t.tell("Watch changes as they happen, and the answer of a question as it changes")
+    with (
+        t.watching("watch", shows=("apple9",) * 2),
+        t.watching("watch", "--sparql", "SELECT ?f { ?f a dm:Fruit }", "--inferred", shows=("+", "-")),
+    ):
+        t.do("add", "Apple", "apple9", "--at", "1.3", "1.3", "0")
+        t.do("remove", "apple9")
+
+    t.tell("Ask in SPARQL")
+    t.do("sparql", "SELECT ?s { ?s a dm:Seat }", "--inferred", holds="chair1")
+    t.do("sparql", "INSERT DATA { :a a :b }", status=1, holds="update")
+
+    t.tell("The past: what was, who said so, and back again")
+    t.do("history", "beer7", holds="add Beer beer7")
+    t.do("list", "--class", "Beer", "--as-of", "1")
+    t.do("last-seen", "apple9", holds="remove")
+    t.do("add", "Vase", "vase9", "--at", "8.3", "2.2", "0.76")
+    t.do("undo", holds="took back")
+    t.do("get", "vase9", status=1)
+
+    t.tell("Other classes at run time: a file that takes classes away that the map needs is refused")
+    t.do("load", "--tbox", "demo/garden.ttl", status=1, holds="does not fit")
 
     t.tell("The entity list as other systems read it")
     t.do("list", "--class", "Beer", "--format", "lu4r", holds='"atom": "beer7"')

@@ -3,7 +3,9 @@
 What was learnt by measuring (Zenoh 1.10.2): a session that has a Python callback keeps the process from
 exiting until it is closed, so sessions are context managers; a `get` that finds nobody comes back empty
 at once, so an empty answer is asked again until patience ends, and never read as an answer; a time-out
-comes as an error reply that is not ours.
+comes as an error reply that is not ours. The callback of a `get` is given a thread of its own unless it is
+declared direct, which takes longer than the whole round trip; and replies wait for the end of the query
+unless they need not be consolidated.
 """
 
 from __future__ import annotations
@@ -13,13 +15,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, NoReturn
 
 import zenoh
 from zenoh import ext
 
 from schemas import codec, errors, keys
 from schemas.commands import Document
+from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PATIENCE_S = 3.0
@@ -27,6 +30,20 @@ TIMEOUT_S = 30.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _JSON = "application/json"
+_AS_THEY_COME = zenoh.ConsolidationMode.NONE
+
+
+@dataclass(frozen=True)
+class Encoded:
+    """A message as it came, to be passed on."""
+
+    payload: zenoh.ZBytes
+    encoding: zenoh.Encoding
+    kind: Any
+
+    def decode(self) -> Any:
+        """The message, of type `kind`. Raises BadRequest."""
+        return codec.decode(self.payload.to_bytes(), self.kind)
 
 
 @dataclass(frozen=True)
@@ -102,11 +119,13 @@ def ask(
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline = time.monotonic() + patience_s
     while True:
-        replies = session.get(key, payload=payload, encoding=encoding, timeout=timeout_s)
+        replies = session.get(
+            key, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+        )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
-            return read_reply(key, reply, kind, timeout_s)
+            return read_reply(key, reply, kind, timeout_s).decode()
         if time.monotonic() > deadline:
-            raise _nobody(key)
+            _nobody(key)
         time.sleep(0.05)
 
 
@@ -129,40 +148,77 @@ def ask_later(
     verb: str,
     message: Any,
     kind: Any,
-    answer: Callable[[Any], None],
+    answer: Callable[[Callable[[], Any]], None],
     *,
     timeout_s: float = TIMEOUT_S,
 ) -> None:
-    """Like `ask`, without waiting: `answer` gets the reply or the error, once, on a thread of Zenoh's."""
+    """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
+
+    It is called once, on the thread with which Zenoh receives everything, so it should only queue.
+    """
+    _ask_later(session, prefix, verb, message, kind, lambda read: answer(lambda: read().decode()), timeout_s)
+
+
+def relay(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    request: Request,
+    *,
+    timeout_s: float = TIMEOUT_S,
+) -> None:
+    """Answer `request` with what `prefix/verb` answers to `message`, as it comes and without waiting."""
+
+    def answer(read: Callable[[], Encoded]) -> None:
+        try:
+            request.reply(read())
+        except errors.SemmapError as error:
+            request.refuse(error)
+
+    _ask_later(session, prefix, verb, message, kind, answer, timeout_s)
+
+
+def _ask_later(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    answer: Callable[[Callable[[], Encoded]], None],
+    timeout_s: float,
+) -> None:
     key = f"{prefix}/{verb}"
-    answers: list[Any] = []
+    waiting = [answer]
 
     def on_reply(reply: zenoh.Reply) -> None:
-        try:
-            answers.append(read_reply(key, reply, kind, timeout_s))
-        except errors.SemmapError as error:
-            answers.append(error)
+        if waiting:
+            waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
 
     def on_end() -> None:
-        answer(answers[0] if answers else _nobody(key))
+        if waiting:
+            waiting.pop()(lambda: _nobody(key))
 
-    handler = zenoh.handlers.Callback(on_reply, on_end)
+    handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    session.get(key, handler, payload=payload, encoding=encoding, timeout=timeout_s)
+    session.get(
+        key, handler, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+    )
 
 
-def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Any:
-    """The message of a reply; raises the error that it carries."""
+def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
+    """The message of a reply, of type `kind`; raises the error that it carries."""
     if reply.ok is not None:
-        return codec.decode(reply.ok.payload.to_bytes(), kind)
+        return Encoded(reply.ok.payload, reply.ok.encoding, kind)
     assert reply.err is not None
     if str(reply.err.encoding) != _ERROR_ENCODING:
         raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
     raise errors.from_message(codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage))
 
 
-def _nobody(key: str) -> errors.NoAnswer:
-    return errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
+def _nobody(key: str) -> NoReturn:
+    raise errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
 
 
 @dataclass(frozen=True)
@@ -184,7 +240,7 @@ class Request:
         return codec.from_text(parameters, kind)
 
     def reply(self, message: Any) -> None:
-        """Answer it."""
+        """Answer it, with a message or one that is `Encoded` already."""
         self.send(message, True)
 
     def refuse(self, error: errors.SemmapError) -> None:
@@ -200,7 +256,13 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
     key = f"{prefix}/{verb}" if "*" not in verb else prefix
 
     def send(message: Any, ok: bool) -> None:
-        if as_json and isinstance(message, Document):
+        content: Any
+        encoding: Any
+        if as_json and isinstance(message, Encoded):
+            message = message.decode()
+        if isinstance(message, Encoded):
+            content, encoding = message.payload, message.encoding
+        elif as_json and isinstance(message, Document):
             content, encoding = message.content, message.media_type
         elif as_json:
             content, encoding = codec.encode_json(message), _JSON
@@ -231,6 +293,7 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
+            message = message.decode() if isinstance(message, Encoded) else message
             body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
             acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
 
@@ -292,6 +355,27 @@ def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, An
         on_sample,
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
     )
+
+
+def follow_cameras(
+    session: zenoh.Session,
+    plane: Literal["rgb", "depth"],
+    receive: Callable[[CameraFrame, Callable[[], bytes]], None],
+    refuse: Callable[[str], None],
+) -> None:
+    """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
+
+    On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
+    """
+
+    def on_sample(sample: zenoh.Sample) -> None:
+        try:
+            attached = sample.attachment.to_bytes() if sample.attachment is not None else b""
+            receive(codec.decode(attached, CameraFrame), sample.payload.to_bytes)
+        except errors.BadRequest as error:
+            refuse(f"{sample.key_expr}: {error.text}")
+
+    session.declare_subscriber(keys.camera_key("*", plane), on_sample)
 
 
 def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:

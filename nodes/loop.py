@@ -6,7 +6,9 @@ it is logged, answered, shown in the heartbeat, and the node lives on.
 
 from __future__ import annotations
 
+import heapq
 import logging
+import math
 import os
 import queue
 import signal
@@ -14,7 +16,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
-from typing import Any, Literal
+from itertools import count
+from typing import Any, Literal, NamedTuple
 
 import zenoh
 
@@ -25,9 +28,21 @@ from schemas.health import Health
 log = logging.getLogger(__name__)
 
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
-"""Verb to (type of the message, function of the message). A function may return a Future."""
+"""Verb to (type of the message, function of the message). A function may return a Future, or a Relay."""
+
+
+class Relay(NamedTuple):
+    """A reply that another node gives: that to `message` at `prefix/verb`, of type `kind`."""
+
+    prefix: str
+    verb: str
+    message: Any
+    kind: Any
+    timeout_s: float
+
 
 HEARTBEAT_S = 1.0
+_AGAIN_S = 0.05
 
 
 class Node:
@@ -37,7 +52,8 @@ class Node:
         self.name = name
         self.session = session
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._timers: list[tuple[float, Callable[[], None]]] = []
+        self._timers: list[tuple[float, int, Callable[[], None]]] = []
+        self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
         self._stopping = False
         self._started_ns = time.time_ns()
@@ -63,7 +79,18 @@ class Node:
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""
-        self._timers.append((period_s, handle))
+        due_s = time.monotonic()
+
+        def repeat() -> None:
+            nonlocal due_s
+            due_s = max(due_s + period_s, time.monotonic())
+            self._at(due_s, repeat)
+            handle()
+
+        self._at(due_s, repeat)
+
+    def _at(self, due_s: float, handle: Callable[[], None]) -> None:
+        heapq.heappush(self._timers, (due_s, next(self._timer_numbers), handle))
 
     def when_idle(self, handle: Callable[[], None]) -> None:
         """Call `handle()` each time that no event waits: what handlers have put off is done then."""
@@ -76,15 +103,39 @@ class Node:
         meanwhile = self.beat if beating else None
         return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
 
-    def ask_later(self, prefix: str, verb: str, message: Any, kind: Any, **limits: float) -> Future[Any]:
-        """Like `ask`, without waiting; the future is resolved on this node's own thread."""
+    def ask_later(
+        self, prefix: str, verb: str, message: Any, kind: Any, *, patience_s: float = 0.0, **limits: float
+    ) -> Future[Any]:
+        """Like `ask`, without waiting; the future is resolved on this node's own thread.
+
+        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key.
+        """
         future: Future[Any] = Future()
+        deadline_s = time.monotonic() + patience_s
 
-        def answer(reply: Any) -> None:
-            self._events.put(lambda: _resolve(future, reply))
+        def send() -> None:
+            bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
 
-        bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
+        def answer(read: Callable[[], Any]) -> None:
+            self._events.put(lambda: take(read))
+
+        def take(read: Callable[[], Any]) -> None:
+            try:
+                future.set_result(read())
+            except errors.NoAnswer as error:
+                if (now_s := time.monotonic()) < deadline_s:
+                    self._at(now_s + _AGAIN_S, send)
+                else:
+                    future.set_exception(error)
+            except Exception as error:
+                future.set_exception(error)
+
+        send()
         return future
+
+    def soon(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` on this node's own thread. Other threads hand over their results so."""
+        self._events.put(handle)
 
     def beat(self) -> None:
         """Send the heartbeat if it is due. Long work calls this between its steps."""
@@ -128,18 +179,16 @@ class Node:
 
     def run(self) -> None:
         """Handle events until stopped."""
-        due = [0.0] * len(self._timers)
         while not self._stopping:
             now = time.monotonic()
-            for i, (period_s, handle) in enumerate(self._timers):
-                if now >= due[i]:
-                    due[i] = max(due[i] + period_s, now)
-                    self._guard(handle)
+            while self._timers and self._timers[0][0] <= now:
+                self._guard(heapq.heappop(self._timers)[-1])
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
             self.beat()
-            wait_s = max(0.0, min([self._beat_due, *due]) - time.monotonic())
+            due_s = min(self._beat_due, self._timers[0][0] if self._timers else math.inf)
+            wait_s = max(0.0, due_s - time.monotonic())
             try:
                 self._guard(self._events.get(timeout=wait_s))
             except queue.Empty:
@@ -169,14 +218,20 @@ class Node:
             self._refuse(request, error)
             return
         if isinstance(result, Future):
-            result.add_done_callback(lambda future: self._answer(request, future))
+            result.add_done_callback(lambda future: self._answer_later(request, future))
+        else:
+            self._answer(request, result)
+
+    def _answer(self, request: bus.Request, result: Any) -> None:
+        if isinstance(result, Relay):
+            bus.relay(self.session, *result[:-1], request, timeout_s=result.timeout_s)
         else:
             request.reply(result)
 
-    def _answer(self, request: bus.Request, future: Future[Any]) -> None:
+    def _answer_later(self, request: bus.Request, future: Future[Any]) -> None:
         error = future.exception()
         if error is None:
-            request.reply(future.result())
+            self._answer(request, future.result())
         else:
             self._refuse(request, error)
 
@@ -188,13 +243,6 @@ class Node:
                 f"a fault in {self.name}, which goes on: {type(error).__name__}: {error}"
             )
         request.refuse(error)
-
-
-def _resolve(future: Future[Any], reply: Any) -> None:
-    if isinstance(reply, errors.SemmapError):
-        future.set_exception(reply)
-    else:
-        future.set_result(reply)
 
 
 def settle(future: Future[Any], execute: Callable[[], Any]) -> None:

@@ -171,6 +171,9 @@ CONTAINING: Final = dm("containing")
 SUPPORTING: Final = dm("supporting")
 IS_LOCATED_IN: Final = dm("isLocatedIn")
 
+CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
+"""Annotation of an entity: what perception sees against what the map says of it."""
+
 MODEL: Final = dm("model")
 """Annotation of a class: the name or file of its body model."""
 FIXED: Final = dm("fixed")

@@ -20,6 +20,7 @@ from schemas.entities import (
     Probability,
     Provenance,
     Quaternion,
+    Remark,
     Size,
     Source,
     Text,
@@ -75,7 +76,10 @@ class Add(Command, frozen=True, kw_only=True, tag="add"):
 
 
 class Update(Command, frozen=True, kw_only=True, tag="update"):
-    """Change what is named; what is not named stays. `alt` replaces all alternative references."""
+    """Change what is named; what is not named stays. `alt` replaces all alternative references.
+
+    `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
+    """
 
     name: str
     class_: ClassName | None = field(name="class", default=None)
@@ -85,6 +89,7 @@ class Update(Command, frozen=True, kw_only=True, tag="update"):
     size: Size | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] | None = None
+    conflict: Remark | None = None
     confidence: Probability | None = None
     wait: bool = False
 

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from schemas.entities import CommandId, Entity, Probability, Provenance, Source
+from schemas.entities import Angle, CommandId, Entity, Probability, Provenance, Quaternion, Source, Vector
 from schemas.explanations import Term, Triple
+
+
+class Placed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where an entity is from now on; what is not given stays as it is."""
+
+    name: str
+    at: Vector | None = None
+    yaw: Angle | None = None
+    orientation: Quaternion | None = None
 
 
 class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -14,6 +23,9 @@ class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
     `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
     a second time changes nothing and is answered with the first commit.
+
+    `placed` are entities (`UnknownName` without one) that are somewhere else now; the knowledge base itself
+    says so in triples, because it knows their coordinates.
 
     `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
     settling). `undoes` are the commits that it takes back.
@@ -26,6 +38,7 @@ class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     reason: str = ""
     confidence: Probability | None = None
     undoes: tuple[int, ...] = ()
+    placed: tuple[Placed, ...] = ()
     require: tuple[Triple, ...] = ()
     vacant: tuple[Term, ...] = ()
     retract: tuple[Triple, ...] = ()

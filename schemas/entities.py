@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Container
 from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
@@ -21,6 +23,7 @@ Length = Annotated[float, Meta(gt=0.0, le=REACH_M)]
 Unit = Annotated[float, Meta(ge=-1.001, le=1.001)]
 Angle = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Text = Annotated[str, Meta(min_length=1, max_length=1000)]
+Remark = Annotated[str, Meta(max_length=1000)]
 Probability = Annotated[float, Meta(ge=0.0, le=1.0)]
 
 Vector = tuple[Metres, Metres, Metres]
@@ -55,6 +58,16 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Rotation about the map's z axis, in (-pi, pi]."""
         w, x, y, z = self.orientation_wxyz
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def free_name(class_name: str, taken: Container[str]) -> str:
+    """The class in lower case and the first number that is free: `chair1`."""
+    stem = re.sub(r"[^a-z0-9_.-]", "", class_name.lower())
+    stem = stem if stem[:1].isalpha() else f"_{stem}"
+    number = 1
+    while f"{stem}{number}" in taken:
+        number += 1
+    return f"{stem}{number}"
 
 
 def orientation_from_yaw(yaw_rad: float) -> Quaternion:
@@ -96,7 +109,8 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     `present`: it stands there. `ghost`: seen but not colliding, because something else fills the place.
     `pending`: not spawned yet. `failed`: cannot be made, `detail` says why. `missing`: the scene, which is
-    the truth here, does not have it. `none`: places have no bodies. `unknown`: no simulator runs.
+    the truth here, does not have it. `none`: it is not to have one (a place; or only perception tells the
+    map). `unknown`: no simulator runs.
     """
 
     status: Literal["present", "ghost", "pending", "failed", "missing", "none", "unknown"]
@@ -121,6 +135,8 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     size_m: Size | None = None
     preferred_reference: str | None = None
     alternative_references: tuple[str, ...] = ()
+    conflict: str = ""
+    """What perception sees against this, kept beside it because an operator said it; empty for nothing."""
     place: bool = False
     fixed: bool = False
     model: str = ""

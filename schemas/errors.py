@@ -139,6 +139,7 @@ def from_message(message: ErrorMessage) -> SemmapError:
 
 SKIP_UNKNOWN = "; --skip-unknown leaves these out"
 _FEW = 10
+_MANY = 30
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -163,10 +164,10 @@ def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str])
 
 
 def _unknown(one: str, many: str, users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
-    known = list(known)
-    said = [f"'{name}' (of {_some(whose)}{did_you_mean(name, known)})" for name, whose in users.items()]
-    return f"unknown {one if len(said) == 1 else many} {', '.join(said)}"
+    known, few = list(known), max(1, _FEW // len(users))
+    said = [f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()]
+    return f"unknown {one if len(said) == 1 else many} {_some(said, _MANY)}"
 
 
-def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:_FEW]) + (f" and {len(names) - _FEW} more" if len(names) > _FEW else "")
+def _some(names: Sequence[str], few: int) -> str:
+    return ", ".join(names[:few]) + (f" and {len(names) - few} more" if len(names) > few else "")

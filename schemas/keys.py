@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 from schemas.commits import Commit
 from schemas.entities import Entity
 from schemas.health import Health
+from schemas.perception import Observations, SegmentedCloud
 from schemas.scenes import Poses
 from schemas.sparql import RowsChanged
 
@@ -20,8 +21,10 @@ CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
 
-NODES = ("kb_node", "coordinator", "sim_node", "recorder")
-"""The nodes that `semmap up` starts, in the order of starting."""
+PERCEPTION = f"{ROOT}/perception"
+
+NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
+"""The nodes that `semmap up` can start."""
 
 
 class Topic(NamedTuple):
@@ -38,9 +41,12 @@ ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
 CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
+SEGMENTS = Topic(f"{SIM}/camera/*/segments", bytes, "newest")
+OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
+CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, ENTITY, QUERY, POSES, CAMERA, HEALTH)
+TOPICS = (ACK, COMMIT, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
 
 
 def entity_key(class_name: str, name: str) -> str:

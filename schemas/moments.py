@@ -13,7 +13,8 @@ _FIRST_SECOND = 1_000_000_000
 """Numbers from here on are seconds since 1970 (2001 and later), smaller ones are commits."""
 
 When = Annotated[int, Meta(ge=0)] | Annotated[float, Meta(ge=0.0)] | Annotated[str, Meta(min_length=1)]
-"""As it is written: a commit's number, seconds since 1970, or ISO 8601 (local time without an offset)."""
+"""As it is written: a commit's number, seconds since 1970, or ISO 8601 (without an offset it is local time,
+that of the client where a client of ours sends it)."""
 
 
 class Moment(NamedTuple):
@@ -30,6 +31,16 @@ def read_moment(when: When) -> Moment:
     if isinstance(when, int) and when < _FIRST_SECOND:
         return Moment(commit=when)
     return Moment(stamp_ns=round(when * 1_000_000_000))
+
+
+def with_offset(when: When | None) -> When | None:
+    """The same for a reader in another time zone: a time without an offset gets that of this machine."""
+    if not isinstance(when, str) or when.replace(".", "", 1).isdigit():
+        return when
+    try:
+        return datetime.fromisoformat(when).astimezone().isoformat()
+    except (ValueError, OverflowError, OSError):
+        return when  # whoever reads it says what is wrong with it
 
 
 def _read_text(text: str) -> Moment:

@@ -23,6 +23,8 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     size_m: Size
     points: int
     whole: bool = True
+    entity: str = ""
+    """The entity of the map that it was taken for, once it was."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -42,3 +44,16 @@ class Observations(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     stamp_ns: int
     views: tuple[CameraView, ...]
     observations: tuple[Observation, ...]
+
+
+class SegmentedCloud(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The points of one look, and whose each is. For the eye: thinned out.
+
+    `positions` (N, 3) little-endian 32-bit floats, map frame [m]; `colors` (N, 3) rgb bytes; `labels` (N,)
+    little-endian 16-bit: 0 for none of the observations, n for the n-th.
+    """
+
+    stamp_ns: int
+    positions: bytes
+    colors: bytes
+    labels: bytes

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from benchmarks.kb import disk, engine, table, wire
+from benchmarks.table import Row, lines
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
 T = TypeVar("T")
@@ -41,7 +42,7 @@ def main() -> None:
     words = arguments()
     parts = set(words.parts.split(","))
     report: dict[str, Any] = {"machine": platform.platform(), "load_average": os.getloadavg()}
-    rows: list[table.Row] = []
+    rows: list[Row] = []
     if parts & {"core", "owlrl"}:
         rows += _core(words, report, with_owlrl="owlrl" in parts)
     if "disk" in parts:
@@ -56,13 +57,13 @@ def main() -> None:
             rows += table.of_wire(seen)
             report[part] = seen._asdict()
     report["rows"] = [{**row._asdict(), "met": row.met} for row in rows]
-    print(table.lines(rows))
+    print(lines(rows))
     print("load average: {:.1f} before, {:.1f} now".format(report["load_average"][0], os.getloadavg()[0]))
     if words.json_file:
         words.json_file.write_text(json.dumps(report, indent=1) + "\n")
 
 
-def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool) -> list[table.Row]:
+def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool) -> list[Row]:
     """The engine at each size, a crowded room, and if wanted owlrl on a map of 100."""
     engines = [_alone(engine.measure, int(size), words.repeat) for size in words.sizes.split(",")]
     add, remove = _alone(engine.room, words.repeat)

@@ -3,31 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from benchmarks.kb.disk import Disk
 from benchmarks.kb.engine import Engine
 from benchmarks.kb.made import Figures
 from benchmarks.kb.wire import Wire
-
-
-class Row(NamedTuple):
-    """One figure. `reach` and `aim` are the most that is allowed, for rates (`more`) the least."""
-
-    what: str
-    value: float
-    unit: str
-    reach: float | None = None
-    aim: float | None = None
-    more: bool = False
-
-    @property
-    def met(self) -> str:
-        """Which of the two is met."""
-        for name, bound in (("aim", self.aim), ("reach", self.reach)):
-            if bound is not None and (self.value >= bound if self.more else self.value <= bound):
-                return name
-        return "" if self.reach is None else "NO"
+from benchmarks.table import Row
 
 
 def of_engine(engines: Sequence[Engine]) -> list[Row]:
@@ -87,22 +68,6 @@ def of_wire(wire: Wire) -> list[Row]:
     rows.append(Row(f"SPARQL look-up, {where}, p50", wire.sparql["p50_ms"], "ms", None if wire.sim else 1))
     rows.append(Row(f"semmap up to ready, {where}", wire.start_s, "s"))
     return rows
-
-
-def lines(rows: Sequence[Row]) -> str:
-    """The table in Markdown."""
-    head = ["| what | measured | reach | aim | met |", "| --- | --- | --- | --- | --- |"]
-    return "\n".join(
-        head
-        + [
-            f"| {r.what} | {r.value:.3g} {r.unit} | {_bound(r.reach)} | {_bound(r.aim)} | {r.met} |"
-            for r in rows
-        ]
-    )
-
-
-def _bound(bound: float | None) -> str:
-    return "" if bound is None else f"{bound:g}"
 
 
 Bounds = tuple[float | None, float | None]

@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,7 +19,6 @@ from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
 from nodes.extern.client import Client, connect
 from schemas import commands, keys
-from schemas.errors import SemmapError
 
 IN_FLIGHT = 32
 
@@ -42,7 +41,7 @@ class Wire(NamedTuple):
 def measure(folder: Path, size: int, *, sim: bool, repeat: int) -> Wire:
     """Serve the journal in `folder`, of `size` entities named `e<i>`, and send it commands."""
     random_ = random.Random(size)
-    with _running(folder, sim=sim) as (client, start_s):
+    with running(folder, *([] if sim else ["--no-sim"])) as (client, start_s):
         if sim:
             _settle(client)
         names = [f"e{random_.randrange(size)}" for _ in range(repeat)]
@@ -64,16 +63,14 @@ def _add(client: Client, name: str, i: int, random_: random.Random) -> None:
 
 def _sustained(client: Client, names: list[str], random_: random.Random) -> float:
     """Moves a second, all durable, `IN_FLIGHT` at a time, none refused."""
-    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[Callable[[], Any]] = queue.SimpleQueue()
 
     def send(name: str) -> None:
         command = commands.Update(name=name, at=pose(random_).position_m)
         bus.ask_later(client.session, keys.CMD, "update", command, commands.Changed, answers.put)
 
     def receive() -> None:
-        answer = answers.get(timeout=bus.TIMEOUT_S)
-        if isinstance(answer, SemmapError):
-            raise answer
+        answers.get(timeout=bus.TIMEOUT_S)()
 
     started = time.perf_counter()
     for i, name in enumerate(names):
@@ -104,11 +101,11 @@ def _memory(client: Client) -> dict[str, float]:
 
 
 @contextmanager
-def _running(folder: Path, *, sim: bool) -> Iterator[tuple[Client, float]]:
+def running(folder: Path, *words: str) -> Iterator[tuple[Client, float]]:
     """A client of `semmap up` on a port of its own, and how long the start took [s]; stopped at the end."""
     endpoint = _free_endpoint()
-    words = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
-    command = [str(Path(sys.executable).with_name("semmap")), "up", *words, *([] if sim else ["--no-sim"])]
+    usual = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
+    command = [str(Path(sys.executable).with_name("semmap")), "up", *usual, *words]
     started = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:

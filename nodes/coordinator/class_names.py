@@ -14,8 +14,11 @@ class ClassNames:
     def __init__(self, classes: Iterable[ClassInfo] = ()) -> None:
         self.by_name = {c.name: c for c in classes}
         self._folded: dict[str, list[str]] = {}
-        for name in self.by_name:
+        self._labelled: dict[str, list[str]] = {}
+        for name, c in self.by_name.items():
             self._folded.setdefault(_fold(name), []).append(name)
+            for label in c.labels.values():
+                self._labelled.setdefault(label.casefold(), []).append(name)
 
     def find(self, word: str) -> ClassInfo:
         """The class that `word` means. Raises UnknownClass with the nearest names."""
@@ -24,6 +27,7 @@ class ClassNames:
         same = self._folded.get(_fold(word), [])
         if len(same) == 1:
             return self.by_name[same[0]]
+        same = same or self._labelled.get(word.casefold(), [])
         hint = f"; did you mean {' or '.join(same)}?" if same else did_you_mean(word, self.by_name)
         raise UnknownClass(f"unknown class '{word}'{hint}")
 

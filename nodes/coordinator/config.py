@@ -8,7 +8,7 @@ from typing import Literal
 
 from nodes.bus import Network
 
-Truth = Literal["map", "scene"]
+Truth = Literal["map", "scene", "perceived"]
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,10 @@ class Thresholds:
 
 @dataclass(frozen=True)
 class CoordinatorConfig:
-    """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way."""
+    """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
+
+    In `perceived` the simulator stands for the world itself: only perception tells the map of it.
+    """
 
     truth: Truth = "map"
     thresholds: Thresholds = field(default_factory=Thresholds)

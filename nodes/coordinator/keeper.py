@@ -5,6 +5,9 @@ node was away. Who changed last wins: a body carries the number of the commit wh
 to take, an entity that of the commit which last changed its pose. If the map's is later, and did not itself
 come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
 follows.
+
+Where only perception tells the map (`perceived`) nothing is to be done: an entity without a body is a belief,
+a body without an entity has not been seen yet, and a pose that differs will be seen.
 """
 
 from __future__ import annotations
@@ -43,6 +46,8 @@ def reconcile(
     `failed` names the entities whose body could not be made, with the commit of which it was tried: it is
     not tried again before the entity changes.
     """
+    if truth == "perceived":
+        return Actions()
     failed = failed or {}
     delete, spawn, place, follow, adopt, missing = [], [], [], [], [], []
     for name, entity in entities.items():

@@ -107,8 +107,8 @@ class Keeping:
         return reconcile(entities, bodies, self._config.truth, self._config.thresholds, failed)
 
     def in_agreement(self) -> bool | None:
-        """Map and scene are the same, and nothing is under way; None when no simulator runs."""
-        if not self.scene.known:
+        """Map and scene are the same, and nothing is under way; None when there is nothing to keep."""
+        if not self.scene.known or self._config.truth == "perceived":
             return None
         wanted = self.wanted()
         foreign = [body for body in wanted.adopt if body.name not in self._foreign]
@@ -128,6 +128,8 @@ class Keeping:
         body = self.scene.bodies.get(entity.name)
         if entity.place:
             return BodyState(status="none", detail="places have no bodies")
+        if self._config.truth == "perceived":
+            return BodyState(status="none", detail="only perception tells the map", model=entity.model)
         if not self.scene.known:
             return BodyState(status="unknown", detail="no simulator runs", model=entity.model)
         if body is not None:
@@ -142,13 +144,15 @@ class Keeping:
 
     def problems(self) -> list[str]:
         """What is amiss between map and scene, one sentence each."""
-        states = ((name, self.body_state(entity)) for name, entity in sorted(self._door.entities.items()))
+        entities = sorted(self._door.entities.items())
+        states = ((name, self.body_state(entity)) for name, entity in entities)
         amiss = [
             f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
             for name, state in states
             if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
         ]
-        return amiss + [f"{name}: {reason}" for name, reason in sorted(self._foreign.items())]
+        seen = [f"{name}: perception: {entity.conflict}" for name, entity in entities if entity.conflict]
+        return amiss + seen + [f"{name}: {reason}" for name, reason in sorted(self._foreign.items())]
 
     def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step]:
         steps: list[Step] = []

@@ -1,66 +1,65 @@
-"""Names and places for what comes without."""
+"""Places for what comes without."""
 
 from __future__ import annotations
 
+import itertools
 import math
-import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
 
 from schemas.entities import Entity, Size, Vector
 
 DEFAULT_POSITION: Vector = (2.0, 2.0, 0.0)
 _STEP_M = 0.5
+_STEPS_A_REACH = 4
+"""A big thing is tried at fewer places: so many as far as it reaches."""
 _GAP_M = 0.1
 _UNDERFOOT_M = 0.05
 _USUAL_SIZE: Size = (0.5, 0.5, 0.5)
 
-
-def free_name(class_name: str, taken: Container[str]) -> str:
-    """The class in lower case and the first number that is free: `chair1`."""
-    stem = re.sub(r"[^a-z0-9_.-]", "", class_name.lower())
-    stem = stem if stem[:1].isalpha() else f"_{stem}"
-    number = 1
-    while f"{stem}{number}" in taken:
-        number += 1
-    return f"{stem}{number}"
+Floats = NDArray[np.float64]
 
 
 def free_position(entities: Iterable[Entity], size_m: Size | None) -> Vector:
     """The place nearest to the default position where a thing of `size_m` touches nothing."""
-    standing = [e for e in entities if e.pose is not None and not e.place and not _is_underfoot(e)]
+    footprints = np.array([_footprint(e) for e in entities if e.pose is not None and _is_in_the_way(e)])
     width, depth, _ = size_m or _USUAL_SIZE
     reach_m = math.hypot(width, depth) / 2.0 + _GAP_M
-    for x, y in _spiral():
-        if all(_distance_m(x, y, entity) > reach_m for entity in standing):
-            return (x, y, DEFAULT_POSITION[2])
-    raise AssertionError("the spiral is endless")
+    for ring in _rings(max(_STEP_M, reach_m / _STEPS_A_REACH)):
+        free = _distances_m(ring, footprints.reshape(-1, 6)).min(axis=1, initial=np.inf) > reach_m
+        if free.any():
+            x, y = ring[free.argmax()].round(3)
+            return (float(x), float(y), DEFAULT_POSITION[2])
+    raise AssertionError("the rings are endless")
 
 
-def _is_underfoot(entity: Entity) -> bool:
-    """Rugs and the like: things may stand on them."""
-    return entity.size_m is not None and entity.size_m[2] < _UNDERFOOT_M
+def _is_in_the_way(entity: Entity) -> bool:
+    """Places are not, nor are rugs and the like: things may stand on them."""
+    return not entity.place and (entity.size_m is None or entity.size_m[2] >= _UNDERFOOT_M)
 
 
-def _distance_m(x: float, y: float, entity: Entity) -> float:
-    """From a point of the floor to the footprint of an entity, 0 inside it."""
+def _footprint(entity: Entity) -> tuple[float, ...]:
+    """Its middle x, y, half its width and depth, and the cosine and sine of its yaw."""
     assert entity.pose is not None
+    x, y, _ = entity.pose.position_m
     width, depth, _ = entity.size_m or _USUAL_SIZE
-    dx, dy = x - entity.pose.position_m[0], y - entity.pose.position_m[1]
-    c, s = math.cos(entity.pose.yaw_rad), math.sin(entity.pose.yaw_rad)
-    along, across = abs(c * dx + s * dy), abs(c * dy - s * dx)
-    return math.hypot(max(0.0, along - width / 2.0), max(0.0, across - depth / 2.0))
+    return (x, y, width / 2.0, depth / 2.0, math.cos(entity.pose.yaw_rad), math.sin(entity.pose.yaw_rad))
 
 
-def _spiral() -> Iterator[tuple[float, float]]:
-    """Points around the default position, ring by ring."""
-    x0, y0, _ = DEFAULT_POSITION
-    yield x0, y0
-    ring = 1
-    while True:
-        for k in range(8 * ring):
-            angle = 2.0 * math.pi * k / (8 * ring)
-            yield (
-                round(x0 + ring * _STEP_M * math.cos(angle), 3),
-                round(y0 + ring * _STEP_M * math.sin(angle), 3),
-            )
-        ring += 1
+def _distances_m(points: Floats, footprints: Floats) -> Floats:
+    """(N, M) from N points (N, 2) of the floor to M footprints (M, 6), 0 inside."""
+    x, y, half_width, half_depth, c, s = footprints.T
+    dx, dy = points[:, :1] - x, points[:, 1:] - y
+    along, across = np.abs(c * dx + s * dy) - half_width, np.abs(c * dy - s * dx) - half_depth
+    return np.asarray(np.hypot(np.maximum(0.0, along), np.maximum(0.0, across)))
+
+
+def _rings(step_m: float) -> Iterator[Floats]:
+    """Points (N, 2) around the default position, ring by ring, `step_m` apart."""
+    middle = np.array(DEFAULT_POSITION[:2])
+    yield middle[None]
+    for ring in itertools.count(1):
+        angles = 2.0 * np.pi * np.arange(8 * ring) / (8 * ring)
+        yield middle + ring * step_m * np.column_stack([np.cos(angles), np.sin(angles)])

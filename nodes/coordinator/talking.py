@@ -1,13 +1,14 @@
 """Talks with the knowledge base, several at once and in step: what is asked at the same time goes together.
 
 A talk is a generator: it yields a question, and gets the answer or has the error raised at its `yield`. So a
-command is written as if it were alone, and many of them cost the round trips, and the knowledge base the
-waits for its disk, of one.
+command is written as if it were alone; several of them in step are again one talk, and cost the round trips,
+and the knowledge base the waits for its disk, of one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import Future
 from typing import Any, NamedTuple, TypeVar
 
 from schemas import errors
@@ -26,38 +27,72 @@ class Question(NamedTuple):
 
 Ask = Callable[[str, Any], Any]
 """`ask(verb, message)` gives the answer, or raises a SemmapError."""
+AskLater = Callable[[str, Any], Future[Any]]
+"""The same, without waiting."""
 Talk = Generator[Question, Any, T]
 Answer = Any
 """A message or a SemmapError."""
 
 
 def hold(talk: Talk[T], ask: Ask) -> T:
-    """The result of one talk. Raises the error that ends it."""
-    (result,) = hold_all([talk], ask)
-    if isinstance(result, errors.SemmapError):
-        raise result
-    return result
+    """The result of a talk. Raises the error that ends it."""
+    answer: Answer = None
+    while True:
+        try:
+            question = _go_on(talk, answer)
+        except StopIteration as end:
+            result: T = end.value
+            return result
+        answer = _answer_of(lambda question=question: ask(*question))  # type: ignore[misc]
 
 
-def hold_all(talks: Sequence[Talk[T]], ask: Ask) -> list[T | errors.SemmapError]:
-    """The results of several talks, in their order; that of one that ends with an error is the error."""
+def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
+    """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
+    future: Future[T] = Future()
+
+    def go_on(answer: Answer) -> None:
+        try:
+            question = _go_on(talk, answer)
+        except StopIteration as end:
+            future.set_result(end.value)
+        except Exception as error:
+            future.set_exception(error)
+        else:
+            ask_later(*question).add_done_callback(lambda done: go_on(_answer_of(done.result)))
+
+    go_on(None)
+    return future
+
+
+def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:
+    """Several talks as one, with their results in their order; a talk that ends with an error gives that."""
     results: dict[int, T | errors.SemmapError] = {}
     answers: dict[int, Answer] = dict.fromkeys(range(len(talks)))
     while answers:
         questions: dict[int, Question] = {}
         for i, answer in answers.items():
             try:
-                is_error = isinstance(answer, errors.SemmapError)
-                questions[i] = talks[i].throw(answer) if is_error else talks[i].send(answer)
+                questions[i] = _go_on(talks[i], answer)
             except StopIteration as end:
                 results[i] = end.value
             except errors.SemmapError as error:
                 results[i] = error
-        answers = _ask_together(questions, ask)
+        answers = yield from _ask_together(questions)
     return [results[i] for i in range(len(talks))]
 
 
-def _ask_together(questions: Mapping[int, Question], ask: Ask) -> dict[int, Answer]:
+def _go_on(talk: Talk[T], answer: Answer) -> Question:
+    return talk.throw(answer) if isinstance(answer, errors.SemmapError) else talk.send(answer)
+
+
+def _answer_of(ask: Callable[[], Any]) -> Answer:
+    try:
+        return ask()
+    except errors.SemmapError as error:
+        return error
+
+
+def _ask_together(questions: Mapping[int, Question]) -> Talk[dict[int, Answer]]:
     """The answers, in the order of the questions."""
     by_verb: dict[str, dict[int, Any]] = {}
     for i, (verb, message) in questions.items():
@@ -65,45 +100,46 @@ def _ask_together(questions: Mapping[int, Question], ask: Ask) -> dict[int, Answ
     answers: dict[int, Answer] = {}
     for verb, messages in by_verb.items():
         together = _TOGETHER.get(verb) if len(messages) > 1 else None
-        answers.update(together(messages, ask) if together else _each(verb, messages, ask))
+        answers.update((yield from (together(messages) if together else _each(verb, messages))))
     return {i: answers[i] for i in questions}
 
 
-def _each(verb: str, messages: Mapping[int, Any], ask: Ask) -> dict[int, Answer]:
+def _each(verb: str, messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
     answers: dict[int, Answer] = {}
     for i, message in messages.items():
         try:
-            answers[i] = ask(verb, message)
+            answers[i] = yield Question(verb, message)
         except errors.SemmapError as error:
             answers[i] = error
     return answers
 
 
-def _stars(messages: Mapping[int, StarQuery], ask: Ask) -> dict[int, Answer]:
+def _stars(messages: Mapping[int, StarQuery]) -> Talk[dict[int, Answer]]:
     names = tuple(dict.fromkeys(name for query in messages.values() for name in query.names))
+    if any(query.together and len(query.names) > 1 for query in messages.values()):
+        return (yield from _each("star", messages))
     try:
-        if any(query.together and len(query.names) > 1 for query in messages.values()):
-            return _each("star", messages, ask)
-        found: tuple[Star, ...] = ask("star", StarQuery(names=names, together=False))
+        found: tuple[Star, ...] = yield Question("star", StarQuery(names=names, together=False))
     except errors.Refused:  # one of them
-        return _each("star", messages, ask)
+        return (yield from _each("star", messages))
     stars = {star.name: star for star in found}
     return {i: tuple(stars[name] for name in query.names) for i, query in messages.items()}
 
 
-def _commits(messages: Mapping[int, Any], ask: Ask) -> dict[int, Answer]:
+def _commits(messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
+    several = Transactions(transactions=tuple(messages.values()))
     try:
-        outcomes: tuple[Outcome, ...] = ask("commits", Transactions(transactions=tuple(messages.values())))
+        outcomes: tuple[Outcome, ...] = yield Question("commits", several)
     except errors.BadRequest:  # one of them
-        return _each("commit", messages, ask)
-    return {i: _answer(outcome) for i, outcome in zip(messages, outcomes, strict=True)}
+        return (yield from _each("commit", messages))
+    return {i: _said(outcome) for i, outcome in zip(messages, outcomes, strict=True)}
 
 
-def _answer(outcome: Outcome) -> Answer:
+def _said(outcome: Outcome) -> Answer:
     return outcome.commit if outcome.error is None else errors.from_message(outcome.error)
 
 
-_TOGETHER: Mapping[str, Callable[[Mapping[int, Any], Ask], dict[int, Answer]]] = {
+_TOGETHER: Mapping[str, Callable[[Mapping[int, Any]], Talk[dict[int, Answer]]]] = {
     "star": _stars,
     "commit": _commits,
 }

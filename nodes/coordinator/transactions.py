@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from ontology import stars
 from ontology import vocabulary as v
 from schemas.commands import Add, Command, Update
-from schemas.commits import Star, Transaction
+from schemas.commits import Placed, Star, Transaction
 from schemas.entities import ClassInfo, Entity, Pose
 from schemas.explanations import Term, Triple
 from schemas.scene_files import Described, pose_of
@@ -17,6 +17,7 @@ def transaction(
     command: Command,
     reason: str,
     *,
+    placed: Iterable[Placed] = (),
     require: Iterable[Triple] = (),
     vacant: Iterable[Term] = (),
     retract: Iterable[Triple] = (),
@@ -30,6 +31,7 @@ def transaction(
         verb="" if command.source == "scene" else str(command.__struct_config__.tag),
         reason=command.reason or reason,
         confidence=getattr(command, "confidence", None),
+        placed=tuple(placed),
         require=tuple(require),
         vacant=tuple(vacant),
         retract=tuple(retract),
@@ -56,8 +58,13 @@ def add(
     return transaction(command, f"add {found.name} {name}", vacant=_subjects(triples), insert=triples)
 
 
+def place(command: Update) -> Transaction:
+    """An entity is somewhere else, and that is all."""
+    return transaction(command, f"update {command.name}", placed=_placed(command))
+
+
 def update(
-    command: Update, entity: Entity, star: Star, found: ClassInfo | None, pose: Pose | None, suffix: str = ""
+    command: Update, entity: Entity, star: Star, found: ClassInfo | None, suffix: str = ""
 ) -> Transaction:
     """What is named changes; the triples that go are required to be there still. `suffix` as for `add`."""
 
@@ -71,11 +78,6 @@ def update(
     if found is not None and found.name != entity.class_:
         retract += _types(star)
         insert.append((star.iri, v.RDF_TYPE, v.iri(found.iri)))
-    if pose is not None:
-        coordinates = star.coordinates or node("coordinates")
-        retract += _about(star, coordinates, (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
-        retract += _edges(star, v.HAS_POSITION)
-        insert += stars.position(star.iri, coordinates, pose)
     if command.size is not None:
         size = star.size or node("size")
         retract += _about(star, size, v.SIZE_XYZ) + _edges(star, v.HAS_SIZE)
@@ -87,10 +89,15 @@ def update(
         retract += _references(star, v.HAS_ALTERNATIVE_REFERENCE, star.alternatives)
         for i, text in enumerate(command.alt, start=1):
             insert += stars.alternative_reference(star.iri, node(f"alternative_reference_{i}"), text)
-    known = {star.iri, star.coordinates, star.size}
+    if command.conflict is not None and command.conflict != entity.conflict:
+        retract += _edges(star, v.CONFLICTING_OBSERVATION)
+        if command.conflict:
+            insert.append((star.iri, v.CONFLICTING_OBSERVATION, v.literal(command.conflict)))
+    known = {star.iri, star.size}
     return transaction(
         command,
         f"update {entity.name}",
+        placed=_placed(command),
         require=retract,
         vacant=[s for s in _subjects(insert) if s not in known],
         retract=retract,
@@ -118,6 +125,13 @@ def describe(name: str, found: ClassInfo, described: Described) -> list[Triple]:
         alternatives=described.alt,
     )
     return triples + [(v.entity_iri(name), v.HAS_AFFORDANCE, v.dm(word)) for word in described.affords]
+
+
+def _placed(command: Update) -> tuple[Placed, ...]:
+    """Where the command puts its entity, if it says anything of it."""
+    if command.at is None and command.yaw is None and command.orientation is None:
+        return ()
+    return (Placed(name=command.name, at=command.at, yaw=command.yaw, orientation=command.orientation),)
 
 
 def _subjects(triples: Iterable[Triple]) -> list[Term]:

@@ -28,7 +28,7 @@ from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
-from schemas.moments import When
+from schemas.moments import When, with_offset
 from schemas.scenes import Picture
 from schemas.sparql import SparqlResult
 
@@ -58,10 +58,10 @@ class Client:
         self.session = session
         self._signed: dict[str, Any] = {"source": source, "agent": agent}
 
-    def send(self, command: commands.Command, *, timeout_s: float = _LONG_S) -> Any:
-        """Send any command and return its reply."""
+    def send(self, command: commands.Command, *, kind: Any = None, timeout_s: float = _LONG_S) -> Any:
+        """Send any command and return its reply, of the usual type for it or of `kind`."""
         verb = str(command.__struct_config__.tag)
-        kind = commands.REPLIES[type(command)]
+        kind = kind or commands.REPLIES[type(command)]
         return bus.ask(self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s)
 
     # To change
@@ -110,6 +110,7 @@ class Client:
         size: Size | None = None,
         ref: str | None = None,
         alt: tuple[str, ...] | None = None,
+        conflict: str | None = None,
         confidence: float | None = None,
         wait: bool = False,
         id: str = "",
@@ -125,6 +126,7 @@ class Client:
             size=size,
             ref=ref,
             alt=alt,
+            conflict=conflict,
             confidence=confidence,
             wait=wait,
             id=id,
@@ -171,20 +173,22 @@ class Client:
 
         `as_of` a commit's number, seconds since 1970 or ISO 8601: those of then.
         """
-        reply = self.send(commands.List(class_=class_, as_of=as_of))
-        entities: tuple[Entity, ...] = codec.convert(reply, tuple[Entity, ...])
+        command = commands.List(class_=class_, as_of=with_offset(as_of))
+        entities: tuple[Entity, ...] = self.send(command, kind=tuple[Entity, ...])
         return entities
 
     def list_as(
         self, format: Literal["lu4r", "legacy"], class_: str | None = None, *, as_of: When | None = None
     ) -> dict[str, Any]:
         """The entity list in the format of another system."""
-        document: dict[str, Any] = self.send(commands.List(class_=class_, format=format, as_of=as_of))
+        document: dict[str, Any] = self.send(
+            commands.List(class_=class_, format=format, as_of=with_offset(as_of))
+        )
         return document
 
     def get(self, name: str, *, as_of: When | None = None) -> Entity:
         """One entity, or as it was then. Raises UnknownName."""
-        entity: Entity = self.send(commands.Get(name=name, as_of=as_of))
+        entity: Entity = self.send(commands.Get(name=name, as_of=with_offset(as_of)))
         return entity
 
     def check(self, engine: Literal["semmap", "owlrl"] = "semmap") -> commands.Checked:
@@ -227,9 +231,8 @@ class Client:
         limit: int = 100,
     ) -> tuple[commands.LoggedCommit, ...]:
         """The newest commits in a span of time, or those that touched an entity; newest last."""
-        query = codec.convert(
-            {"name": name, "since": since, "until": until, "limit": limit}, commands.History
-        )
+        span = {"since": with_offset(since), "until": with_offset(until)}
+        query = codec.convert({"name": name, **span, "limit": limit}, commands.History)
         commits: tuple[commands.LoggedCommit, ...] = self.send(query)
         return commits
 
@@ -261,7 +264,9 @@ class Client:
 
     def move(self, name: str, at: Vector, yaw: float | None = None) -> commands.Moved:
         """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
-        command = codec.convert({"name": name, "at": at, "yaw": yaw, **self._signed}, commands.Move)
+        command = codec.convert(
+            {"name": name, "at": _plain(at), "yaw": _plain(yaw), **self._signed}, commands.Move
+        )
         moved: commands.Moved = self.send(command)
         return moved
 
@@ -295,10 +300,17 @@ class Client:
 
 def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:
     """The fields that were given, by their names on the wire, where `convert` checks them."""
-    given = {name: value for name, value in fields.items() if value is not None}
+    given = {name: _plain(value) for name, value in fields.items() if value is not None}
     if "class_" in given:
         given["class"] = given.pop("class_")
     return given
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of NumPy as Python's own."""
+    if isinstance(value, (tuple, list)):
+        return tuple(map(_plain, value))
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def read_file(path: Path) -> bytes:

@@ -30,11 +30,14 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
 
     Raises UnknownClass naming all individuals of unknown classes, unless `skip_unknown`; then what is of
     unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
+    Raises BadFile for a TBox.
     """
     triples = list(map(_with_float, triples))
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
+    if declared and not any(o in classes.spatial for _, o in types):
+        raise errors.BadFile("it declares classes and has no entity; a TBox is loaded with --tbox")
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
     for s, c in unknown:

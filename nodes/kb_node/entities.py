@@ -70,6 +70,7 @@ def read_entity(
         size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
         preferred_reference=min(preferred, default=None),
         alternative_references=tuple(_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
+        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,
@@ -207,13 +208,16 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
         except ValueError:
             value = math.nan
         if not abs(value) <= REACH_M:
-            text = v.lexical(term) if term[0] == '"' else v.local_name(term)
             raise errors.BadRequest(
-                f"{v.local_name(iri)}: {v.local_name(predicate)} is {text}; it must be a number"
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_said(term)}; it must be a number"
                 f" from -{REACH_M:g} to {REACH_M:g}"
             )
         found.append(value)
     return tuple(found) if len(found) == len(predicates) else None
+
+
+def _said(term: Term) -> str:
+    return v.lexical(term) if term[0] == '"' else v.local_name(term)
 
 
 def _references(about: About, nodes: Sequence[Term]) -> list[str]:

@@ -287,7 +287,7 @@ class Journal:
         except sqlite3.OperationalError as error:
             if "locked" in str(error):
                 raise InUse(f"another knowledge base is using {self.path}") from None
-            raise errors.Refused(f"{self.path} cannot be read: {error}") from None
+            raise errors.Refused(f"{self.path} cannot be read: {error}; {_ANEW}") from None
         except sqlite3.ProgrammingError:
             raise
         except sqlite3.DatabaseError as error:

@@ -28,6 +28,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     """
     path = data / FILENAME
     if path.exists() and not fresh:
+        Journal(path).close()  # one that cannot be read is told before anything starts
         return (
             f"going on with the map in {data}; --tbox and --abox are for a new one"
             " (--fresh begins anew and keeps this one aside)"

@@ -10,7 +10,7 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import entities, fingerprint, rdf_files, tbox_cache, tboxes
+from nodes.kb_node import entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
@@ -115,11 +115,13 @@ class SemanticMap:
     def commit(self, transaction: Transaction) -> Commit | None:
         """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
 
-        Raises PreconditionFailed, NameTaken, Inconsistent (with the explanation), BadRequest for a star that
-        does not make sense, Refused when it takes away from the TBox or the disk does not take the commit.
+        Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is none, Inconsistent (with
+        the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the
+        TBox or the disk does not take the commit.
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
+        transaction = self._spelled_out(transaction)
         held = self._held(transaction)
         self._require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
@@ -204,6 +206,15 @@ class SemanticMap:
             )
         )
         self._checkpointed = self.seq
+
+    def _spelled_out(self, transaction: Transaction) -> Transaction:
+        """The transaction with where entities are placed said in triples, too."""
+        retract, insert = list(transaction.retract), list(transaction.insert)
+        for placed in transaction.placed:
+            gone, come = placing.place(self.reasoner, self.tbox, self.entity(placed.name), placed)
+            retract += gone
+            insert += come
+        return structs.replace(transaction, retract=tuple(retract), insert=tuple(insert))
 
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""

@@ -2,13 +2,41 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 from nodes.bus import Network
 
 
 @dataclass(frozen=True)
-class PerceptionConfig:
-    """How the node reaches the others."""
+class TrackingConfig:
+    """When the map is told what was seen. A look is what all cameras see at one moment."""
 
+    confirm_looks: int = 3
+    """Looks in which a thing must be seen at rest before it is an entity."""
+    rest_looks: int = 2
+    """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
+    nudge_looks: int = 8
+    """The same where the place that it had is not seen empty: it may only seem so."""
+    odd_looks: int = 15
+    """Looks in a row in which a thing of another size fills its place, before an entity is gone."""
+    gone_looks: int = 10
+    """Looks in a row in which an entity should be seen and is not, before it is gone."""
+    still_m: float = 0.02
+    """What moves less from one look to the next is at rest."""
+    moved_m: float = 0.03
+    turned_rad: float = math.radians(20.0)
+    """An entity that is off by more than these has moved."""
+    resized: float = 0.25
+    """An extent that is off by more than this share of it is another size."""
+    when_gone: Literal["remove", "mark"] = "remove"
+    """What becomes of an entity of perception's own that is gone; an operator's is always marked."""
+
+
+@dataclass(frozen=True)
+class PerceptionConfig:
+    """How the node looks, and how it reaches the others."""
+
+    tracking: TrackingConfig = field(default_factory=TrackingConfig)
     network: Network = field(default_factory=Network)

@@ -1,4 +1,4 @@
-"""The recorder on the wire: it follows commits, poses and the heartbeat of the knowledge base."""
+"""The recorder on the wire: it follows commits, poses, what is seen, and the knowledge base's heartbeat."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from nodes.recorder.map_state import MapState, missed
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
+from nodes.recorder.watching import Watching
 from schemas import keys
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
@@ -46,6 +47,7 @@ class Recorder:
         node.follow(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
+        Watching(node, recording, self._at)
 
     # The map
 

@@ -67,6 +67,10 @@ class Recording:
         """Take a figure away."""
         self._stream.log(["map", figure.group, name], rr.Clear(recursive=False))
 
+    def show(self, path: str, *archetypes: rr.AsComponents) -> None:
+        """Draw what perception saw."""
+        self._stream.log(path, *archetypes)
+
     def graph(self, graph: Graph) -> None:
         """Draw the knowledge graph."""
         self._stream.log("graph", *nodes_and_edges(graph))

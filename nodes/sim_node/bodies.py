@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import mujoco
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.models.parts import Vec3, rotation_matrix
 from schemas.entities import Pose
+from schemas.scenes import Body
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,6 +43,22 @@ class BodyRecord:
         """Held where it is: no free joint."""
         return self.fixed or self.ghost
 
+    def message(self, pose: Pose, *, resting: bool) -> Body:
+        """The body as others are told of it."""
+        return Body(
+            name=self.name,
+            class_=self.class_,
+            model=self.model,
+            pose=pose,
+            size_m=self.size_m,
+            fixed=self.fixed,
+            entity=self.entity,
+            ghost=self.ghost,
+            resting=resting,
+            commit=self.commit,
+            shape_commit=self.shape_commit,
+        )
+
 
 @dataclass(frozen=True)
 class BodyIndex:
@@ -59,12 +77,10 @@ class BodyIndex:
     origin_m: Floats = field(repr=False)
 
     @staticmethod
-    def of(model: mujoco.MjModel, records: dict[str, BodyRecord]) -> BodyIndex:
-        """Look every record's body up in `model`."""
+    def of(model: mujoco.MjModel, records: Mapping[str, BodyRecord], numbers: Mapping[str, int]) -> BodyIndex:
+        """Look every record's body up in `model`, given their `numbers` there."""
         names = tuple(records)
-        body = np.array(
-            [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names], dtype=np.int64
-        )
+        body = np.array([numbers[name] for name in names], dtype=np.int64)
         static = np.array([records[name].static for name in names], dtype=bool)
         joint = np.where(static, -1, model.body_jntadr[body]) if names else np.empty(0, np.int64)
         return BodyIndex(

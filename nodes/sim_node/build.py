@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import mujoco
 
@@ -30,6 +30,9 @@ _WIDTH = {
 }
 _BATCH = 50
 _FRICTION = (0.8, 0.01, 0.004)
+_SPIN_S = 1.0
+"""A body's spin dies away in about this time; so a can that rolls stops, without costly contacts."""
+
 _HULL_VERTICES = 64
 _MEMORY_BYTES = 32 << 20
 _MEMORY_BYTES_A_BODY = 100 << 10
@@ -41,22 +44,23 @@ def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model,
     To add one costs time in proportion to all that the specification holds already, so many are put
     together in small ones of their own, which are then attached.
     """
-    if len(newcomers) < _BATCH:
-        for record, model, pose in newcomers:
-            add_body(spec, record, model, pose)
-        return
     plain = [newcomer for newcomer in newcomers if not any(part.mesh for part in newcomer[1].parts)]
     for start in range(0, len(plain), _BATCH):
         batch = mujoco.MjSpec()
         for record, model, pose in plain[start : start + _BATCH]:
             add_body(batch, record, model, pose)
-        names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
-        spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
-        for element, name in names:
-            element.name = name
+        _attach(spec, batch)
     for record, model, pose in newcomers:
         if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
             add_body(spec, record, model, pose)
+
+
+def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
+    """Take over all bodies of a small specification, with their names."""
+    names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
+    spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
+    for element, name in names:
+        element.name = name
 
 
 def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) -> None:
@@ -64,13 +68,30 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
     position, quaternion = frame_of(pose, record.origin_m)
     body = spec.worldbody.add_body(name=record.name, pos=position, quat=quaternion)
     if not record.static:
-        body.add_freejoint(name=record.name)
+        joint = body.add_freejoint(name=record.name)
+        joint.damping = [max(model.inertial.moments) / _SPIN_S, 0.0, 0.0]
     body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
     body.mass, body.inertia = model.inertial.mass_kg, list(model.inertial.moments)
     for part in model.parts:
         if part.mesh is not None:
             add_mesh(spec, part.mesh)
         add_part(body, part, origin_m=record.origin_m, ghost=record.ghost)
+
+
+def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
+    """Bodies for those to come, each static or free and of so many parts; their names, no entity's."""
+    names, batch = [], mujoco.MjSpec()
+    for number, (static, count) in enumerate(parts):
+        body = batch.worldbody.add_body(name=f"berth/{number}")
+        names.append(body.name)
+        if not static:
+            body.add_freejoint(name=body.name)
+        body.explicitinertial, body.ipos, body.iquat = True, [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
+        body.mass, body.inertia = 1.0, [1.0] * 3
+        for _ in range(count):
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[1e-3] * 3, rgba=[0.5, 0.5, 0.5, 1.0])
+    _attach(spec, batch)
+    return names
 
 
 def add_mesh(spec: mujoco.MjSpec, mesh: Mesh) -> None:
@@ -100,7 +121,7 @@ def add_part(
         group=_GROUP[part.role],
         contype=contype,
         conaffinity=conaffinity,
-        condim=3 if part.shape is Shape.BOX else 6,  # what is round needs friction against rolling
+        condim=6 if part.shape is Shape.ELLIPSOID else 3,  # a ball needs friction against rolling
         friction=_FRICTION,
     )
 
@@ -137,22 +158,23 @@ def set_memory(spec: mujoco.MjSpec, bodies: int) -> None:
     spec.memory = _MEMORY_BYTES + bodies * _MEMORY_BYTES_A_BODY
 
 
-def carry_state(
-    old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjModel, new_data: mujoco.MjData
+def carry_joints(
+    old: mujoco.MjModel,
+    old_data: mujoco.MjData,
+    new: mujoco.MjModel,
+    new_data: mujoco.MjData,
+    names: Iterable[str],
 ) -> None:
-    """Give a model built anew the time, and the state of every joint that both have, by name."""
-    new_data.time = old_data.time
-    joints = {old.joint(number).name: number for number in range(old.njnt)}
-    for number in range(new.njnt):
-        before = joints.get(new.joint(number).name)
-        if before is None or old.jnt_type[before] != new.jnt_type[number]:
+    """Give the joints of these names, and what else of state a world file may define, the state they had."""
+    for name in names:
+        was, now = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for model in (old, new))
+        if min(was, now) < 0 or old.jnt_type[was] != new.jnt_type[now]:
             continue
-        positions, speeds = _WIDTH[int(new.jnt_type[number])]
-        qpos, was_qpos = new.jnt_qposadr[number], old.jnt_qposadr[before]
-        dof, was_dof = new.jnt_dofadr[number], old.jnt_dofadr[before]
+        positions, speeds = _WIDTH[int(new.jnt_type[now])]
+        qpos, was_qpos = new.jnt_qposadr[now], old.jnt_qposadr[was]
+        dof, was_dof = new.jnt_dofadr[now], old.jnt_dofadr[was]
         new_data.qpos[qpos : qpos + positions] = old_data.qpos[was_qpos : was_qpos + positions]
         new_data.qvel[dof : dof + speeds] = old_data.qvel[was_dof : was_dof + speeds]
     for field in ("act", "ctrl", "mocap_pos", "mocap_quat"):
         if getattr(new_data, field).shape == getattr(old_data, field).shape:
             getattr(new_data, field)[:] = getattr(old_data, field)
-    mujoco.mj_kinematics(new, new_data)

@@ -1,4 +1,4 @@
-"""MuJoCo's side of the world: one specification, its compiled model, and state that outlives both."""
+"""MuJoCo's side of the world: a compiled model with berths for those who come, and state that outlives it."""
 
 from __future__ import annotations
 
@@ -8,35 +8,37 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node import build, groundwork
+from nodes.sim_node import berths, build, groundwork, sleep
+from nodes.sim_node.berths import Berth
 from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.placing import Stage
 from nodes.sim_node.rest import RestWatch
+from nodes.sim_node.stage import Stage
 from schemas.entities import Pose
 
-_AWAKE = -(1 + mujoco.mjMINAWAKE)
-_READY_TO_SLEEP = -1
 _STEPS_A_LOOK = 10
-_REBUILD_FROM = 16
 
 
 class Engine:
-    """Steps the bodies, and compiles anew when they come, go, or change between held and free.
+    """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no berth.
 
-    `records` has every body, in the order of `index`; `resting` (N,) says which rest.
+    `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
+    every change of the model.
     """
 
-    def __init__(self, spec: mujoco.MjSpec) -> None:
-        groundwork.prepare(spec)
-        build.set_memory(spec, 0)
-        self._spec = spec
-        self._pristine = spec.copy()
-        self._made_from: dict[str, Model] = {}
-        self.records = groundwork.bodies_of(spec)
-        self.model: mujoco.MjModel = spec.compile()
-        self.data = mujoco.MjData(self.model)
-        self.index = BodyIndex.of(self.model, self.records)
+    def __init__(self, ground: mujoco.MjSpec) -> None:
+        """A world of which nothing but the ground is there yet."""
+        groundwork.prepare(ground)
+        self._ground = ground
+        self._shapes: dict[str, Model] = {}
+        self._berths: dict[str, Berth] = {}
+        self._vacant: list[Berth] = []
+        self.records = groundwork.bodies_of(ground)
+        self.revision = 0
+        self.model: mujoco.MjModel
+        self.data: mujoco.MjData
+        self.index: BodyIndex
+        self._compile({name: record.ordered for name, record in self.records.items()})
         self._rest = RestWatch(self.poses(), self.data.time)
         self.resting: NDArray[np.bool_] = self.index.qpos < 0
 
@@ -50,46 +52,44 @@ class Engine:
         return Stage(self.model, self.data, self.index, self.records)
 
     def has(self, name: str) -> bool:
-        """Whether the specification has a body of this name, of its own or a part of one."""
-        return self._spec.body(name) is not None
+        """Whether there is a body of this name, or a part of one of the world's own."""
+        return name in self.records or self._ground.body(name) is not None
 
     # bodies come, go and change
 
     def add(self, newcomers: Sequence[tuple[BodyRecord, Model]]) -> None:
         """Put bodies where their records say."""
-        build.add_bodies(self._spec, [(record, model, record.ordered) for record, model in newcomers])
-        for record, model in newcomers:
-            self.records[record.name] = record
-            self._made_from[record.name] = model
-        self._recompile()
+        for record, shape in newcomers:
+            self.records[record.name], self._shapes[record.name] = record, shape
+        self._arrange({record.name: record.ordered for record, _ in newcomers})
 
     def remove(self, names: Sequence[str]) -> None:
         """Take bodies out."""
+        own = [name for name in names if name not in self._shapes]
         for name in names:
+            self._leave(name)
+            self._shapes.pop(name, None)
             del self.records[name]
-            self._made_from.pop(name, None)
-        if len(names) < _REBUILD_FROM:
-            for name in names:
-                self._spec.delete(self._spec.body(name))
-            self._recompile()
+        for name in own:
+            self._ground.delete(self._ground.body(name))
+        if own:
+            self._recompile({})
         else:
-            self._rebuild()
+            self._renew()
 
     def hold(self, poses: Mapping[str, Pose]) -> None:
         """Fix bodies at these poses or set them free there, solid or ghost, as their records say now."""
-        for name, pose in poses.items():
-            build.set_standing(self._spec, self.records[name], pose)
         if poses:
-            self._recompile()
+            self._arrange(poses)
 
     def put(self, poses: Mapping[str, Pose]) -> None:
         """Set free bodies down at these poses, with no speed."""
         for name, pose in poses.items():
             row = self.index.row[name]
             address, dof = self.index.qpos[row], self.index.dof[row]
-            position, quaternion = frame_of(pose, self.records[name].origin_m)
-            self.data.qpos[address : address + 3] = position
-            self.data.qpos[address + 3 : address + 7] = quaternion
+            self.data.qpos[address : address + 7] = np.concatenate(
+                frame_of(pose, self.records[name].origin_m)
+            )
             self.data.qvel[dof : dof + 6] = 0.0
             self.data.qacc_warmstart[dof : dof + 6] = 0.0
 
@@ -97,45 +97,107 @@ class Engine:
         """Raise a free body."""
         self.data.qpos[self.index.qpos[row] + 2] += rise_m
 
-    def _recompile(self) -> None:
-        """Compile the specification anew; the state of what stays is kept, sleep included."""
-        build.set_memory(self._spec, len(self.records))
-        self._renew(*self._spec.recompile(self.model, self.data))
+    def _arrange(self, poses: Mapping[str, Pose]) -> None:
+        """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
+        for name in poses:
+            self._leave(name)
+        if all(self._moor(name, pose) for name, pose in poses.items()):
+            self._renew()
+        else:
+            self._recompile(poses)
 
-    def _rebuild(self) -> None:
-        """Make the specification anew, with the same state: to delete k of n bodies costs k times n."""
-        rows = self.index.row
-        poses = self.poses()
-        spec = self._pristine.copy()
-        for body in list(spec.worldbody.bodies):
-            if body.name and body.name not in self.records:
-                spec.delete(body)
-        now = {name: pose_of(poses[rows[name]]) for name in self.records}
-        entities = [(self.records[name], model, now[name]) for name, model in self._made_from.items()]
-        build.add_bodies(spec, entities)
-        for name, record in self.records.items():
-            if record.static and name not in self._made_from:
-                build.set_standing(spec, record, now[name])
-        build.set_memory(spec, len(self.records))
-        model = spec.compile()
-        data = mujoco.MjData(model)
-        build.carry_state(self.model, self.data, model, data)
-        self._spec = spec
-        self._renew(model, data)
+    def _leave(self, name: str) -> None:
+        berth = self._berths.pop(name, None)
+        if berth is not None:
+            berths.clear(self.model, self.data, berth)
+            self._vacant.append(berth)
 
-    def _renew(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Go on with a new model: what slept sleeps on, what rested rests."""
-        slept = dict(zip(self.index.names, self._drowsy().tolist(), strict=True))
-        rested = dict(zip(self.index.names, self.resting.tolist(), strict=True))
-        self.model, self.data = model, data
-        self.index = BodyIndex.of(model, self.records)
-        self._rest = RestWatch(self.poses(), data.time)
-        names = self.index.names
-        self.resting = (self.index.qpos < 0) | np.array(
-            [rested.get(name, False) for name in names], dtype=bool
+    def _moor(self, name: str, pose: Pose) -> bool:
+        """Give the body the smallest berth that will do; False if there is none."""
+        record, shape = self.records[name], self._shapes.get(name)
+        alone = berths.compiled_alone(shape) if shape is not None else None
+        if alone is None:
+            return False
+        fitting = [berth for berth in self._vacant if berth.takes(alone, static=record.static)]
+        if not fitting:
+            return False
+        berth = min(fitting, key=lambda berth: berth.geoms)
+        self._vacant.remove(berth)
+        self._berths[name] = berth
+        berths.moor(self.model, self.data, berth, (record, alone), pose)
+        return True
+
+    def _recompile(self, poses: Mapping[str, Pose]) -> None:
+        """Compile everything anew, these bodies at new poses and the others in the state they had."""
+        model, data, index = self.model, self.data, self.index
+        slept = sleep.drowsy(data, index.tree)
+        now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
+        now.update(poses)
+        self._compile(now)
+        build.carry_joints(model, data, self.model, self.data, [joint.name for joint in self._ground.joints])
+        before = self._rows_in(index)
+        stays = np.append(index.qpos >= 0, False)[before] & (self.index.qpos >= 0)
+        stays &= ~np.isin(self.index.names, list(poses))
+        self.put(
+            {
+                name: now[name]
+                for name, row in self.index.row.items()
+                if not stays[row] and self.index.qpos[row] >= 0
+            }
         )
-        sleepers = self.index.tree[[slept.get(name, False) for name in names]] if names else self.index.tree
-        data.tree_asleep[sleepers[sleepers >= 0]] = _READY_TO_SLEEP
+        for field, width, address in (("qpos", 7, "qpos"), ("qvel", 6, "dof"), ("qacc_warmstart", 6, "dof")):
+            to, of = getattr(self.index, address)[stays], getattr(index, address)[before[stays]]
+            offsets = np.arange(width)
+            getattr(self.data, field)[to[:, None] + offsets] = getattr(data, field)[of[:, None] + offsets]
+        mujoco.mj_kinematics(self.model, self.data)
+        sleep.lull(self.data, self.index.tree[stays & np.append(slept, False)[before]])
+        self._follow(before)
+
+    def _compile(self, poses: Mapping[str, Pose]) -> None:
+        """A new model of all bodies, each at its pose, and of some vacant berths."""
+        spec = self._ground.copy()
+        made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
+        build.add_bodies(spec, made)
+        spares = build.add_spares(spec, berths.spare_parts(len(made)))
+        for name, record in self.records.items():
+            if record.static and name not in self._shapes:
+                build.set_standing(spec, record, poses[name])
+        build.set_memory(spec, len(self.records) + len(spares))
+        time = self.data.time if self.revision else 0.0
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self.data.time = time
+        self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
+        self._vacant = [Berth.of(self.model, name) for name in spares]
+        for berth in self._vacant:
+            berths.clear(self.model, self.data, berth)
+        mujoco.mj_kinematics(self.model, self.data)
+        self.index = self._indexed()
+        self.revision += 1
+
+    def _indexed(self) -> BodyIndex:
+        numbers = {
+            name: self._berths[name].body if name in self._berths else self.model.body(name).id
+            for name in self.records
+        }
+        return BodyIndex.of(self.model, self.records, numbers)
+
+    def _rows_in(self, index: BodyIndex) -> NDArray[np.int64]:
+        """(N,) the row that each body has in another index, -1 if none."""
+        return np.array([index.row.get(name, -1) for name in self.index.names], dtype=np.int64)
+
+    def _renew(self) -> None:
+        """Go on with other bodies in the same model."""
+        index = self.index
+        self.index = self._indexed()
+        self.revision += 1
+        self._follow(self._rows_in(index))
+
+    def _follow(self, before: NDArray[np.int64]) -> None:
+        """Those who were there, in the rows `before`, and rested rest on."""
+        self._rest = self._rest.carried(self.poses(), self.data.time, before)
+        rested = np.append(self.resting, False)[before]
+        self.resting = (self.index.qpos < 0) | rested
 
     # time goes on
 
@@ -151,41 +213,19 @@ class Engine:
                 mujoco.mj_step(self.model, self.data, nstep=min(left, _STEPS_A_LOOK))
                 if not np.isfinite(self.data.qpos).all():
                     self._calm(before)
-            self.resting = self._rest.update(self.poses(), self.data.time, self._sleeping())
+            asleep = sleep.sleeping(self.data, self.index.tree)
+            self.resting = self._rest.update(self.poses(), self.data.time, asleep)
 
     @property
     def asleep(self) -> bool:
         """Nothing moves: every body sleeps, and none is about to be woken."""
-        return bool((self.data.tree_asleep >= 0).all()) and not self._poked()
-
-    def _poked(self) -> bool:
-        return bool(self.data.xfrc_applied.any() or self.data.qvel.any())
-
-    def _sleeping(self) -> NDArray[np.bool_]:
-        return self._deeper_than(_READY_TO_SLEEP)
-
-    def _drowsy(self) -> NDArray[np.bool_]:
-        """Asleep, or about to be: what a compilation wakes says so until the next step."""
-        return self._deeper_than(_READY_TO_SLEEP - 1)
-
-    def _deeper_than(self, depth: int) -> NDArray[np.bool_]:
-        """(N,) whose tree's counter, which rises towards sleep, is above `depth`."""
-        tree = self.index.tree
-        if not len(self.data.tree_asleep):
-            return np.asarray(tree < 0)
-        return np.where(tree >= 0, self.data.tree_asleep[np.maximum(tree, 0)] > depth, True)
+        return sleep.all_asleep(self.data)
 
     def wake(self, names: Iterable[str]) -> None:
         """Wake bodies, and with each the heap that it sleeps in."""
-        asleep = self.data.tree_asleep
         for name in names:
-            if name not in self.records:
-                continue
-            tree = self.index.tree[self.index.row[name]]
-            while tree >= 0 and asleep[tree] != _AWAKE:
-                following = asleep[tree]
-                asleep[tree] = _AWAKE
-                tree = following
+            if name in self.records:
+                sleep.wake(self.data, self.index.tree[self.index.row[name]])
 
     def disturb(self, rows: Sequence[int]) -> None:
         """These bodies were taken in hand: those that are free do not rest before they were still anew."""

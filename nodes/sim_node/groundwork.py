@@ -16,6 +16,7 @@ from schemas.errors import BadFile
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 _TIMESTEP_S = 0.002
+_EXTENT_M = 10.0
 _CLASS_TEXT = "semmap:"
 _SKY = (0.78, 0.85, 0.92)
 
@@ -55,8 +56,12 @@ def prepare(spec: mujoco.MjSpec) -> None:
     if spec.option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and spec.option.impratio == 1.0:
         # what a file does not choose: with these, things that lean on one another do not creep
         spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
-    spec.visual.quality.shadowsize = 0  # shadows and MSAA cost 40 times the frame on a CPU
-    spec.visual.quality.offsamples = 0
+    quality = spec.visual.quality
+    quality.shadowsize = quality.offsamples = 0  # shadows and MSAA cost 40 times the frame on a CPU
+    # a third of the default's time: what is round shrinks by a fiftieth of its radius at most
+    quality.numslices, quality.numstacks, quality.numquads = 24, 8, 1
+    if np.isnan(spec.stat.extent):  # how far an endless floor is drawn; nothing may be there to begin with
+        spec.stat.extent = max(_EXTENT_M, float(spec.copy().compile().stat.extent))
     for number, body in enumerate(spec.worldbody.bodies):
         if not body.name and body.joints:
             body.name = f"body_{number + 1}"

@@ -52,7 +52,7 @@ class Simulator:
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
-        self._studio = Studio(config.cameras)
+        self._studio = Studio(config.cameras, bus.watched(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
         node.serve(
             keys.SIM,
@@ -112,8 +112,7 @@ class Simulator:
         return self._studio.paint(self._still(), self._view(query))
 
     def _still(self) -> Still:
-        world = self._world
-        return Still.of(world.model, world.data, world.body_names())
+        return Still(*self._world.snapshot())
 
     def _film(self) -> None:
         self._studio.film(self._still, self._publish_plane)

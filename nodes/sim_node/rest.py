@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.bodies import Floats
+from nodes.sim_node.bodies import Floats, Ints
 
 STILL_M = 0.001
 STILL_RAD = 0.005
@@ -22,6 +22,15 @@ class RestWatch:
     def __init__(self, poses: Floats, time_s: float) -> None:
         self._anchor = poses.copy()
         self._since_s = np.full(len(poses), time_s)
+
+    def carried(self, poses: Floats, time_s: float, before: Ints) -> RestWatch:
+        """A watch of other bodies, at `poses` now; `before` (M,) is the row that each had here, or -1."""
+        watch, known = RestWatch(poses, time_s), before >= 0
+        watch._anchor[known], watch._since_s[known] = (
+            self._anchor[before[known]],
+            self._since_s[before[known]],
+        )
+        return watch
 
     def update(self, poses: Floats, time_s: float, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(N,) which bodies rest at `time_s`, given their poses (N, 7) and which of them sleep."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,6 +18,7 @@ from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.placing import place
+from nodes.sim_node.vision.view import bulk
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned
 
@@ -24,7 +26,6 @@ REACH_M = 1000.0
 """No body is put farther than this from the origin."""
 
 _NEAR_M = 0.02
-
 ModelSource = Callable[[str, Vec3 | None], Model]
 
 
@@ -41,10 +42,11 @@ class World:
         self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
+        self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The compiled model: another one after each spawn and delete."""
+        """The compiled model; spawn and delete change it, or put another in its place."""
         return self._engine.model
 
     @property
@@ -60,7 +62,7 @@ class World:
     # what is asked
 
     def spawn(self, orders: Sequence[BodyOrder]) -> Spawned:
-        """Make bodies, all in one compilation; what cannot be made is told in `failed`, name by name."""
+        """Make bodies, all in one go; what cannot be made is told in `failed`, name by name."""
         newcomers: dict[str, tuple[BodyRecord, Model]] = {}
         failed: dict[str, str] = {}
         for order in orders:
@@ -77,7 +79,7 @@ class World:
         return Spawned(bodies=self._bodies(newcomers), failed=failed)
 
     def delete(self, names: Sequence[str]) -> Deleted:
-        """Take bodies away, all in one compilation; names that are not there are passed over."""
+        """Take bodies away, all in one go; names that are not there are passed over."""
         gone = [name for name in dict.fromkeys(names) if name in self._engine.records]
         if gone:
             disturbed = self._neighbours(gone)
@@ -120,11 +122,10 @@ class World:
         return len(self._engine.records)
 
     def extent(self) -> tuple[Floats, Floats]:
-        """Lowest and highest corner, each (3,) [m], of the box around all bodies."""
-        if not len(self):
-            return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
+        """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
         stage = self._engine.stage()
-        return stage.body_low.min(axis=0), stage.body_high.max(axis=0)
+        felt = np.isfinite(stage.body_low).all(axis=1)
+        return bulk(stage.body_low[felt], stage.body_high[felt])
 
     def poses(self) -> Poses:
         """Where all bodies are."""
@@ -150,6 +151,13 @@ class World:
             world=self.name,
             bodies=self._bodies(self._engine.records),
         )
+
+    def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
+        """Copies of the model and its state, and `body_names`; the model is shared until it changes."""
+        if self._copied != self._engine.revision:
+            self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
+        model, names = self._copy
+        return model, copy.copy(self.data), names
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""
@@ -245,25 +253,8 @@ class World:
     def _bodies(self, names: Iterable[str]) -> tuple[Body, ...]:
         engine = self._engine
         poses, resting = engine.poses(), engine.resting
-        bodies = []
-        for name in names:
-            record, row = engine.records[name], engine.index.row[name]
-            bodies.append(
-                Body(
-                    name=name,
-                    class_=record.class_,
-                    model=record.model,
-                    pose=pose_of(poses[row]),
-                    size_m=record.size_m,
-                    fixed=record.fixed,
-                    entity=record.entity,
-                    ghost=record.ghost,
-                    resting=bool(resting[row]),
-                    commit=record.commit,
-                    shape_commit=record.shape_commit,
-                )
-            )
-        return tuple(bodies)
+        rows = [(engine.records[name], engine.index.row[name]) for name in names]
+        return tuple(record.message(pose_of(poses[row]), resting=bool(resting[row])) for record, row in rows)
 
 
 def _check_reach(pose: Pose) -> None:

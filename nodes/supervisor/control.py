@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import configparser
+import contextlib
 import hashlib
 import io
 import os
@@ -20,6 +21,7 @@ from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
 GROUP = "semmap"
+_SOCKET = f"semmap-{os.getuid()}-{{}}.sock"
 _STOP_WAIT_S = 3
 _WONT_MEND = "0,1,2"
 """Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
@@ -38,7 +40,12 @@ class Supervisor:
     def socket(self) -> Path:
         """Its control socket: in the temporary folder, because paths of sockets must be short."""
         digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
-        return Path(tempfile.gettempdir()) / f"semmap-{os.getuid()}-{digest}.sock"
+        return Path(tempfile.gettempdir()) / _SOCKET.format(digest)
+
+    @property
+    def settings(self) -> Settings:
+        """What it was started with."""
+        return codec.decode(self._settings_path.read_bytes(), Settings)
 
     def start(self, settings: Settings) -> subprocess.Popen[bytes]:
         """Start it and, through it, the nodes."""
@@ -93,7 +100,9 @@ class Supervisor:
         try:
             self._rpc().supervisor.shutdown()
         except (OSError, xmlrpc.client.Error):
-            raise errors.NoAnswer(f"no system runs on the data in {self.data}") from None
+            others = ", ".join(f"{other.data} ({settings.listen})" for other, settings in running())
+            hint = f"; with --data one may stop that in {others}" if others else ""
+            raise errors.NoAnswer(f"no system runs on the data in {self.data}{hint}") from None
         deadline = time.monotonic() + 2 * _STOP_WAIT_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)
@@ -109,8 +118,7 @@ class Supervisor:
         return self.logs / f"{node}.log"
 
     def _rpc(self) -> Any:
-        transport = SupervisorTransport(serverurl=f"unix://{self.socket}")
-        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
+        return _rpc(self.socket)
 
     def _conf(self, settings: Settings) -> str:
         conf = configparser.RawConfigParser()
@@ -145,3 +153,22 @@ class Supervisor:
         text = io.StringIO()
         conf.write(text)
         return text.getvalue()
+
+
+def running() -> list[tuple[Supervisor, Settings]]:
+    """All of this user's that answer on this machine, with what they were started with."""
+    found = []
+    for socket in sorted(Path(tempfile.gettempdir()).glob(_SOCKET.format("*"))):
+        try:
+            log = _rpc(socket).supervisor.getAllProcessInfo()[0]["logfile"]
+        except (OSError, xmlrpc.client.Error):
+            continue
+        supervisor = Supervisor(Path(log).parent.parent)
+        with contextlib.suppress(errors.BadRequest, OSError):  # another version's settings, or none
+            found.append((supervisor, supervisor.settings))
+    return found
+
+
+def _rpc(socket: Path) -> Any:
+    transport = SupervisorTransport(serverurl=f"unix://{socket}")
+    return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)

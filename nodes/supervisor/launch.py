@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from nodes.supervisor.settings import Settings
+from nodes.supervisor.settings import JOURNAL, Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec, errors
 
@@ -25,6 +25,7 @@ def run_node(name: str, settings: Settings) -> None:
 
 def seed(settings: Settings) -> None:
     """Make the journal, or say that it is there, on stdout. A world that cannot be is told first."""
+    from nodes.coordinator.files.content import kind_of
     from nodes.kb_node.seed import seed as seed_journal
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
@@ -33,6 +34,9 @@ def seed(settings: Settings) -> None:
 
         open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
     abox = Path(settings.abox) if settings.abox is not None else None
+    begins = settings.fresh or not Path(settings.data, JOURNAL).exists()
+    if begins and abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
+        raise errors.BadFile(f"{abox.name} is no ABox; start with --abox none, then: semmap load {abox}")
     print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
 
 
@@ -64,6 +68,14 @@ def _sim_node(settings: Settings) -> None:
     run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
 
 
+def _perception_node(settings: Settings) -> None:
+    from nodes.perception_node.config import PerceptionConfig, TrackingConfig
+    from nodes.perception_node.node import run
+
+    tracking = TrackingConfig(when_gone=settings.when_gone)
+    run(PerceptionConfig(tracking, settings.network("perception_node")))
+
+
 def _recorder(settings: Settings) -> None:
     from nodes.recorder.config import RecorderConfig
     from nodes.recorder.node import run
@@ -77,6 +89,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
     "kb_node": _kb_node,
     "coordinator": _coordinator,
     "sim_node": _sim_node,
+    "perception_node": _perception_node,
     "recorder": _recorder,
 }
 

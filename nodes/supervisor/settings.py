@@ -31,7 +31,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     abox: str | None
     """None is an empty map."""
     world: str
-    truth: Literal["map", "scene"] = "map"
+    truth: Literal["map", "scene", "perceived"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
     listen: str = DEFAULT_ENDPOINT
@@ -48,14 +48,18 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         480,
     )
     camera_noise: bool = False
+    perception: bool = False
+    when_gone: Literal["remove", "mark"] = "remove"
+    """What becomes of an entity that perception brought in and no longer sees."""
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
 
     @property
     def nodes(self) -> tuple[str, ...]:
         """The nodes to run, in the order of starting."""
-        optional = {"sim_node": self.sim, "recorder": self.record}
-        return tuple(n for n in ("coordinator", "kb_node", "sim_node", "recorder") if optional.get(n, True))
+        optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
+        order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
+        return tuple(node for node in order if optional.get(node, True))
 
     @property
     def angle_threshold_rad(self) -> float:

@@ -66,3 +66,36 @@ def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(door)
         door.undo(c.Undo(source="perception"))
     with pytest.raises(errors.BadRequest, match="takes the place"):
         door.load(c.Load(content=b"x", tbox=True, replace=True))
+
+
+def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic_map):
+    add(door, name="chair1", ref="seat")
+    before = door.entity("chair1")
+    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception", confidence=0.9))
+    chair1 = door.entity("chair1")
+    assert (chair1.conflict, chair1.provenance.source) == ("looks like a Cup", "perception")
+    assert chair1.provenance.confidence == 0.9
+    assert (chair1.class_, chair1.shape_provenance) == (before.class_, before.shape_provenance)
+    assert (chair1.pose_provenance, chair1.reference_provenance) == (
+        before.pose_provenance,
+        before.reference_provenance,
+    )
+    door.update(c.Update(name="chair1", conflict="not seen", source="perception"))
+    assert door.entity("chair1").conflict == "not seen"
+    door.update(c.Update(name="chair1", conflict="", source="perception"))
+    assert door.entity("chair1").conflict == ""
+    assert not any("conflict" in triple[1] for triple in semantic_map.abox())
+
+
+def test_a_conflict_goes_with_its_entity(door, semantic_map):
+    add(door, name="chair1")
+    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    door.remove(c.Remove(names=("chair1",)))
+    assert semantic_map.abox() == []
+
+
+def test_the_same_conflict_again_changes_nothing(door):
+    add(door, name="chair1")
+    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    again = door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    assert again.commit is None

@@ -7,14 +7,21 @@ from schemas.entities import ClassInfo
 from schemas.errors import UnknownClass
 
 
-def info(name: str, *, spatial: bool = True) -> ClassInfo:
+def info(name: str, *, spatial: bool = True, italian: str = "") -> ClassInfo:
     return ClassInfo(
-        name=name, iri=f"http://x#{name}", parents=(), ancestors=(), labels={}, spatial=spatial,
+        name=name, iri=f"http://x#{name}", parents=(), ancestors=(), labels={"it": italian}, spatial=spatial,
         place=False, fixed=False, model="",
     )  # fmt: skip
 
 
-NAMES = ClassNames([info("Livingroom"), info("Chair"), info("Washing_Machine"), info("Color", spatial=False)])
+NAMES = ClassNames(
+    [
+        info("Livingroom"),
+        info("Chair", italian="sedia"),
+        info("Washing_Machine"),
+        info("Color", spatial=False),
+    ]
+)
 
 
 @pytest.mark.parametrize(
@@ -29,6 +36,11 @@ NAMES = ClassNames([info("Livingroom"), info("Chair"), info("Washing_Machine"), 
 )
 def test_case_and_underscores_do_not_matter(word, found):
     assert NAMES.find(word).name == found
+
+
+def test_a_label_is_a_hint():
+    with pytest.raises(UnknownClass, match="unknown class 'Sedia'; did you mean Chair"):
+        NAMES.find("Sedia")
 
 
 def test_what_was_not_taken_literally_is_said():

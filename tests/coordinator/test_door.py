@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
+
 import pytest
 
 from nodes.coordinator.door import Door
+from nodes.coordinator.talking import hold_later
+from nodes.coordinator.turns import Turns
+from nodes.loop import settle
 from ontology import vocabulary as v
 from schemas import commands as c
 from schemas import errors
@@ -222,8 +227,23 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
     assert set(door.entities) == {"chair1"}
 
 
+def in_their_turn(door: Door, changes: list) -> list:
+    """The results or errors of changes that come at the same time."""
+
+    def ask_later(verb, message):
+        future: Future = Future()
+        settle(future, lambda: door._ask(verb, message))
+        return future
+
+    turns = Turns(lambda group, _: hold_later(door.together(group), ask_later))
+    futures = [turns.change(change) for change in changes]
+    turns.go_on()
+    return [future.exception() or future.result() for future in futures]
+
+
 def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map):
-    results = door.change_together(
+    results = in_their_turn(
+        door,
         [
             c.Add(class_="Chair", name="a", at=(1.0, 0.0, 0.0), ref="seat"),
             c.Add(class_="Chair", name="b", at=(2.0, 0.0, 0.0), id="42"),
@@ -232,7 +252,7 @@ def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map)
             c.Add(class_="Chair"),
             c.Add(class_="Chair", name="b", at=(2.0, 0.0, 0.0), id="42"),
             c.Add(class_="Chair", name="chair1", at=(2.0, 0.0, 0.0)),
-        ]
+        ],
     )
     assert [getattr(result, "commit", type(result)) for result in results] == [
         1,
@@ -261,5 +281,13 @@ def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, sema
         insert=((other.iri, v.HAS_PREFERRED_REFERENCE, seat),),
     )
     door.take(semantic_map.commit(shared))
-    door.change_together([c.Update(name=name, ref=f"the {name}") for name in ("a", "b")])
+    in_their_turn(door, [c.Update(name=name, ref=f"the {name}") for name in ("a", "b")])
     assert [door.entity(name).preferred_reference for name in ("a", "b")] == ["the a", "the b"]
+
+
+def test_the_entities_of_a_class_are_those_of_the_map(door, semantic_map):
+    for i, class_ in enumerate(("Kitchen", "Living_Room_Table", "Chair", "Furniture")):
+        add(door, class_, f"e{9 - i}", at=(float(i), 0.0, 0.0))
+    for name, iri in semantic_map.classes.iris.items():
+        assert door.entities_of(name) == tuple(semantic_map.entities(iri))
+    assert door.entities_of(None) == tuple(semantic_map.entities())

@@ -130,6 +130,15 @@ def test_in_mode_scene_bodies_become_entities_and_entities_without_body_are_miss
     assert not actions.delete
 
 
+def test_where_only_perception_tells_the_map_the_keeper_leaves_all_as_it_is():
+    entities = [
+        entity("chair1", at(1)),
+        entity("cup1", at(2), posed=7),
+        entity("kitchen1", at(0), place=True),
+    ]
+    assert look(entities, [body("cup1", at(5)), body("table1", at(3))], "perceived") == NOTHING
+
+
 poses = st.builds(at, st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 1), st.floats(-3, 3))
 sources = st.sampled_from(["operator", "file", "scene", "perception"])
 entity_maps = st.dictionaries(
@@ -162,7 +171,7 @@ def carry_out(entities: dict[str, Entity], bodies: dict[str, Body], actions: Act
     return entities, bodies
 
 
-@given(entity_maps, scenes, st.sampled_from(["map", "scene"]))
+@given(entity_maps, scenes, st.sampled_from(["map", "scene", "perceived"]))
 def test_one_pass_brings_map_and_scene_together(entities, bodies, truth):
     actions = reconcile(entities, bodies, truth, THRESHOLDS)
     again = reconcile(*carry_out(entities, bodies, actions), truth, THRESHOLDS)

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
-from nodes.coordinator.keeping import BATCH, batches
+from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.keeping import BATCH, Keeping, batches
+from schemas import commands as c
 from schemas.entities import Pose
 from schemas.scenes import BodyOrder
 
@@ -25,3 +27,22 @@ def test_many_orders_are_several_batches_wide_things_first():
     first, second = batches(orders)
     assert [o.name for o in first[:2]] == [f"b{BATCH}", f"b{BATCH + 1}"]
     assert sorted(o.name for o in (*first, *second)) == sorted(o.name for o in orders)
+
+
+def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(door):
+    asked = []
+    keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *words: asked.append(words), asked.append)
+    door.add(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.scene.known = True
+    keeping.keep()
+    assert asked == []
+    assert keeping.in_agreement() is None
+    assert keeping.body_state(door.entity("chair1")).status == "none"
+
+
+def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):
+    keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *_: None, print)
+    door.add(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    assert keeping.problems() == []
+    door.update(c.Update(name="chair1", conflict="not seen where it should stand", source="perception"))
+    assert keeping.problems() == ["chair1: perception: not seen where it should stand"]

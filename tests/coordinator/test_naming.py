@@ -1,13 +1,9 @@
 from __future__ import annotations
 
 import math
-import re
 
-from hypothesis import given
-from hypothesis import strategies as st
-
-from nodes.coordinator.naming import DEFAULT_POSITION, free_name, free_position
-from schemas.entities import NAME_PATTERN, Pose, orientation_from_yaw
+from nodes.coordinator.naming import DEFAULT_POSITION, free_position
+from schemas.entities import Pose, orientation_from_yaw
 from tests.coordinator.test_keeper import entity
 
 
@@ -16,17 +12,6 @@ def standing(x, y, size, yaw=0.0):
 
     pose = Pose(position_m=(x, y, 0.0), orientation_wxyz=orientation_from_yaw(yaw))
     return msgspec.structs.replace(entity("box1", pose), size_m=size)
-
-
-def test_names_count_up_from_the_class():
-    assert free_name("Chair", set()) == "chair1"
-    assert free_name("Chair", {"chair1", "chair2"}) == "chair3"
-    assert free_name("Coffee_Machine", set()) == "coffee_machine1"
-
-
-@given(st.text(min_size=1, max_size=30))
-def test_every_class_gives_a_valid_name(class_name):
-    assert re.match(NAME_PATTERN, free_name(class_name, set()))
 
 
 def test_an_empty_map_gives_the_default_position():
@@ -38,6 +23,13 @@ def test_the_place_is_beside_what_stands_at_the_default_position():
     assert z == 0.0
     assert max(abs(x - 2.0), abs(y - 2.0)) >= 0.5 + 0.2
     assert math.hypot(x - 2.0, y - 2.0) < 2.0
+
+
+def test_a_place_is_found_for_big_things_and_in_crowds():
+    crowd = [standing(2.0 + i, 2.0 + j, (1.0, 1.0, 1.0)) for i in range(-40, 40) for j in range(-40, 40)]
+    for size in ((1.0, 1.0, 1.0), (1000.0, 1000.0, 1000.0)):
+        x, y, _ = free_position(crowd, size)
+        assert math.hypot(x - 2.0, y - 2.0) > 40.0
 
 
 def test_a_rug_is_no_obstacle():

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
+
 import pytest
 
-from nodes.coordinator.talking import Question, hold, hold_all
+from nodes.coordinator.talking import Question, hold, hold_later, in_step
 from schemas import errors
 from schemas.bridge import Outcome, StarQuery, Transactions
 from schemas.commits import Commit, Star, Transaction
@@ -75,7 +77,7 @@ def test_one_talk_asks_as_it_is_written(ask):
 
 
 def test_what_is_asked_at_the_same_time_goes_together(ask):
-    assert hold_all([change("a"), change("b")], ask) == ["a", "b"]
+    assert hold(in_step([change("a"), change("b")]), ask) == ["a", "b"]
     assert ask.asked == [
         ("star", StarQuery(names=("a", "b"), together=False)),
         ("commits", Transactions(transactions=(transaction("a"), transaction("b")))),
@@ -87,7 +89,7 @@ def test_what_is_asked_at_the_same_time_goes_together(ask):
     [("gone", errors.UnknownName), ("no", errors.PreconditionFailed), ("odd", errors.BadRequest)],
 )
 def test_an_error_ends_its_own_talk_only(ask, bad, error):
-    first, second, third = hold_all([change("a"), change(bad), change("c")], ask)
+    first, second, third = hold(in_step([change("a"), change(bad), change("c")]), ask)
     assert (first, type(second), third) == ("a", error, "c")
 
 
@@ -98,14 +100,14 @@ def test_a_talk_may_go_on_after_an_error(ask):
         except errors.PreconditionFailed:
             return (yield Question("commit", transaction("yes"))).id
 
-    assert hold_all([stubborn(), change("a"), stubborn()], ask) == ["yes", "a", "yes"]
+    assert hold(in_step([stubborn(), change("a"), stubborn()]), ask) == ["yes", "a", "yes"]
 
 
 def test_the_stars_of_entities_that_leave_together_are_asked_as_such(ask):
     def leaving(*names):
         return (yield Question("star", StarQuery(names=names)))
 
-    hold_all([leaving("a", "b"), leaving("c")], ask)
+    hold(in_step([leaving("a", "b"), leaving("c")]), ask)
     assert ask.asked == [("star", StarQuery(names=("a", "b"))), ("star", StarQuery(names=("c",)))]
 
 
@@ -114,4 +116,32 @@ def test_without_an_answer_nothing_is_said_to_be_done():
         raise errors.NoAnswer(verb)
 
     with pytest.raises(errors.NoAnswer):
-        hold_all([change("a"), change("b")], nobody)
+        hold(in_step([change("a"), change("b")]), nobody)
+
+
+def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
+    asked = []
+
+    def ask_later(verb, message):
+        asked.append((verb, message, Future()))
+        return asked[-1][-1]
+
+    future = hold_later(in_step([change("a"), change("gone")]), ask_later)
+    while not future.done():
+        verb, message, answer = asked[-1]
+        try:
+            answer.set_result(ask(verb, message))
+        except errors.SemmapError as error:
+            answer.set_exception(error)
+    first, second = future.result()
+    assert (first, type(second)) == ("a", errors.UnknownName)
+
+
+def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
+    def broken():
+        yield Question("star", StarQuery(names=()))
+        raise ZeroDivisionError
+
+    done: Future = Future()
+    done.set_result(())
+    assert isinstance(hold_later(broken(), lambda *_: done).exception(), ZeroDivisionError)

@@ -87,7 +87,9 @@ def test_ask_later_answers_once_also_when_nobody_is_there(pair):
     _, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
     bus.ask_later(client, PREFIX, "get", commands.Get(name="x"), commands.Done, answers.put)
-    assert isinstance(answers.get(timeout=5), errors.NoAnswer)
+    read = answers.get(timeout=5)
+    with pytest.raises(errors.NoAnswer, match="nobody serves it"):
+        read()
     assert answers.empty()
 
 

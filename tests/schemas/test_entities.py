@@ -1,10 +1,11 @@
 import math
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from schemas.entities import Pose, angle_rad, distance_m, orientation_from_yaw
+from schemas.entities import NAME_PATTERN, Pose, angle_rad, distance_m, free_name, orientation_from_yaw
 
 YAWS = st.floats(-math.pi + 1e-6, math.pi)
 
@@ -37,3 +38,14 @@ def test_opposite_quaternions_are_one_orientation():
 def test_a_quaternion_must_be_of_unit_length(quaternion):
     with pytest.raises(ValueError, match="it must be 1"):
         Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=quaternion)
+
+
+def test_names_count_up_from_the_class():
+    assert free_name("Chair", set()) == "chair1"
+    assert free_name("Chair", {"chair1", "chair2"}) == "chair3"
+    assert free_name("Coffee_Machine", set()) == "coffee_machine1"
+
+
+@given(st.text(min_size=1, max_size=30))
+def test_every_class_gives_a_valid_name(class_name):
+    assert re.match(NAME_PATTERN, free_name(class_name, set()))

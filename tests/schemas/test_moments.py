@@ -1,9 +1,10 @@
+import time
 from datetime import datetime
 
 import pytest
 
 from schemas import codec, commands, errors
-from schemas.moments import Moment, read_moment
+from schemas.moments import Moment, read_moment, with_offset
 
 NOON = datetime(2026, 3, 1, 12, 0).timestamp()
 
@@ -23,6 +24,22 @@ NOON = datetime(2026, 3, 1, 12, 0).timestamp()
 )
 def test_a_moment_is_a_commit_or_a_time(when, moment):
     assert read_moment(when) == moment
+
+
+def test_a_time_gets_the_offset_of_whoever_writes_it(monkeypatch):
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    time.tzset()
+    try:
+        assert with_offset("2026-03-01T12:00") == "2026-03-01T12:00:00+09:00"
+        assert with_offset("2026-03-01T12:00+01:00") == "2026-03-01T20:00:00+09:00"
+    finally:
+        monkeypatch.undo()
+        time.tzset()
+
+
+@pytest.mark.parametrize("when", [None, 7, 3.5, "7", "20260301", "1772368200.5", "yesterday"])
+def test_what_is_no_time_of_day_stays(when):
+    assert with_offset(when) == when
 
 
 @pytest.mark.parametrize("when", ["yesterday", "-1", "nan", "inf", "1e400", "2026-13-01", "now "])

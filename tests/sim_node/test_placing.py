@@ -37,6 +37,15 @@ def test_a_table_that_comes_later_lifts_the_cup():
     assert bodies(world)["cup1"].pose.position_m == pytest.approx((1, 1, 0.7), abs=0.002)
 
 
+def test_it_does_not_matter_whether_the_cup_or_the_table_comes_first():
+    world = spawned(order("cup1", "cup", pose(1, 1)), order("can1", "can", pose(1.2, 1.1)))
+    world.step(0.5)
+    world.spawn([order("table1", "table", pose(1, 1))])
+    world.step(0.5)
+    assert bodies(world)["cup1"].pose.position_m == pytest.approx((1, 1, 0.75), abs=0.002)
+    assert bodies(world)["can1"].pose.position_m == pytest.approx((1.2, 1.1, 0), abs=0.002)  # below it
+
+
 def test_what_may_well_be_under_a_table_stays_there():
     world = spawned(
         order("table1", "table", pose(0, 0)), order("box1", "", pose(0.2, 0.1), size_m=(0.2, 0.2, 0.3))
@@ -78,6 +87,16 @@ def test_a_ghost_turns_solid_when_the_other_is_deleted_and_can_be_moved_out():
     assert not bodies(world)["fridge1"].ghost
     world.delete(["fridge0"])
     assert not bodies(world)["fridge2"].ghost
+
+
+def test_a_ghost_of_many_parts_turns_solid_too():
+    world = spawned(order("fridge1", "", pose(0, 0), size_m=FRIDGE), order("couch1", "couch", pose(0.2, 0)))
+    assert sum(b.ghost for b in bodies(world).values()) == 1
+    (ghost,) = (name for name, body in bodies(world).items() if body.ghost)
+    world.move([hand(ghost, pose(5, 0))])
+    assert not bodies(world)[ghost].ghost
+    world.step(1.0)
+    assert bodies(world)[ghost].pose.position_m == pytest.approx((5, 0, 0), abs=0.003)
 
 
 def test_a_body_moved_into_another_is_a_ghost():

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from nodes.supervisor.settings import JOURNAL
+from nodes.supervisor.settings import JOURNAL, SETTINGS
 from ontology import FLAT_TTL
 from tests.conftest import free_endpoint, running
 
@@ -23,6 +23,13 @@ def up(data: Path, *words: str | Path) -> tuple[int, str]:
     lines = run.stderr.strip().splitlines()
     assert len(lines) == 1, run.stderr
     return run.returncode, lines[0]
+
+
+def down(*words: str | Path) -> tuple[int, str]:
+    """Exit status of `semmap down`, and what it says."""
+    command = [Path(sys.executable).parent / "semmap", "down", *words]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    return run.returncode, (run.stdout + run.stderr).strip()
 
 
 @pytest.mark.parametrize(
@@ -55,6 +62,21 @@ def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
         assert [e.name for e in client.list()] == ["chair1"]
 
 
+def test_a_map_that_cannot_be_read_is_told_before_anything_starts(tmp_path):
+    (tmp_path / JOURNAL).write_bytes(b"")
+    status, line = up(tmp_path)
+    assert status == 1
+    assert "cannot be read" in line
+
+
+def test_systems_of_other_versions_are_passed_over(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
+        settings = tmp_path / SETTINGS
+        settings.write_text(settings.read_text().replace("{", '{"colour": "red", ', 1))
+        assert down("--connect", system.endpoint)[0] == 3
+        assert down("--data", tmp_path) == (0, "stopped")
+
+
 def test_a_bad_world_is_told_before_a_map_is_made(tmp_path):
     world = tmp_path / "world.xml"
     world.write_text("<mujoco")
@@ -80,6 +102,9 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--abox", "nowhere.ttl"), "there is no file nowhere.ttl"),
         (("--abox", "/"), "is a directory"),
         (("--tbox", "nowhere.ttl"), "there is no file"),
+        (("--models", "nowhere"), "nowhere is no folder"),
+        (("--abox", Path("demo", "picnic.json")), "semmap load"),
+        (("--abox", Path("demo", "house.hrc")), "semmap load"),
         (("--threshold", "-1"), "threshold_m must be"),
         (("--threshold", "nan"), "threshold_m"),
         (("--truth", "god"), "god"),
@@ -97,6 +122,14 @@ def test_one_system_a_data_folder(tmp_path):
         status, line = up(tmp_path)
         assert status == 1
         assert f"semmap down --data {tmp_path}" in line
-        down = [Path(sys.executable).parent / "semmap", "down", "--data", tmp_path]
-        assert subprocess.run(down, stdout=subprocess.DEVNULL).returncode == 0
-    assert subprocess.run(down, stderr=subprocess.DEVNULL).returncode == 3
+        assert down("--data", tmp_path) == (0, "stopped")
+    assert down("--data", tmp_path)[0] == 3
+
+
+def test_a_system_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
+        status, line = down("--data", tmp_path / "other")
+        assert status == 3
+        assert f"{tmp_path} ({system.endpoint})" in line
+        assert down("--connect", system.endpoint) == (0, "stopped")
+    assert down("--connect", system.endpoint)[0] == 3

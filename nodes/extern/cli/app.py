@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from nodes.extern.cli import ask, change, past, run, scene, system
+from nodes.extern.cli import ask, change, past, perceive, run, scene, system
 from nodes.extern.cli.talking import run_words
 from schemas import errors
 
@@ -14,6 +14,7 @@ _VERBS = (
     *(change.add, change.update, change.remove, change.clear, change.load, past.undo, run.run),
     *(ask.list_, ask.get, ask.check, ask.infer, ask.explain, ask.export, ask.classes, ask.status),
     *(ask.sparql, ask.watch, past.history, past.last_seen),
+    perceive.perceive,
     *(scene.move, scene.pause, scene.step, scene.reset, scene.picture, scene.replay),
     *(system.up, system.down, system.node, system.repair),
 )

@@ -146,6 +146,8 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
     """Print what is published on a key expression, as it happens; without one, the commits."""
     if query is not None:
+        if keyexpr != keys.COMMIT.key:
+            raise errors.BadRequest("watch takes a key expression or --sparql, not both")
         sparql_answers.watch(client, query, inferred=inferred)
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:

@@ -26,6 +26,7 @@ _describing = _options(
     vector_option("--size", metavar="X Y Z", help="Extent along its own axes [m]."),
     click.option("--ref", metavar="TEXT", help="What people call it."),
     click.option("--alt", multiple=True, metavar="TEXT", help="What they call it too; may be repeated."),
+    click.option("--confidence", type=float, metavar="P", help="How sure that is, 0 to 1."),
     click.option("--wait", is_flag=True, help="Reply when its body stands in the scene."),
     click.option("--id", "id", metavar="ID", help="Command id: the same one twice is executed once."),
 )
@@ -46,6 +47,7 @@ def add(client: Client, **fields: Any) -> None:
 @click.argument("name")
 @_describing
 @click.option("--class", "class_", metavar="CLASS")
+@click.option("--conflict", metavar="TEXT", help="What is seen against it; an empty text takes that back.")
 @talks
 def update(client: Client, **fields: Any) -> None:
     """Change what is named; what is not named stays."""

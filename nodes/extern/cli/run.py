@@ -14,6 +14,8 @@ from nodes.extern.cli.talking import complain, print_lines, run_words
 from nodes.extern.client import CONNECT_VARIABLE, Client, connect, read_file
 from schemas import codec, commands, errors
 
+_BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch"))
+
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
@@ -33,7 +35,7 @@ def run(file: Path, keep_going: bool, where: str) -> None:
     with connect(where, agent=f"run/{file.name}") as client:
         for number, line in lines:
             click.echo(f"{number}: {line}")
-            status = _run_line(client, line.removeprefix("semmap "))
+            status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")
             failed += status != 0
             if status and not keep_going:
                 raise SystemExit(status)
@@ -41,18 +43,21 @@ def run(file: Path, keep_going: bool, where: str) -> None:
         raise errors.Refused(f"{failed} of {len(lines)} requests failed")
 
 
-def _run_line(client: Client, line: str) -> int:
+def _run_line(client: Client, line: str, where: str) -> int:
     if line.startswith("{"):
-        return _execute_message(client, line.encode())
+        return _execute_message(client, line.encode(), where)
     try:
         words = shlex.split(line)
-        return run_words(click.get_current_context().find_root().command, words, client)
     except ValueError as error:
-        complain(f"cannot read the line: {error}")
-        return 2
+        complain(f"{where}cannot read the line: {error}")
+        return errors.BadRequest.exit_status
+    if words and words[0] in _BY_THEMSELVES:
+        complain(f"{where}'{words[0]}' is no request to a running system")
+        return errors.BadRequest.exit_status
+    return run_words(click.get_current_context().find_root().command, words, client, where)
 
 
-def _execute_message(client: Client, message: bytes) -> int:
+def _execute_message(client: Client, message: bytes, where: str) -> int:
     """Send one JSON message that names its verb, print the reply, and return the exit status."""
     try:
         said: dict[str, Any] = codec.decode(message, dict[str, Any])
@@ -61,7 +66,7 @@ def _execute_message(client: Client, message: bytes) -> int:
             raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
         reply = client.send(codec.decode(message, commands.COMMANDS[verb]))
     except errors.SemmapError as error:
-        complain(error.text)
+        complain(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
     if isinstance(reply, commands.Changed):
         print_lines(show.changed(reply))

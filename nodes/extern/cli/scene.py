@@ -54,7 +54,7 @@ def reset(client: Client) -> None:
 def picture(client: Client, file: Path, camera: str | None, width: int, height: int) -> None:
     """Write a picture of the scene to FILE (PNG)."""
     if file.suffix.lower() != ".png":
-        raise errors.BadRequest(f"pictures are PNG; call the file {file.with_suffix('.png').name}")
+        raise errors.BadRequest(f"pictures are PNG; call the file {file.stem or 'scene'}.png")
     write_atomically(file, client.picture(camera, width=width, height=height))
     print(f"wrote {file}")
 

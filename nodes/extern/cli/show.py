@@ -7,19 +7,22 @@ from collections.abc import Iterable
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 from rich.tree import Tree
 
-from nodes.extern.cli.tables import author, card, pose_cells, pose_text, provenance_text, table
+from nodes.extern.cli.tables import author, card, pose_cells, pose_text, printable, provenance_text, table
 from schemas.commands import Changed, Inferred, SystemStatus
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 
+_WIDE = 100_000
+
 
 def console() -> Console:
     """A console that does not squeeze tables when its output goes to a file or a pipe."""
-    out = Console(highlight=False, soft_wrap=True)
-    return out if out.is_terminal else Console(highlight=False, soft_wrap=True, width=200)
+    out = Console(highlight=False, soft_wrap=True, markup=False)
+    return out if out.is_terminal else Console(highlight=False, soft_wrap=True, markup=False, width=_WIDE)
 
 
 def entity_table(entities: Iterable[Entity]) -> Table:
@@ -28,7 +31,7 @@ def entity_table(entities: Iterable[Entity]) -> Table:
     for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
-        rows.add_row(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
+        rows.add(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
     return rows
 
 
@@ -45,6 +48,7 @@ def entity_card(e: Entity) -> Table:
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
+        **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
         "posed": provenance_text(e.pose_provenance),
@@ -61,7 +65,9 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
     for c in by_name.values():
         for parent in c.parents or ("",):
             children.setdefault(parent, []).append(c.name)
-    root = Tree("[bold]classes[/] [dim](entities by inference; those that say so themselves)[/]")
+    root = Tree(
+        Text.assemble(("classes", "bold"), (" (entities by inference; those that say so themselves)", "dim"))
+    )
     _grow(root, "", children, by_name)
     return root
 
@@ -70,12 +76,12 @@ def status_table(status: SystemStatus) -> Table:
     """One row a node."""
     rows = table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
     for column in rows.columns[5:]:
-        column.no_wrap, column.overflow = False, "fold"
+        column.no_wrap = False
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
-        rows.add_row(
+        rows.add(
             n.node,
-            f"[{colour}]{n.state}[/]",
+            Text(n.state, style=colour),
             str(n.pid),
             _duration(n.uptime_s),
             f"{n.heartbeat_age_s:.1f} s ago",
@@ -90,7 +96,7 @@ def status_line(status: SystemStatus) -> str:
     verdicts = {
         True: "map and scene agree",
         False: "map and scene do not agree (yet)",
-        None: "no simulator runs",
+        None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
     }
     agree = verdicts[status.in_agreement]
     counts = f"{status.entities} entities, {status.bodies} bodies, commit {status.commit}"
@@ -120,7 +126,8 @@ def commit_line(commit: Commit) -> str:
     counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
     names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
-    return f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
+    line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
+    return printable(line).plain
 
 
 def _size(e: Entity) -> str:
@@ -140,9 +147,10 @@ def _duration(seconds: float) -> str:
 def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict[str, ClassInfo]) -> None:
     for name in sorted(children.get(parent, [])):
         c = by_name[name]
-        count = f"  [bold green]{c.inferred}[/]" if c.inferred else ""
-        own = f" [dim]({c.asserted})[/]" if c.asserted and c.asserted != c.inferred else ""
-        _grow(tree.add(f"{name}{count}{own}"), name, children, by_name)
+        count = f"  {c.inferred}" if c.inferred else ""
+        own = f" ({c.asserted})" if c.asserted and c.asserted != c.inferred else ""
+        label = Text.assemble(name, (count, "bold green"), (own, "dim"))
+        _grow(tree.add(label), name, children, by_name)
 
 
 def _model(e: Entity) -> str:

@@ -19,7 +19,7 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
     for c in commits:
         names = [*c.changed, *(f"-{name}" for name in c.removed)]
         more = f" and {len(names) - _FEW} more" if len(names) > _FEW else ""
-        rows.add_row(
+        rows.add(
             str(c.seq),
             moment(c.stamp_ns),
             author(c),

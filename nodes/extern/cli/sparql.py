@@ -41,7 +41,7 @@ def ask(
         return
     if result.rows:
         show.console().print(sparql_formats.table(result.variables, result.rows))
-    print(f"{len(result.rows)} {'row' if len(result.rows) == 1 else 'rows'} (commit {result.seq})")
+    print(f"{_rows(len(result.rows))} (commit {result.seq})")
 
 
 def watch(client: Client, query: str, *, inferred: bool) -> None:
@@ -49,7 +49,11 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
     with client.watch(read_query(query), inferred=inferred) as standing:
         if standing.rows:
             show.console().print(sparql_formats.table(standing.variables, standing.rows))
-        print(f"{len(standing.rows)} rows (commit {standing.seq}); watching", flush=True)
+        print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
             for line in sparql_formats.news(standing.variables, changed):
                 print(line, flush=True)
+
+
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"

@@ -22,9 +22,9 @@ _PREFIXES = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
     """One line a row, with prefixed names."""
-    shown = tables.table(*variables)
+    shown = tables.table(*variables, fold=True)
     for row in rows:
-        shown.add_row(*map(spoken, row))
+        shown.add(*map(spoken, row))
     return shown
 
 

@@ -11,12 +11,16 @@ from typing import Any
 import click
 
 from nodes import bus
+from nodes.extern.client import CONNECT_VARIABLE
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
 from schemas.keys import NODES
 
 _path = click.Path(path_type=Path)
+
+_PERCEPTION_HZ = 5.0
+"""How often the simulator's cameras see when somebody looks and nothing else is said."""
 
 
 def settings_options(function: Callable[..., None]) -> Callable[..., None]:
@@ -31,7 +35,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @click.option("--fresh", is_flag=True, help="Begin anew; the old data is kept aside.")
     @click.option(
         "--truth",
-        type=click.Choice(["map", "scene"]),
+        type=click.Choice(["map", "scene", "perceived"]),
         default=None,
         help="Who owns existence. Default: as before, else map.",
     )
@@ -59,6 +63,14 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @click.option("--camera-hz", type=float, default=0.0, metavar="HZ", help="Publish the cameras' pictures.")
     @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
     @click.option("--camera-noise", is_flag=True, help="With the noise of a Kinect's depth.")
+    @click.option("--perception", is_flag=True, help="Keep the map by what the cameras see.")
+    @click.option(
+        "--when-gone",
+        type=click.Choice(["remove", "mark"]),
+        default="remove",
+        show_default=True,
+        help="What perception brought in and no longer sees is removed, or marked.",
+    )
     @click.option("--no-sim", is_flag=True, help="Without the simulator.")
     @click.option("--no-record", is_flag=True, help="Without the recorder.")
     @functools.wraps(function)
@@ -80,10 +92,15 @@ def up(settings: Settings) -> None:
 
 @click.command()
 @click.option("--data", type=_path, default=None, help="Folder that the system was started on.")
-def down(data: Path | None) -> None:
-    """Stop a running system."""
-    from nodes.supervisor.control import Supervisor
+@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
+def down(data: Path | None, connect: str | None) -> None:
+    """Stop a running system of this machine."""
+    from nodes.supervisor.control import Supervisor, running
 
+    if data is None and connect is not None:
+        data = next((s.data for s, said in running() if connect in (said.listen, said.reachable)), None)
+        if data is None:
+            raise errors.NoAnswer(f"no system of this machine listens on {connect}")
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 
@@ -117,7 +134,7 @@ def _settings(
     *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float, camera_size: tuple[int, int], camera_noise: bool,
-    no_sim: bool, no_record: bool,
+    perception: bool, when_gone: str, no_sim: bool, no_record: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -139,10 +156,12 @@ def _settings(
         "listen": listen,
         "connect": connect,
         "window": window,
-        "models": None if models is None else str(models.resolve()),
-        "camera_hz": camera_hz,
+        "models": None if models is None else _folder(models),
+        "camera_hz": camera_hz or (_PERCEPTION_HZ if perception else 0.0),
         "camera_size": camera_size,
         "camera_noise": camera_noise,
+        "perception": perception,
+        "when_gone": when_gone,
         "sim": not no_sim,
         "record": not no_record,
         "fresh": fresh,
@@ -160,6 +179,12 @@ def _settings_before(data: Path) -> Settings | None:
     except (OSError, errors.BadRequest):
         return None
     return settings if (data / JOURNAL).exists() and Path(settings.world).exists() else None
+
+
+def _folder(path: Path) -> str:
+    if not path.is_dir():
+        raise errors.BadFile(f"{path} is no folder")
+    return str(path.resolve())
 
 
 def _existing(path: Path) -> str:

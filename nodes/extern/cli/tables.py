@@ -15,12 +15,25 @@ from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
 
 
-def table(*columns: str) -> Table:
-    """An empty table."""
-    rows = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+class Rows(Table):
+    """A table whose cells are plain text, whatever stands in them."""
+
+    def add(self, *cells: str | Text) -> None:
+        """A row. What is no printable character in a string is shown by its escape."""
+        self.add_row(*(printable(cell) if isinstance(cell, str) else cell for cell in cells))
+
+
+def table(*columns: str, fold: bool = False) -> Rows:
+    """An empty table; with `fold` what is too wide goes on in the next line."""
+    rows = Rows(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in columns:
-        rows.add_column(column, no_wrap=True)
+        rows.add_column(Text(column), no_wrap=not fold, overflow="fold")
     return rows
+
+
+def printable(text: str) -> Text:
+    """Text as it is, with line ends and the like as escapes: they would break the row, or the terminal."""
+    return Text("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
 
 
 def card(rows: Mapping[str, str]) -> Table:
@@ -29,7 +42,7 @@ def card(rows: Mapping[str, str]) -> Table:
     lines.add_column(style="dim", no_wrap=True)
     lines.add_column()
     for key, value in rows.items():
-        lines.add_row(key, Text(value))
+        lines.add_row(key, printable(value))
     return lines
 
 

@@ -44,17 +44,20 @@ def talks(function: Callable[..., None]) -> Callable[..., None]:
     return with_client
 
 
-def run_words(app: click.Command, words: list[str], client: Client | None = None) -> int:
-    """Run a command line, over `client` if there is one; its exit status. Errors are one line on stderr."""
+def run_words(app: click.Command, words: list[str], client: Client | None = None, where: str = "") -> int:
+    """Run a command line, over `client` if there is one; its exit status.
+
+    Errors are one line on stderr, which says `where` first.
+    """
     try:
         app.main(words, prog_name="semmap", standalone_mode=False, obj=client)
     except errors.SemmapError as error:
-        complain(error.text)
+        complain(f"{where}{_plainly(error.text)}")
         return error.exit_status
     except click.exceptions.NoArgsIsHelpError as error:
         print(error.format_message())
     except click.ClickException as error:
-        complain(error.format_message())
+        complain(f"{where}{error.format_message()}")
         return 2
     except (click.Abort, KeyboardInterrupt):
         return 130
@@ -93,9 +96,16 @@ def command(kind: type[Any], **fields: Any) -> Any:
 
 
 def write_atomically(file: Path, content: bytes) -> None:
-    """All of `content` under that name, or nothing. Raises BadFile."""
+    """All of `content` under that name, or nothing; into what is no file, such as a pipe, it is just written.
+
+    Raises BadFile.
+    """
+    file = file.resolve()
     try:
-        with tempfile.NamedTemporaryFile(dir=file.resolve().parent, delete=False) as temporary:
+        if file.exists() and not file.is_file():
+            file.write_bytes(content)
+            return
+        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as temporary:
             temporary.write(content)
             temporary.flush()
             os.fsync(temporary.fileno())
@@ -109,4 +119,9 @@ def write_atomically(file: Path, content: bytes) -> None:
 
 def complain(text: str) -> None:
     """What is wrong, in one line on stderr."""
-    print(f"semmap: {text.removeprefix('malformed message: ')}", file=sys.stderr)
+    print(f"semmap: {text}", file=sys.stderr)
+
+
+def _plainly(text: str) -> str:
+    """A user knows of no message."""
+    return text.removeprefix("malformed message: ")

@@ -17,6 +17,7 @@ from nodes.sim_node.models.parts import (
     about,
     box,
     felt,
+    pill,
     product,
     rod,
     seen,
@@ -42,10 +43,12 @@ def shade(colour: Colour, factor: float) -> Colour:
 
 
 def legs(x: float, y: float, height: float, thick: float, colour: Colour) -> Parts:
-    """Four square legs at the corners of a footprint x by y."""
+    """Four square legs at the corners of a footprint x by y; each touches the floor in one point."""
     a, b = (x - thick) / 2, (y - thick) / 2
+    corners = [(sx * a, sy * b, height / 2) for sx in (-1, 1) for sy in (-1, 1)]
     return [
-        box((thick, thick, height), (sx * a, sy * b, height / 2), colour) for sx in (-1, 1) for sy in (-1, 1)
+        *seen(box((thick, thick, height), corner, colour) for corner in corners),
+        *felt(pill(thick / 2, height, corner, colour) for corner in corners),
     ]
 
 

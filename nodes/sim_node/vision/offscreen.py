@@ -49,7 +49,7 @@ class Offscreen:
         self, model: mujoco.MjModel, data: mujoco.MjData, view: View
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Rgb (H, W, 3) and depth (H, W) [m] along the optical axis, 0 where nothing is seen."""
-        context, scene = self._prepare(model)
+        context, scene = self._prepare(model, view)
         self._aim(model, data, scene, view)
         rect = mujoco.MjrRect(0, 0, view.width, view.height)
         mujoco.mjr_render(rect, scene, context)
@@ -60,7 +60,7 @@ class Offscreen:
 
     def segment(self, model: mujoco.MjModel, data: mujoco.MjData, view: View) -> NDArray[np.int32]:
         """(H, W) the geom that each pixel sees, -1 for none."""
-        context, scene = self._prepare(model)
+        context, scene = self._prepare(model, view)
         self._aim(model, data, scene, view)
         flags = [mujoco.mjtRndFlag.mjRND_SEGMENT.value, mujoco.mjtRndFlag.mjRND_IDCOLOR.value]
         scene.flags[flags] = 1
@@ -76,8 +76,11 @@ class Offscreen:
                 geoms[geom.segid + 1] = geom.objid
         return np.asarray(geoms[np.clip(ids, 0, scene.ngeom)])
 
-    def _prepare(self, model: mujoco.MjModel) -> tuple[mujoco.MjrContext, mujoco.MjvScene]:
-        """The scene is renewed with the model; the costly context only when meshes or textures change."""
+    def _prepare(self, model: mujoco.MjModel, view: View) -> tuple[mujoco.MjrContext, mujoco.MjvScene]:
+        """The scene is renewed with the model; the costly context only when meshes or textures change.
+
+        The buffer has the size of the view, because all of it is cleared for each picture.
+        """
         self._gl.make_current()
         assets = (
             model.nmesh,
@@ -89,11 +92,12 @@ class Offscreen:
             float(model.mesh_vert.sum()),
         )
         if self._context is None or assets != self._assets:
-            model.vis.global_.offwidth, model.vis.global_.offheight = MAX_PIXELS
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
             self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
             self._assets = assets
+        if (self._context.offWidth, self._context.offHeight) != (view.width, view.height):
+            mujoco.mjr_resizeOffscreen(view.width, view.height, self._context)
         if self._scene is None or self._scene.maxgeom < model.ngeom + 100:
             self._scene = mujoco.MjvScene(model, maxgeom=2 * model.ngeom + 1000)
         return self._context, self._scene
@@ -115,6 +119,8 @@ class Offscreen:
 
 def _depth_m(buffer: NDArray[np.float32]) -> NDArray[np.float32]:
     """Depth [m] from the reversed depth buffer, in which 0 is far and 1 near."""
-    nearness = buffer.astype(np.float64)
-    depth = _NEAR_M * _FAR_M / (_NEAR_M + nearness * (_FAR_M - _NEAR_M))
-    return np.where(nearness > 0.0, depth, 0.0).astype(np.float32)
+    depth = buffer * np.float32(1.0 / _NEAR_M - 1.0 / _FAR_M)
+    depth += np.float32(1.0 / _FAR_M)
+    np.reciprocal(depth, out=depth)
+    depth[buffer == 0.0] = 0.0
+    return depth

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -24,24 +23,21 @@ Plane = tuple[CameraFrame, NDArray[np.generic]]
 
 @dataclass(frozen=True)
 class Still:
-    """The world at one moment. `names` (ngeom,) is the body of each geom, "" for none."""
+    """The world at one moment, all of it copies. `names` (ngeom,) is the body of each geom, "" for none."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
     names: list[str]
     stamp_ns: int = field(default_factory=time.time_ns)
 
-    @staticmethod
-    def of(model: mujoco.MjModel, data: mujoco.MjData, names: list[str]) -> Still:
-        """A copy; the model is not copied, because the world replaces its model rather than change it."""
-        return Still(model, copy.copy(data), names)
-
 
 class Studio:
     """Owns the thread, and on it the only OpenGL context."""
 
-    def __init__(self, config: CameraConfig) -> None:
+    def __init__(self, config: CameraConfig, segments_wanted: Callable[[], bool] = lambda: True) -> None:
+        """`segments_wanted()`: whether anybody looks at them just now; they cost as much as a picture."""
         self._config = config
+        self._segments_wanted = segments_wanted
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="studio")
         self._eye: Eye | None = None
         self._rng = np.random.default_rng(0)
@@ -88,7 +84,7 @@ class Studio:
             (_frame(still, camera, view, "rgb8"), rgb),
             (_frame(still, camera, view, "depth32f"), depth),
         ]
-        if config.segments:
+        if config.segments and self._segments_wanted():
             names, segments = segment_bodies(eye.segment(still.model, still.data, view), still.names)
             planes.append((_frame(still, camera, view, "segments16", names), segments))
         return planes

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
 
+import numpy as np
 import pytest
 
 from tests.conftest import running, until
@@ -32,9 +34,12 @@ def files(tmp_path):
     (tmp_path / "unknown.ttl").write_text(f"{chair} a <{dm}Chiar> .")
     (tmp_path / "empty.ttl").write_text("")
     (tmp_path / "bytes.bin").write_bytes(bytes(range(256)))
+    (tmp_path / "tbox.ttl").write_text(f"<{dm}Drone> a <http://www.w3.org/2002/07/owl#Class> .")
     (tmp_path / "other.json").write_text('{"chairs": 3}')
     return tmp_path
 
+
+_REFERENCE = "SELECT ?text { :cup4 dm:hasPreferredReference/dm:lexicalReference ?text }"
 
 BAD = [
     (("add", "Chiar"), 2, "did you mean Chair"),
@@ -72,6 +77,10 @@ BAD = [
     (("export", "/nowhere/map.owl"), 2, "cannot be written"),
     (("run", "nowhere.txt"), 2, "there is no file"),
     (("watch", "semmap//x"), 2, "no key expression"),
+    (("watch", "semmap/**", "--sparql", "SELECT ?s {}"), 2, "not both"),
+    (("picture", "."), 2, "scene.png"),
+    (("picture", "scene.jpg"), 2, "scene.png"),
+    (("add", "sedia"), 2, "did you mean Chair?"),
 ]
 
 
@@ -90,6 +99,7 @@ def test_bad_words(system, words, status, said):
         ("empty.ttl", 2, "empty"),
         ("bytes.bin", 2, "not UTF-8 text"),
         ("other.json", 2, "neither a scene"),
+        ("tbox.ttl", 2, "a TBox is loaded with --tbox"),
     ],
 )
 def test_bad_files(system, files, file, status, said):
@@ -124,6 +134,52 @@ def test_a_file_of_requests_stops_at_the_first_that_fails_unless_told_otherwise(
     requests.write_text('get chair7\nget chair1\nremove\n{"verb": "fly"}\n')
     with pytest.raises(AssertionError):  # more than one line of errors: one a request, and the sum
         system.cli("run", "--keep-going", requests, status=1)
+
+
+@pytest.mark.parametrize("line", ["up", "down", "watch", "run requests.txt", "semmap node kb_node"])
+def test_a_file_of_requests_starts_and_stops_nothing(system, tmp_path, line):
+    requests = tmp_path / "requests.txt"
+    requests.write_text(f"get chair1\n{line}\n")
+    assert "semmap: line 2: '" in system.cli("run", requests, status=2)
+
+
+def test_what_a_reference_holds_is_shown_as_it_is(system):
+    system.cli("add", "Cup", "cup4", "--at", "5", "5", "0", "--ref", "[/bold] [m]\n\x1b[31m")
+    for said in (system.cli("list"), system.cli("get", "cup4"), system.cli("sparql", _REFERENCE)):
+        assert r"[/bold] [m]\n\x1b[31m" in said.replace(r"\u001B", r"\x1b")
+    assert "size [m]" in system.cli("list")
+    system.cli("remove", "cup4")
+
+
+def test_wide_rows_lose_no_column(system):
+    said = system.cli("sparql", 'SELECT ("left" AS ?x) (1.5e300 AS ?y) ("right" AS ?z) {}')
+    assert "left" in said
+    assert "right" in said
+
+
+def test_an_export_follows_links_and_writes_into_pipes(system, tmp_path):
+    target, link, pipe = (tmp_path / name for name in ("target.ttl", "link.ttl", "pipe.ttl"))
+    link.symlink_to(target)
+    system.cli("export", link)
+    assert link.is_symlink()
+    assert "chair1" in target.read_text()
+    os.mkfifo(pipe)
+    read: list[str] = []
+    reading = threading.Thread(target=lambda: read.append(pipe.read_text()))
+    reading.start()
+    system.cli("export", pipe)
+    reading.join(timeout=10)
+    assert "chair1" in read[0]
+    assert pipe.is_fifo()
+
+
+def test_numbers_may_be_numpys(system):
+    with system.client() as client:
+        client.add(
+            "Cup", "cup5", at=np.array([5.0, 5.0, 0.0]), yaw=np.float32(0.5), size=(np.float64(0.1),) * 3
+        )
+        assert client.get("cup5").pose.position_m == (5.0, 5.0, 0.0)
+        client.remove("cup5")
 
 
 def test_watch_shows_what_happens(system):

@@ -1,0 +1,1 @@
+"""How well and how fast perception sees: `python -m benchmarks.perception`."""

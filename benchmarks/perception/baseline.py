@@ -1,0 +1,57 @@
+"""What ours is compared with: planes and DBSCAN for the segments, chance for the class."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from msgspec import structs
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.pipeline import Look, look_at
+from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
+from nodes.perception_node.sights import Sight, labelled, see
+
+_EVERY = 3
+_NEAR_M = 0.02
+_FEWEST = 10
+_LEAST = 40
+
+
+def clustered(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
+    """Our pipeline, but with what is off the planes grouped by DBSCAN."""
+    return look_at([_dbscan(see(cloud)) for cloud in clouds], learnt)
+
+
+def _dbscan(sight: Sight) -> Sight:
+    import open3d
+
+    thin = sight.points[::_EVERY, ::_EVERY]
+    out = np.isfinite(thin[..., 2]) & (sight.planes[::_EVERY, ::_EVERY] == 0)
+    points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(thin[out].astype(float)))
+    small = np.zeros(out.shape, np.int32)
+    small[out] = np.asarray(points.cluster_dbscan(_NEAR_M, _FEWEST), np.int32) + 1
+    labels = np.repeat(np.repeat(small, _EVERY, axis=0), _EVERY, axis=1)
+    labels = labels[: sight.planes.shape[0], : sight.planes.shape[1]]
+    labels = np.where((sight.planes == 0) & np.isfinite(sight.points[..., 2]), labels, 0).astype(np.int32)
+    labels[(np.bincount(labels.ravel()) < _LEAST)[labels]] = 0
+    return labelled(sight, labels, frozenset())
+
+
+def guessing(
+    perceive: Callable[[Sequence[Cloud]], Look], learnt: Learnt
+) -> Callable[[Sequence[Cloud]], Look]:
+    """The same observations, but each of a leaf drawn by lot."""
+    rng = np.random.default_rng(0)
+    leaves: NDArray[np.str_] = np.array([name for name in learnt.classes if name not in (UNKNOWN, CLUTTER)])
+
+    def guess(clouds: Sequence[Cloud]) -> Look:
+        look = perceive(clouds)
+        drawn = tuple(
+            structs.replace(observation, class_=str(rng.choice(leaves)))
+            for observation in look.observations.observations
+        )
+        return Look(structs.replace(look.observations, observations=drawn), look.labels)
+
+    return guess

@@ -1,0 +1,109 @@
+"""The whole system, live: how long from a new thing in view to its entity in the map."""
+
+from __future__ import annotations
+
+import math
+import random
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from nodes import bus
+from nodes.extern.client import Client, connect
+from schemas import keys
+from schemas.entities import Pose
+from schemas.scenes import BodyOrder, Delete, Deleted, Spawn, Spawned
+
+_TABLE_Z = 0.74
+_PATIENCE_S = 30.0
+_THINGS = ("bottle", "cup", "box", "can", "vase", "bowl")
+_WORLD = f"""<mujoco>
+<visual><quality shadowsize="0" offsamples="0"/><headlight ambient=".4 .4 .4" diffuse=".5 .5 .5"/></visual>
+<worldbody>
+<light pos="0 0 3" dir="0 0 -1"/>
+<geom name="floor" type="plane" size="4 4 .1" rgba=".8 .78 .72 1"/>
+<geom name="top" type="box" size=".6 .4 .02" pos="0 0 {_TABLE_Z - 0.02}" rgba=".55 .4 .3 1"/>
+<camera name="left" pos="-.9 -.9 1.6" xyaxes=".707 -.707 0 .4 .4 .82" fovy="45"/>
+<camera name="right" pos=".9 -.9 1.6" xyaxes=".707 .707 0 -.4 .4 .82" fovy="45"/>
+</worldbody></mujoco>"""
+
+
+class Latency(NamedTuple):
+    """Seconds from the moment at which each new body stood there; `missed`: it never became an entity."""
+
+    seconds: tuple[float, ...]
+    missed: int
+    look_ms: float
+    """What a look of two cameras took at the end."""
+
+
+def measure(folder: Path, things: int = 10) -> Latency:
+    """Put one thing after the other on a table of a running system, and take it away again."""
+    random_ = random.Random(3)
+    seconds: list[float | None] = []
+    with _running(folder) as client:
+        _until(lambda: "things seen" in _detail(client))
+        for n in range(things):
+            at = (random_.uniform(-0.4, 0.4), random_.uniform(-0.25, 0.25))
+            model = _THINGS[n % len(_THINGS)]
+            pose = Pose(position_m=(*at, _TABLE_Z + 0.002))
+            body = BodyOrder(name=f"body{n}", class_="Object", model=model, pose=pose, commit=0)
+            bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(body,)), Spawned)
+            seconds.append(_until(lambda at=at: _is_there(client, at)))
+            bus.ask(client.session, keys.SIM, "delete", Delete(names=(body.name,)), Deleted)
+            _until(lambda at=at: not _is_there(client, at))
+        look_ms = float(_detail(client).rpartition("seen, ")[2].split(" ")[0])
+    return Latency(tuple(s for s in seconds if s is not None), seconds.count(None), look_ms)
+
+
+def _is_there(client: Client, at: tuple[float, float]) -> bool:
+    """Whether something small stands there, as far as the map knows."""
+    return any(
+        math.dist(e.pose.position_m[:2], at) < 0.08
+        for e in client.list()
+        if e.pose is not None and e.pose.position_m[2] > _TABLE_Z / 2.0
+    )
+
+
+def _detail(client: Client) -> str:
+    return next((n.detail for n in client.status().nodes if n.node == "perception_node"), "")
+
+
+def _until(condition: Callable[[], bool]) -> float | None:
+    """How long it took to come true [s], None if it did not."""
+    started = time.monotonic()
+    while not condition():
+        if time.monotonic() - started > _PATIENCE_S:
+            return None
+        time.sleep(0.02)
+    return time.monotonic() - started
+
+
+@contextmanager
+def _running(folder: Path) -> Iterator[Client]:
+    """A system whose simulator has a table and two cameras, and whose map only perception tells."""
+    world = folder / "world.xml"
+    world.write_text(_WORLD)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    words = ["up", "--data", folder / "data", "--listen", endpoint, "--abox", "none", "--no-record"]
+    words += ["--world", world, "--truth", "perceived", "--perception"]
+    command = [Path(sys.executable).parent / "semmap", *map(str, words)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        try:
+            assert process.stdout is not None
+            for line in process.stdout:
+                if line.startswith("stop "):
+                    break
+            with connect(endpoint) as client:
+                yield client
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(30)

@@ -1,0 +1,188 @@
+"""Perception of simulated rooms: what is found, what it is taken for, how far poses and sizes are off."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from statistics import median
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from benchmarks.perception.baseline import clustered, guessing
+from benchmarks.perception.rooms import Room, rooms
+from benchmarks.perception.table import Row
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.pipeline import Look, look
+from nodes.perception_node.recognition.learnt import Learnt
+from nodes.sim_node.models.table import MODELS
+from nodes.training.scenes import Item, Shot, Stage
+from nodes.training.taxonomy import class_of_models
+from schemas.entities import Pose, Size
+from schemas.perception import Observation
+
+LEAST_PIXELS = 150
+"""A thing of which all cameras together see fewer is not asked for."""
+
+SAME_IOU = 0.5
+SMALL_M = 0.3
+_SEEDS = {False: 20261, True: 20262}
+
+Perceive = Callable[[Sequence[Cloud]], Look]
+
+
+@dataclass
+class Score:
+    """Sums over rooms. Errors are of things that were found and whole in view."""
+
+    asked: int = 0
+    found: int = 0
+    said: int = 0
+    right: int = 0
+    exact: int = 0
+    position_m: list[float] = field(default_factory=list)
+    size_m: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    wrong: list[tuple[str, str]] = field(default_factory=list)
+
+    def f1(self, hits: int) -> float:
+        """Of so many hits among what was asked for and what was said."""
+        return 2.0 * hits / max(1, self.asked + self.said)
+
+
+class Judge:
+    """Knows what is right: `class_of` a model, and what is above a class (without `Object`)."""
+
+    def __init__(self, class_of: Mapping[str, str], above: Mapping[str, Sequence[str]]) -> None:
+        self._class_of = class_of
+        self._above = {name: set(found) - {"Object"} for name, found in above.items()}
+
+    def exact(self, item: Item, said: str) -> bool:
+        """The very class."""
+        return said == self._class_of[item.kind]
+
+    def right(self, item: Item, said: str) -> bool:
+        """The class or one above it, below `Object`."""
+        return self.exact(item, said) or said in self._above[self._class_of[item.kind]]
+
+
+def shots(rooms: Iterable[Room], seed: int) -> Iterable[tuple[Room, Shot]]:
+    """Photograph the rooms."""
+    stage, rng = Stage(), np.random.default_rng(seed)
+    for room in rooms:
+        bodies = stage.show(room.items)
+        stage.paint({"floor": room.floor}, 0.35)
+        yield room, stage.shoot(bodies, room.views, rng)
+
+
+def judge_rooms(
+    photographed: Iterable[tuple[Room, Shot]],
+    perceive: Perceive,
+    judge: Judge,
+    *,
+    cameras: int = 2,
+    of: Collection[str] = tuple(MODELS),
+) -> Score:
+    """Perceive every room with so many of its cameras; only things of some models are asked for."""
+    score = Score()
+    for room, shot in photographed:
+        started = time.perf_counter()
+        perceived = perceive(shot.clouds[:cameras])
+        score.seconds.append(time.perf_counter() - started)
+        _count(score, room, shot, perceived, judge, of)
+    return score
+
+
+def _count(score: Score, room: Room, shot: Shot, look: Look, judge: Judge, of: Collection[str]) -> None:
+    items = {item.name: item for item in room.items}
+    truth = [items[body.name] for body in shot.bodies]
+    poses = [body.pose for body in shot.bodies]
+    sizes = [body.size_m for body in shot.bodies]
+    overlap, pixels = _overlap(shot, look)
+    wanted = [n for n, item in enumerate(truth) if pixels[n] >= LEAST_PIXELS and item.kind in of]
+    ignored = [n for n in range(len(truth)) if n not in wanted]
+    said = [
+        o for o in range(len(look.observations.observations)) if not (overlap[ignored, o] > SAME_IOU).any()
+    ]
+    score.asked += len(wanted)
+    score.said += len(said)
+    iou = overlap[np.ix_(wanted, said)]
+    for row, column in zip(*linear_sum_assignment(-iou), strict=True):
+        if iou[row, column] <= SAME_IOU:
+            continue
+        n, observation = wanted[row], look.observations.observations[said[column]]
+        score.found += 1
+        score.right += judge.right(truth[n], observation.class_)
+        score.exact += judge.exact(truth[n], observation.class_)
+        if not judge.right(truth[n], observation.class_):
+            score.wrong.append((truth[n].kind, observation.class_))
+        if observation.whole and max(sizes[n]) <= SMALL_M:
+            score.position_m.append(position_error_m(observation, poses[n]))
+            score.size_m.append(size_error_m(observation, sizes[n]))
+
+
+def _overlap(shot: Shot, look: Look) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Intersection over union (bodies, observations) of pixels in all pictures; visible pixels a body."""
+    rows, columns = len(shot.bodies) + 1, len(look.observations.observations) + 1
+    both = np.zeros((rows, columns))
+    for owner, label, cloud in zip(shot.owners, look.labels, shot.clouds, strict=False):
+        seen = np.isfinite(cloud.points_camera[..., 2])
+        both += np.bincount(owner[seen] * columns + label[seen], minlength=rows * columns).reshape(
+            rows, columns
+        )
+    union = both.sum(axis=1, keepdims=True) + both.sum(axis=0, keepdims=True) - both
+    return (both / np.maximum(union, 1))[1:, 1:], both.sum(axis=1)[1:].astype(int)
+
+
+def position_error_m(observation: Observation, truth: Pose) -> float:
+    """Distance of the bottom centres."""
+    return float(np.linalg.norm(np.subtract(observation.pose.position_m, truth.position_m)))
+
+
+def size_error_m(observation: Observation, truth: Size) -> float:
+    """Mean error of the three extents; which horizontal side is called x does not matter."""
+    said, true = ([*sorted(size[:2]), size[2]] for size in (observation.size_m, truth))
+    return float(np.abs(np.subtract(said, true)).mean())
+
+
+def milliseconds(score: Score) -> float:
+    """Median time of a look."""
+    return 1e3 * median(score.seconds)
+
+
+def measure(scenes: int, learnt: Learnt) -> list[Row]:
+    """All figures of so many easy and as many crowded rooms."""
+    judge = Judge(class_of_models(MODELS), learnt.ancestors)
+    ours = partial(look, learnt=learnt)
+    rows: list[Row] = []
+    for crowded, name, reach, aim in ((False, "easy", 0.98, 0.99), (True, "crowded, touching", 0.93, 0.95)):
+        seen = list(shots(rooms(scenes, _SEEDS[crowded], crowded=crowded), seed=1))
+        two, one = judge_rooms(seen, ours, judge), judge_rooms(seen, ours, judge, cameras=1)
+        chance = judge_rooms(seen, guessing(ours, learnt), judge)
+        plain = judge_rooms(seen, partial(clustered, learnt=learnt), judge)
+        rows += [
+            Row(f"{name}: detection F1", two.f1(two.found), "", reach, aim),
+            Row(f"{name}: class F1 (right or an ancestor below Object)", two.f1(two.right), "", reach, aim),
+            Row(f"{name}: class F1, exact", two.f1(two.exact)),
+            Row(f"{name}: detection F1 from one camera", one.f1(one.found)),
+            Row(f"{name}: class F1 from one camera", one.f1(one.right)),
+            Row(f"{name}: class F1 by chance", chance.f1(chance.right)),
+            Row(f"{name}: detection F1, planes + DBSCAN", plain.f1(plain.found)),
+            Row(f"{name}: class F1, planes + DBSCAN", plain.f1(plain.right)),
+        ]
+        if not crowded:
+            rows += [
+                Row("position, small things, median, 1 camera", _mm(one.position_m), "mm", 7, 5, less=True),
+                Row("position, small things, median, 2 cameras", _mm(two.position_m), "mm", 3, 2, less=True),
+                Row("size, small things, median, 1 camera", _mm(one.size_m), "mm"),
+                Row("size, small things, median, 2 cameras", _mm(two.size_m), "mm", 12, 8, less=True),
+                Row("one 640x480 frame, whole pipeline, median", milliseconds(one), "ms", 120, 66, less=True),
+            ]
+    return rows
+
+
+def _mm(errors_m: Sequence[float]) -> float:
+    return 1e3 * median(errors_m)

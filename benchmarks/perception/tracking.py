@@ -1,0 +1,175 @@
+"""Do things keep their names while they are moved about? The pipeline and the association, without the wire.
+
+Twenty things stand in cells of a table that two cameras see from opposite corners, noise on. One after the
+other is taken to a free cell and turned. Then the entity that stands where the thing really is must be the
+one that was it before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from msgspec import structs
+
+from benchmarks.perception.rooms import THIN_M, THINGS
+from nodes.perception_node.association import associate
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.pipeline import Look
+from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.visibility import looking
+from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.vision.view import look_at
+from nodes.training.scenes import Item, Stage
+from schemas.commands import Add, Command, Remove, Update
+from schemas.entities import Entity, Pose, Provenance
+
+_CELL_M, _COLUMNS, _ROWS = 0.24, 6, 4
+_TABLE_M = (_COLUMNS * _CELL_M + 0.1, _ROWS * _CELL_M + 0.1, 0.75)
+_LARGEST_M = 0.18
+_LOOKS = 5
+"""Looks after each move; at five a second it takes one second."""
+_SAME_M = 0.06
+
+
+class Kept(NamedTuple):
+    """Of `moves`: in `kept` the thing had one name before and after, in `held` at least an entity after."""
+
+    moves: int
+    kept: int
+    held: int
+    entities: int
+    """How many the map had in the end."""
+
+
+class ObedientMap:
+    """A map that takes whatever perception tells it."""
+
+    def __init__(self) -> None:
+        self.entities: dict[str, Entity] = {}
+        self._commit = 0
+
+    def obey(self, command: Command) -> None:
+        """Change as told."""
+        self._commit += 1
+        said = Provenance(commit=self._commit, stamp_ns=0, source="perception")
+        match command:
+            case Add(name=str(name), class_=class_, at=at) if at is not None:
+                self.entities[name] = Entity(
+                    name=name, class_=class_, iri=name, types=(class_,), size_m=command.size,
+                    pose=Pose(position_m=at, orientation_wxyz=command.orientation or (1.0, 0.0, 0.0, 0.0)),
+                    provenance=said, pose_provenance=said, shape_provenance=said, reference_provenance=said,
+                )  # fmt: skip
+            case Remove(names=names):
+                for name in names:
+                    del self.entities[name]
+            case Update(name=name):
+                self.entities[name] = self._updated(self.entities[name], command)
+
+    def at(self, x: float, y: float) -> str | None:
+        """The entity that stands nearest to a place of the table, if it stands there."""
+        distances = {
+            math.dist(e.pose.position_m[:2], (x, y)): name
+            for name, e in self.entities.items()
+            if e.pose is not None and e.pose.position_m[2] > _TABLE_M[2] / 2.0
+        }
+        nearest = min(distances, default=math.inf)
+        return distances[nearest] if nearest < _SAME_M else None
+
+    @staticmethod
+    def _updated(entity: Entity, command: Update) -> Entity:
+        changed = structs.replace(
+            entity, class_=command.class_ or entity.class_, size_m=command.size or entity.size_m
+        )
+        if command.at is None or command.orientation is None:
+            return changed
+        return structs.replace(
+            changed, pose=Pose(position_m=command.at, orientation_wxyz=command.orientation)
+        )
+
+
+def identity(
+    perceive: Callable[[Sequence[Cloud]], Look],
+    kinship: Kinship,
+    *,
+    moves: int = 100,
+    things: int = 20,
+    seed: int = 5,
+) -> Kept:
+    """Move things about and see who keeps their names."""
+    rng, stage, config = np.random.default_rng(seed), Stage(), TrackingConfig()
+    cells = [(column, row) for column in range(_COLUMNS) for row in range(_ROWS)]
+    rng.shuffle(cells)
+    items = [_item(n, cell, rng) for n, cell in enumerate(cells[:things])]
+    free = cells[things:]
+    semantic_map, tracks = ObedientMap(), Tracks()
+    table = Item("table", "table", _TABLE_M, (0.6, 0.5, 0.4), (0.0, 0.0, 0.0), 0.0)
+    views = [
+        look_at(
+            np.array([side * 0.8, side * 0.8, 1.9]), np.array([0.0, 0.0, 0.75]), 640, 480, math.radians(58.0)
+        )
+        for side in (-1.0, 1.0)
+    ]
+
+    def look(count: int) -> None:
+        nonlocal tracks
+        bodies = stage.show([table, *items])
+        for _ in range(count):
+            clouds = stage.shoot(bodies, views, rng).clouds
+            seen = perceive(clouds).observations.observations
+            told = associate(semantic_map.entities, tracks, seen, looking(clouds), kinship, config)
+            tracks = told.tracks
+            for command in told.commands:
+                semantic_map.obey(command)
+
+    def name_of(item: Item) -> str | None:
+        return semantic_map.at(*item.position_m[:2])
+
+    look(2 * _LOOKS)
+    kept = held = 0
+    for _ in range(moves):
+        which = int(rng.integers(len(items)))
+        before, cell = name_of(items[which]), free.pop(int(rng.integers(len(free))))
+        free.append(_cell_of(items[which]))
+        items[which] = replace(
+            items[which], position_m=_spot(cell, rng), yaw_rad=float(rng.uniform(-3.1, 3.1))
+        )
+        look(_LOOKS)
+        after = name_of(items[which])
+        kept += before is not None and after == before
+        held += after is not None
+    return Kept(moves, kept, held, len(semantic_map.entities))
+
+
+def _item(number: int, cell: tuple[int, int], rng: np.random.Generator) -> Item:
+    small = [
+        kind
+        for kind in THINGS
+        if max(MODELS[kind].size_m[:2]) <= _LARGEST_M and MODELS[kind].size_m[2] > THIN_M
+    ]
+    kind = str(rng.choice(small))
+    x, y, z = (float(own * rng.uniform(0.9, 1.1)) for own in MODELS[kind].size_m)
+    red, green, blue = (float(np.clip(c + rng.uniform(-0.1, 0.1), 0.0, 1.0)) for c in MODELS[kind].colour)
+    yaw = float(rng.uniform(-3.1, 3.1))
+    return Item(f"thing{number}", kind, (x, y, z), (red, green, blue), _spot(cell, rng), yaw)
+
+
+def _spot(cell: tuple[int, int], rng: np.random.Generator) -> tuple[float, float, float]:
+    dx, dy = rng.uniform(-0.02, 0.02, 2).tolist()
+    x, y = (
+        (n + 0.5) * _CELL_M - many * _CELL_M / 2.0 for n, many in zip(cell, (_COLUMNS, _ROWS), strict=True)
+    )
+    return (x + dx, y + dy, _TABLE_M[2] + 0.001)
+
+
+def _cell_of(item: Item) -> tuple[int, int]:
+    column, row = (
+        round((at + many * _CELL_M / 2.0) / _CELL_M - 0.5)
+        for at, many in zip(item.position_m, (_COLUMNS, _ROWS), strict=False)
+    )
+    return (column, row)

@@ -1,0 +1,45 @@
+"""Things of classes that training never saw: are they called `Object`, or by a class above the true one?"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.perception.rooms import THINGS, rooms
+from benchmarks.perception.simulated import Judge, judge_rooms, shots
+from benchmarks.perception.table import Row
+from nodes.perception_node.pipeline import look
+from nodes.perception_node.recognition.learnt import UNKNOWN
+from nodes.sim_node.models.table import MODELS
+from nodes.training.recognition import gather, learn
+from nodes.training.samples import read
+from nodes.training.taxonomy import class_of_models
+
+LEFT_OUT = 10
+_SEED = 20263
+
+
+def measure(scenes: int, samples: Path | None, training_scenes: int) -> list[Row]:
+    """Train without ten classes drawn by lot, then show their things; `samples` saves the rendering."""
+    class_of = class_of_models(MODELS)
+    kinds = [str(kind) for kind in np.random.default_rng(_SEED).choice(THINGS, LEFT_OUT, replace=False)]
+    learnt = learn(
+        read(samples) if samples else gather(training_scenes, seed=1),
+        without=[class_of[kind] for kind in kinds],
+    )
+    judge = Judge(class_of, learnt.ancestors)
+    seen = shots(rooms(scenes, _SEED, crowded=False, things=kinds), seed=2)
+    score = judge_rooms(seen, partial(look, learnt=learnt), judge, of=kinds)
+    unnamed = sum(said == UNKNOWN for _, said in score.wrong)
+    return [
+        Row(
+            "ten classes left out: Object or a true ancestor",
+            (score.right + unnamed) / score.found,
+            "",
+            0.8,
+            0.9,
+        ),
+        Row("ten classes left out: called Object", unnamed / score.found),
+    ]

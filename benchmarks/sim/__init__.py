@@ -1,0 +1,1 @@
+"""How fast the simulator is: by itself, and in the whole system."""

@@ -1,0 +1,122 @@
+"""Add, update, remove, clear: one entity, or those that are named."""
+
+from __future__ import annotations
+
+from msgspec import structs
+
+from nodes.coordinator import transactions
+from nodes.coordinator.authority import require_authority
+from nodes.coordinator.door.committing import commit, commit_built, new_id, once, seq, stars
+from nodes.coordinator.door.map_view import MapView
+from nodes.coordinator.hands import Hand
+from nodes.coordinator.naming import free_position
+from nodes.coordinator.talking import Talk
+from schemas import errors
+from schemas.commands import Add, Changed, Clear, Command, Remove, Update
+from schemas.commits import Commit, Transaction
+from schemas.entities import ClassInfo, Entity, Pose, free_name
+from schemas.scene_files import pose_of
+
+
+@once
+def add(view: MapView, command: Add) -> Talk[Changed]:
+    """Put an entity into the map."""
+    found = view.classes.spatial(command.class_)
+    name = command.name or free_name(found.name, view.entities)
+    if name in view.entities:
+        raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
+    at = command.at or free_position(view.entities.values(), command.size)
+    pose = pose_of(at, command.yaw, command.orientation)
+    ref = command.ref or (_label(found) if command.default else None)
+
+    def build(suffix: str) -> Talk[Transaction]:
+        return transactions.add(command, name, found, pose, ref, suffix)
+        yield  # nothing to ask
+
+    made = yield from commit_built(view, build)
+    return Changed(
+        commit=seq(made),
+        text=f"added {found.name} {name} at {_metres(pose)}",
+        names=(name,),
+        notes=view.classes.note(command.class_, found),
+    )
+
+
+@once
+def update(view: MapView, command: Update) -> Talk[Changed]:
+    """Change what is named; what is not named stays."""
+    entity = view.entity(command.name)
+    found = view.classes.spatial(command.class_) if command.class_ is not None else None
+    changes = (found, command.ref, command.alt, command.size)
+    if any(change is not None for change in changes):
+        require_authority(command, [entity])
+
+    def build(suffix: str) -> Talk[Transaction]:
+        (star,) = yield from stars((entity.name,))
+        return transactions.update(command, view.entity(entity.name), star, found, suffix)
+
+    if all(change is None for change in (*changes, command.conflict)):
+        made = yield from commit(view, transactions.place(command))
+    else:
+        made = yield from commit_built(view, build)
+    return Changed(
+        commit=seq(made),
+        text=f"updated {entity.name}" if made else f"{entity.name} is like that already",
+        names=(entity.name,),
+        notes=view.classes.note(command.class_ or "", found) if found else (),
+    )
+
+
+@once
+def remove(view: MapView, command: Remove) -> Talk[Changed]:
+    """Take entities out: all of them, or, if one is unknown, none."""
+    if not command.names:
+        raise errors.BadRequest("name at least one entity to remove")
+    leaving = [view.entity(name) for name in dict.fromkeys(command.names)]
+    require_authority(command, leaving)
+    return (yield from _take_out(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
+
+
+@once
+def clear(view: MapView, command: Clear) -> Talk[Changed]:
+    """Take every entity out."""
+    require_authority(command, view.entities.values())
+    return (yield from _take_out(view, command, "clear", list(view.entities.values())))
+
+
+def follow(view: MapView, name: str, pose: Pose, hand: Hand) -> Talk[Commit | None]:
+    """The map takes over where a body came to rest."""
+    command = Update(
+        id=new_id(),
+        source="scene",
+        agent=hand.agent,
+        reason=hand.reason,
+        name=name,
+        at=pose.position_m,
+        orientation=pose.orientation_wxyz,
+    )
+    return (yield from commit(view, structs.replace(transactions.place(command), verb=hand.verb)))
+
+
+def _take_out(view: MapView, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
+    names = tuple(entity.name for entity in leaving)
+    if not names:
+        return Changed(commit=None, text="the map is empty already")
+
+    def build(_: str) -> Talk[Transaction]:
+        return transactions.remove(command, reason, (yield from stars(names)))
+
+    made = yield from commit_built(view, build)
+    return Changed(commit=seq(made), text=f"removed {len(names)}: {_few(names)}", names=names)
+
+
+def _label(found: ClassInfo) -> str:
+    return found.labels.get("en") or found.labels.get("") or found.name.replace("_", " ").lower()
+
+
+def _metres(pose: Pose) -> str:
+    return "({:g}, {:g}, {:g})".format(*pose.position_m)
+
+
+def _few(names: tuple[str, ...]) -> str:
+    return ", ".join(names) if len(names) <= 10 else f"{', '.join(names[:9])} and {len(names) - 9} more"

@@ -1,0 +1,90 @@
+"""What every command that changes the map does: commit, again if need be, and only once."""
+
+from __future__ import annotations
+
+import functools
+import uuid
+from collections.abc import Callable
+from typing import TypeVar
+
+from msgspec import structs
+
+from nodes.coordinator.door.map_view import MapView
+from nodes.coordinator.talking import Question, Talk
+from schemas import errors
+from schemas.bridge import StarQuery
+from schemas.commands import Changed, Command
+from schemas.commits import Commit, Star, Transaction
+
+_ATTEMPTS = 5
+C = TypeVar("C", bound=Command)
+Change = Callable[[MapView, C], Talk[Changed]]
+
+
+def once(change: Change[C]) -> Change[C]:
+    """A command that is sent again under the same id is answered with its first result."""
+
+    @functools.wraps(change)
+    def execute(view: MapView, command: C) -> Talk[Changed]:
+        if not command.id:
+            return (yield from change(view, structs.replace(command, id=new_id())))
+        done = yield from _done_before(command)
+        return done or (yield from change(view, command))
+
+    return execute
+
+
+def _done_before(command: Command) -> Talk[Changed | None]:
+    """The result of the command with this id, if there was one."""
+    nothing = Transaction(id=command.id, source=command.source)
+    commit: Commit | None = yield Question("commit", nothing)
+    if commit is None:
+        return None
+    names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
+    return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
+
+
+def commit(view: MapView, transaction: Transaction) -> Talk[Commit | None]:
+    """Commit it; None if it changes nothing."""
+    made: Commit | None = yield Question("commit", transaction)
+    return taken(view, made)
+
+
+def commit_built(view: MapView, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
+    """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
+    suffix = ""
+    for attempt in range(_ATTEMPTS):
+        transaction = yield from build(suffix)
+        try:
+            return (yield from commit(view, transaction))
+        except errors.PreconditionFailed:
+            if attempt == _ATTEMPTS - 1:
+                raise
+        except errors.NameTaken:
+            if suffix:
+                raise
+            suffix = f"_{view.seq + 1}"
+    raise AssertionError("the last attempt returns or raises")
+
+
+def taken(view: MapView, commit: Commit | None) -> Commit | None:
+    """The commit, shown in the view so that the next command sees it."""
+    if commit is not None:
+        view.take(commit)
+    return commit
+
+
+def stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
+    """The triples about some entities."""
+    found: tuple[Star, ...] = yield Question("star", StarQuery(names=names))
+    return found
+
+
+def new_id() -> str:
+    """For a command that came without."""
+    return uuid.uuid4().hex
+
+
+def seq(commit: Commit | None) -> int | None:
+    """Its number."""
+    return None if commit is None else commit.seq

@@ -1,0 +1,64 @@
+"""The door, as the coordinator's node sees it: a command goes in, and its result comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nodes.coordinator.door import changing, loading, undoing
+from nodes.coordinator.door.map_view import MapView
+from nodes.coordinator.hands import Hands
+from nodes.coordinator.talking import Ask, Talk, hold, in_step
+from schemas import errors
+from schemas.commands import Add, Changed, Clear, Load, Remove, Undo, Update
+from schemas.entities import Pose
+
+
+class Door(MapView):
+    """Executes the commands that change the map, and sees it as they leave it.
+
+    Owned by the coordinator's thread. Errors are those that the command deserves, and those of the knowledge
+    base.
+    """
+
+    def __init__(self, ask: Ask) -> None:
+        """`ask(verb, message)` asks the knowledge base."""
+        super().__init__()
+        self._ask = ask
+        self.hands = Hands()
+
+    def add(self, command: Add) -> Changed:
+        """Put an entity into the map."""
+        return hold(changing.add(self, command), self._ask)
+
+    def update(self, command: Update) -> Changed:
+        """Change what is named; what is not named stays."""
+        return hold(changing.update(self, command), self._ask)
+
+    def together(self, commands: Sequence[Add | Update]) -> Talk[list[Changed | errors.SemmapError]]:
+        """Changes of different entities, with as few questions as one."""
+        return in_step(
+            [
+                changing.add(self, command) if isinstance(command, Add) else changing.update(self, command)
+                for command in commands
+            ]
+        )
+
+    def remove(self, command: Remove) -> Changed:
+        """Take entities out: all of them, or, if one is unknown, none."""
+        return hold(changing.remove(self, command), self._ask)
+
+    def clear(self, command: Clear) -> Changed:
+        """Take every entity out."""
+        return hold(changing.clear(self, command), self._ask)
+
+    def load(self, command: Load) -> Changed:
+        """Add what a file describes."""
+        return hold(loading.load(self, command), self._ask)
+
+    def undo(self, command: Undo) -> Changed:
+        """Take back a commit."""
+        return hold(undoing.undo(self, command), self._ask)
+
+    def follow(self, name: str, pose: Pose) -> None:
+        """The map takes over where a body came to rest."""
+        hold(changing.follow(self, name, pose, self.hands.that_moved(name)), self._ask)

@@ -1,0 +1,141 @@
+"""Load: a document of any RDF syntax, a scene, a HuRIC map, or another TBox."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from msgspec import structs
+
+from nodes.coordinator import transactions
+from nodes.coordinator.authority import require_authority, require_operator
+from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken
+from nodes.coordinator.door.map_view import MapView
+from nodes.coordinator.files import huric
+from nodes.coordinator.files.content import kind_of
+from nodes.coordinator.talking import Question, Talk
+from schemas import errors, scene_files
+from schemas.bridge import LoadDocument, Loaded, LoadTBox
+from schemas.commands import Changed, Classes, Load
+from schemas.commits import Commit, Transaction
+from schemas.entities import ClassInfo, free_name
+from schemas.explanations import Triple
+from schemas.scene_files import Described
+
+READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
+    "scene": scene_files.read,
+    "huric": huric.read,
+}
+
+
+@once
+def load(view: MapView, command: Load) -> Talk[Changed]:
+    """Add what a file describes."""
+    if command.source == "operator":
+        command = structs.replace(command, source="file")
+    if command.tbox:
+        return (yield from _load_tbox(view, command))
+    if command.replace:
+        require_authority(command, view.entities.values())
+    kind = kind_of(command.content, command.filename)
+    if kind == "abox":
+        return (yield from _load_document(view, command))
+    return (yield from _load_described(view, command, READERS[kind](command.content, command.filename)))
+
+
+def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> Talk[Changed]:
+    known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
+    taken_names = set() if command.replace else set(view.entities)
+    insert: dict[Triple, None] = {}
+    names: list[str] = []
+    for item, found in known:
+        name = item.name or free_name(found.name, taken_names)
+        if name in taken_names:
+            raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
+        taken_names.add(name)
+        names.append(name)
+        insert.update(dict.fromkeys(transactions.describe(name, found, item)))
+    gone = (yield from stars(tuple(view.entities))) if command.replace and view.entities else ()
+
+    def build(_: str) -> Talk[Transaction]:
+        return transactions.transaction(
+            command,
+            f"load {command.filename}",
+            retract=[t for star in gone for t in (*star.own, *star.incoming)],
+            insert=insert,
+        )
+        yield  # nothing to ask
+
+    commit = yield from commit_built(view, build)
+    return _loaded(command, commit, tuple(names), skipped, notes)
+
+
+def _load_document(view: MapView, command: Load) -> Talk[Changed]:
+    document = LoadDocument(
+        id=command.id,
+        source=command.source,
+        agent=command.agent,
+        reason=command.reason or f"load {command.filename}",
+        content=command.content,
+        filename=command.filename,
+        replace=command.replace,
+        skip_unknown=command.skip_unknown,
+    )
+    loaded: Loaded = yield Question("load", document)
+    names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
+    return _loaded(command, taken(view, loaded.commit), names, loaded.skipped, loaded.notes)
+
+
+def _load_tbox(view: MapView, command: Load) -> Talk[Changed]:
+    if command.replace or command.skip_unknown:
+        raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+    require_operator(command, "replace the TBox")
+    order = LoadTBox(
+        id=command.id,
+        source=command.source,
+        agent=command.agent,
+        reason=command.reason or f"load the TBox {command.filename}",
+        content=command.content,
+        filename=command.filename,
+    )
+    commit: Commit = yield Question("load-tbox", order)
+    taken(view, commit)
+    view.classes = ClassNames((yield Question("classes", Classes())))
+    text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
+    return Changed(commit=commit.seq, text=text, names=commit.names)
+
+
+def _sort_out(
+    classes: ClassNames, described: Iterable[Described], *, skip_unknown: bool
+) -> tuple[list[tuple[Described, ClassInfo]], tuple[str, ...], tuple[str, ...]]:
+    """Those of a known class, a word on each of the others, and how class names were read."""
+    known: list[tuple[Described, ClassInfo]] = []
+    unknown: dict[str, list[str]] = {}
+    notes: dict[str, None] = {}
+    for i, item in enumerate(described, start=1):
+        try:
+            found = classes.spatial(item.class_)
+        except errors.UnknownClass:
+            unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
+            continue
+        known.append((item, found))
+        notes.update(dict.fromkeys(classes.note(item.class_, found)))
+    if unknown and not skip_unknown:
+        raise errors.UnknownClass(errors.unknown_classes(unknown, classes.by_name))
+    skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
+    return known, skipped, tuple(notes)
+
+
+def _loaded(
+    command: Load,
+    commit: Commit | None,
+    names: tuple[str, ...],
+    skipped: tuple[str, ...],
+    notes: tuple[str, ...],
+) -> Changed:
+    text = f"loaded {len(names)} entities from {command.filename or 'the file'}"
+    if commit is None:
+        text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
+    if skipped:
+        text += f", left out {len(skipped)}"
+    return Changed(commit=seq(commit), text=text, names=names, skipped=skipped, notes=notes)

@@ -1,0 +1,46 @@
+"""What the coordinator knows of the map: a snapshot, and the commits since."""
+
+from __future__ import annotations
+
+from nodes.coordinator.class_names import ClassNames
+from schemas import errors
+from schemas.commits import Commit, Snapshot
+from schemas.entities import Entity
+
+
+class MapView:
+    """The entities after commit `seq`, and the classes."""
+
+    def __init__(self) -> None:
+        self.classes = ClassNames()
+        self.entities: dict[str, Entity] = {}
+        self.seq = 0
+
+    def entity(self, name: str) -> Entity:
+        """The entity of that name. Raises UnknownName with the nearest ones."""
+        if name in self.entities:
+            return self.entities[name]
+        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
+
+    def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
+        """The entities, or those of a class by inference, in the order of their names."""
+        known = sorted(self.entities.items())
+        return tuple(e for _, e in known if class_name is None or class_name in e.types)
+
+    def begin(self, snapshot: Snapshot) -> None:
+        """Take over a snapshot, unless it is older than what is known."""
+        if snapshot.seq >= self.seq:
+            self.seq = snapshot.seq
+            self.entities = {entity.name: entity for entity in snapshot.entities}
+
+    def take(self, commit: Commit) -> bool:
+        """Show a commit in `entities`. False when one before it was missed, so that a snapshot is needed."""
+        if commit.seq <= self.seq:
+            return True
+        if commit.seq != self.seq + 1:
+            return False
+        self.seq = commit.seq
+        for gone in commit.removed:
+            self.entities.pop(gone.name, None)
+        self.entities.update({entity.name: entity for entity in commit.changed})
+        return True

@@ -1,0 +1,121 @@
+"""Whose turn it is: commands keep their order where it matters, and the others go together.
+
+Changes of different entities do not depend on one another: those that wait are asked of the knowledge base as
+one group, and the next group is sent while one is under way, so that neither waits for the other. Everything
+else, an entity without a name or a place among it (they have to suit the others), waits until what came
+before is done.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from itertools import islice
+from typing import Any, NamedTuple
+
+from nodes.loop import settle
+from schemas import errors
+from schemas.commands import Add, Changed, Update
+
+GROUP = 16
+"""How many changes go together at most: two groups are as many as a busy client has in flight."""
+AT_ONCE = 2
+"""How many groups may be under way: one that the knowledge base works on, and one that waits there."""
+
+Change = Add | Update
+Results = list[Changed | errors.SemmapError]
+
+
+class _Waiting(NamedTuple):
+    """A change, or something else that has to wait for its turn."""
+
+    change: Change | None
+    execute: Callable[[], Any]
+    future: Future[Any]
+
+
+class _Group(NamedTuple):
+    names: frozenset[str | None]
+    alone: bool
+
+
+class Turns:
+    """Owned by the coordinator's thread, which calls `go_on` when it has nothing else to do."""
+
+    def __init__(self, together: Callable[[Sequence[Change], bool], Future[Results]]) -> None:
+        """`together(changes, rest)` makes changes of different entities; `rest`: others wait meanwhile."""
+        self._together = together
+        self._waiting: deque[_Waiting] = deque()
+        self._under_way: list[_Group] = []
+
+    def change(self, change: Change) -> Future[Changed]:
+        """The result of a change, in its turn."""
+        future: Future[Changed] = Future()
+        self._waiting.append(_Waiting(change, lambda: None, future))
+        if len(self._waiting) >= GROUP:
+            self.go_on()
+        return future
+
+    def after(self, execute: Callable[[], Any]) -> Any:
+        """What `execute()` gives, or, when something came before it, a future of that."""
+        if not self._waiting and not self._under_way:
+            return execute()
+        future: Future[Any] = Future()
+        self._waiting.append(_Waiting(None, execute, future))
+        return future
+
+    def go_on(self) -> None:
+        """Begin what can begin."""
+        while self._waiting:
+            if self._waiting[0].change is not None:
+                members = self._next_group()
+                if not members:
+                    return
+                self._begin([self._waiting.popleft() for _ in members])
+            elif self._under_way:
+                return
+            else:
+                _, execute, future = self._waiting.popleft()
+                settle(future, execute)
+
+    def _next_group(self) -> list[Change]:
+        """The changes at the front that depend neither on one another nor on what is under way.
+
+        None of them begin beside a larger group: more will have come when that is done.
+        """
+        if len(self._under_way) == AT_ONCE or any(group.alone for group in self._under_way):
+            return []
+        names = {name for group in self._under_way for name in group.names}
+        members: list[Change] = []
+        for change, _, _ in islice(self._waiting, GROUP):
+            if change is not None and _is_alone(change) and not members and not self._under_way:
+                return [change]
+            if change is None or _is_alone(change) or change.name in names:
+                break
+            names.add(change.name)
+            members.append(change)
+        return members if all(len(members) >= len(group.names) for group in self._under_way) else []
+
+    def _begin(self, members: Sequence[_Waiting]) -> None:
+        changes = [change for change, _, _ in members if change is not None]
+        group = _Group(frozenset(change.name for change in changes), any(map(_is_alone, changes)))
+        self._under_way.append(group)
+
+        def on_done(done: Future[Results]) -> None:
+            self._under_way.remove(group)
+            for i, (_, _, future) in enumerate(members):
+                settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
+
+        rest = bool(self._waiting) or len(self._under_way) > 1
+        self._together(changes, rest).add_done_callback(on_done)
+
+
+def _is_alone(change: Change) -> bool:
+    return isinstance(change, Add) and (change.name is None or change.at is None)
+
+
+def _result(result: Changed | errors.SemmapError) -> Changed:
+    if isinstance(result, errors.SemmapError):
+        raise result
+    return result

@@ -1,0 +1,54 @@
+"""Where an entity is, as a change of triples."""
+
+from __future__ import annotations
+
+from nodes.kb_node.entities import owners
+from nodes.kb_node.reasoner import Reasoner
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Placed
+from schemas.entities import Entity, Pose
+from schemas.explanations import Term, Triple
+from schemas.scene_files import pose_of
+
+_COORDINATES = frozenset((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
+
+
+def place(
+    reasoner: Reasoner, tbox: frozenset[Triple], entity: Entity, placed: Placed
+) -> tuple[list[Triple], list[Triple]]:
+    """The triples that go and those that come when `entity` is placed anew.
+
+    Its coordinates are changed where they are, unless somebody else uses them, too: then it gets its own.
+    Raises BadRequest for a pose that is none, Refused for an entity that the TBox itself has.
+    """
+    iri = v.iri(entity.iri)
+    said = list(reasoner.asserted(iri))
+    if not tbox.isdisjoint(said):
+        raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
+    edges = [t for t in said if t[1] == v.HAS_POSITION]
+    nodes = sorted(o for _, _, o in edges)
+    if nodes and all(owners(reasoner, node) == {iri, node} for node in nodes):
+        node = nodes[0]
+        gone = [t for t in reasoner.asserted(node) if t[1] in _COORDINATES]
+    else:
+        node, gone = _free_node(reasoner, entity.name), []
+    return edges + gone, stars.position(iri, node, _pose(entity, placed))
+
+
+def _pose(entity: Entity, placed: Placed) -> Pose:
+    before = entity.pose
+    at = placed.at or (before.position_m if before is not None else None)
+    if at is None:
+        raise errors.BadRequest(f"{entity.name} has no position yet; give one with --at")
+    return pose_of(at, placed.yaw, placed.orientation, before)
+
+
+def _free_node(reasoner: Reasoner, name: str) -> Term:
+    """The usual name of its coordinates, or the next that nobody has."""
+    node, number = v.entity_iri(f"{name}_coordinates"), 1
+    while any(True for _ in reasoner.asserted(node)):
+        number += 1
+        node = v.entity_iri(f"{name}_coordinates_{number}")
+    return node

@@ -1,0 +1,145 @@
+"""What was seen, and what the map says: which is which, and what the map is to be told. Pure.
+
+A look is matched in steps. First things that stand where they stood, or nearly. Then, as segments of one look
+are not always those of the next, what is only a part of a thing that still fills its place, or several such
+in one, is passed over. Then things that have vanished from their places are found again in things of the same
+kind that appeared elsewhere, so that identity survives a move. What is left over is new.
+
+Whoever calls must let the map take what it was told before the next look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.kinship import ANYTHING, Kinship
+from nodes.perception_node.likeness import Target
+from nodes.perception_node.matching import Candidate, Matching, match
+from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.telling import has_moved, is_sure, news, proposals
+from nodes.perception_node.tracks import Track, Tracks, slack_m
+from nodes.perception_node.visibility import Looks
+from schemas.commands import Command
+from schemas.entities import Entity, Size, distance_m
+from schemas.perception import Observation
+
+_ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
+_FORGOTTEN_AFTER = 3
+"""Looks in a row after which what is no entity yet, and no longer seen, is forgotten."""
+
+
+class Association(NamedTuple):
+    """The new memory, what to tell the map, and for each observation its entity ("" for none yet)."""
+
+    tracks: Tracks
+    commands: tuple[Command, ...]
+    entities: tuple[str, ...]
+
+
+def associate(
+    entities: Mapping[str, Entity],
+    tracks: Tracks,
+    observations: Sequence[Observation],
+    looks: Looks,
+    kinship: Kinship,
+    config: TrackingConfig,
+) -> Association:
+    """One look. `entities` are the map's, `looks` tells what is seen of a place without an observation."""
+    candidates = {
+        name: _candidate(entity, tracks.known.get(name), kinship, config)
+        for name, entity in entities.items()
+        if not entity.place and entity.pose is not None
+    }
+    others = [Candidate(track, _target(track, kinship)) for track in tracks.tentative]
+    matching = match(candidates, others, observations, looks, kinship, config)
+    known = {
+        name: _watched(
+            _after(name, candidate.track, matching, observations, config), entities[name], looks, config
+        )
+        for name, candidate in candidates.items()
+    }
+    tentative = _tentative(tracks.tentative, matching, observations, config)
+    told = [news(entities[name], track, kinship, config) for name, track in known.items()]
+    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, config))
+    added = proposals(proposed, {*tracks.names, *entities}, kinship)
+    names = {j: name for name, j in matching.known.items()}
+    return Association(
+        Tracks(
+            known | dict(zip(added, proposed, strict=True)),
+            tuple(track for track in tentative if track not in proposed),
+            tracks.names.union(added),
+        ),
+        (*(command for command in told if command is not None), *added.values()),
+        tuple(names.get(j, "") for j in range(len(observations))),
+    )
+
+
+def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: TrackingConfig) -> Candidate:
+    """An entity; if somebody else has told the map another pose of it since, that counts."""
+    assert entity.pose is not None
+    said_m = entity.size_m or kinship.usual_m.get(entity.class_)
+    if track is None:
+        track = Track(entity.pose, said_m or _ANY_SIZE_M, told=entity.pose)
+    elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
+    if track.told != entity.pose and elsewhere:
+        track = replace(track, pose=entity.pose, looks=0)
+    track = replace(track, told=entity.pose)
+    target = _target(track, kinship)
+    own = entity.shape_provenance.source == "perception"
+    return Candidate(
+        track,
+        target._replace(
+            size_m=track.size_m if track.looks else said_m,
+            class_=entity.class_ if target.class_ == ANYTHING else target.class_,
+            whole=track.whole or not own,
+        ),
+    )
+
+
+def _target(track: Track, kinship: Kinship) -> Target:
+    return Target(track.pose, track.size_m, track.votes.belief(kinship), track.whole)
+
+
+def _after(
+    name: str, track: Track, matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+) -> Track:
+    """What is remembered of an entity after this look."""
+    if name in matching.known:
+        return track.see(observations[matching.known[name]], config)
+    return track.miss(matching.places[name], odd=name in matching.odd)
+
+
+def _watched(track: Track, entity: Entity, looks: Looks, config: TrackingConfig) -> Track:
+    """With a look at the place that the map has of it: is that left?"""
+    if entity.pose is None or track.unseen or not has_moved(entity, track, config):
+        return replace(track, left=False)
+    return replace(track, left=track.left or looks(entity.pose, track.size_m) == "open")
+
+
+def _tentative(
+    tracks: Sequence[Track], matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+) -> list[Track]:
+    """What is remembered of things that are no entities yet, new ones at the end."""
+    after = [
+        track.see(observations[matching.tentative[i]], config)
+        if i in matching.tentative
+        else track.miss("open", odd=False)
+        for i, track in enumerate(tracks)
+    ]
+    new = [observations[j] for j in matching.new]
+    return [
+        *(track for track in after if track.unseen < _FORGOTTEN_AFTER),
+        *(Track(o.pose, o.size_m).see(o, config) for o in new),
+    ]
+
+
+def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:
+    apart: list[Track] = []
+    for track in tracks:
+        spot = Place(track.pose, track.size_m)
+        if not any(are_of_one(spot, Place(other.pose, other.size_m)) for other in apart):
+            apart.append(track)
+    return apart

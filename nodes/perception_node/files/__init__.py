@@ -1,0 +1,1 @@
+"""Frames in files: PCD, PLY, and pictures of colour and depth."""

@@ -1,0 +1,42 @@
+"""LZF, the compression inside PCD files."""
+
+from __future__ import annotations
+
+
+def decompress(packed: bytes, size: int) -> bytes:
+    """What was packed, `size` bytes long. Raises ValueError for a damaged or truncated block.
+
+    A control byte below 32 announces as many literal bytes and one; any other is a reference back: its upper
+    three bits are the length less two (7: a byte follows that is added), the rest and the next byte say
+    how far back, less one. A reference may overlap what it writes, and so repeats itself.
+    """
+    out = bytearray()
+    here, end = 0, len(packed)
+    try:
+        while here < end:
+            control = packed[here]
+            here += 1
+            if control < 32:
+                out += packed[here : here + control + 1]
+                here += control + 1
+                continue
+            length = control >> 5
+            if length == 7:
+                length += packed[here]
+                here += 1
+            start = len(out) - ((control & 31) << 8) - packed[here] - 1
+            here += 1
+            length += 2
+            if start < 0:
+                raise ValueError("a reference to before the beginning")
+            unit = out[start : start + length]
+            while len(unit) < length:
+                unit += unit[: length - len(unit)]
+            out += unit
+            if len(out) > size:
+                raise ValueError(f"more than the {size} bytes promised")
+    except IndexError:
+        raise ValueError("it ends within a reference") from None
+    if len(out) != size:
+        raise ValueError(f"{len(out)} of the {size} bytes promised")
+    return bytes(out)

@@ -1,0 +1,184 @@
+"""From the planes that cameras publish to clouds: what belongs together, and whether it makes sense."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud, Transform
+from nodes.perception_node.projection import cloud_of
+from schemas.errors import BadRequest
+from schemas.scenes import CameraFrame
+
+T = TypeVar("T", np.float32, np.uint8)
+
+MOST_PIXELS = 640 * 480 * 3 // 2
+"""Of a picture with more, every second, third ... row and column is used."""
+_SILENT_S = 2.0
+"""A camera that was silent for so long may begin with another clock."""
+_LATE_S = 0.3
+"""So long the others of a moment wait for a camera."""
+
+
+class Plane(NamedTuple):
+    """One plane of one camera, its pixels not read yet."""
+
+    frame: CameraFrame
+    read: Callable[[], bytes]
+
+
+class Pair(NamedTuple):
+    """The two planes of one frame."""
+
+    rgb: Plane
+    depth: Plane
+
+    @property
+    def stamp_ns(self) -> int:
+        """When it was taken."""
+        return self.depth.frame.stamp_ns
+
+
+class Frames:
+    """The newest frame of each camera. Filled by other threads than the one that takes.
+
+    Cameras that were once heard of with the same stamp see together, and are waited for a little.
+    """
+
+    def __init__(self) -> None:
+        self._news = threading.Condition()
+        self._planes: dict[tuple[str, str], tuple[Plane, float]] = {}
+        self._pairs: dict[str, Pair] = {}
+        self._partners: dict[str, set[str]] = {}
+        self._taken_ns = 0
+        self._taken: set[str] = set()
+
+    def put(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
+        """A plane has come. Raises BadRequest for one of the past."""
+        key, now = (frame.camera, frame.encoding), time.monotonic()
+        with self._news:
+            before = self._planes.get(key)
+            speaking = before is not None and now - before[1] < _SILENT_S
+            if before is not None and speaking and frame.stamp_ns <= before[0].frame.stamp_ns:
+                raise BadRequest(
+                    f"camera {frame.camera}: a frame of the past is passed over; stamps must grow"
+                )
+            self._planes[key] = Plane(frame, read), now
+            self._pair_up(frame)
+
+    def take(self, timeout_s: float) -> tuple[Pair, ...]:
+        """What all cameras saw at the newest moment, in the order of their names; maybe nothing."""
+        deadline = time.monotonic() + timeout_s
+        with self._news:
+            while not self._pairs:
+                if not self._news.wait(deadline - time.monotonic()):
+                    return ()
+            late = time.monotonic() + _LATE_S
+            while (missing := self._missing()) and self._news.wait(late - time.monotonic()):
+                pass
+            for camera in missing:
+                self._partners.pop(camera, None)
+            newest = self._newest()
+            pairs = tuple(self._pairs.pop(camera) for camera in sorted(newest))
+            self._pairs.clear()
+            self._taken, self._taken_ns = newest, pairs[0].stamp_ns
+            for camera in newest:
+                self._partners[camera] = newest | (self._partners.get(camera, set()) - missing)
+            return pairs
+
+    def _pair_up(self, frame: CameraFrame) -> None:
+        rgb, _ = self._planes.get((frame.camera, "rgb8"), (None, 0.0))
+        depth, _ = self._planes.get((frame.camera, "depth32f"), (None, 0.0))
+        if rgb is None or depth is None or rgb.frame.stamp_ns != depth.frame.stamp_ns:
+            return
+        if frame.stamp_ns == self._taken_ns:  # too late for its look, but the next ones wait for it
+            for camera in (*self._taken, frame.camera):
+                self._partners.setdefault(camera, set()).update(self._taken, {frame.camera})
+            return
+        self._pairs[frame.camera] = Pair(rgb, depth)
+        self._news.notify_all()
+
+    def _newest(self) -> set[str]:
+        stamp_ns = max(pair.stamp_ns for pair in self._pairs.values())
+        return {camera for camera, pair in self._pairs.items() if pair.stamp_ns == stamp_ns}
+
+    def _missing(self) -> set[str]:
+        newest = self._newest()
+        return set().union(*(self._partners.get(camera, set()) for camera in newest)) - newest
+
+
+def read_cloud(pair: Pair) -> Cloud:
+    """The points of a frame, thinned if they are too many. Raises BadRequest for one that makes no sense."""
+    frame = pair.depth.frame
+    colour = pair.rgb.frame
+    if (frame.width, frame.height) != (colour.width, colour.height):
+        raise BadRequest(
+            f"camera {frame.camera}: its picture has {colour.width} x {colour.height} pixels, its depth"
+            f" {frame.width} x {frame.height}; they must be of one size"
+        )
+    shape = (frame.height, frame.width)
+    intrinsics, pose = _intrinsics(frame), _pose(frame)
+    depth_m = _pixels(pair.depth, np.float32, shape)
+    rgb = _pixels(pair.rgb, np.uint8, (*shape, 3))
+    step = thinning(frame)
+    if step > 1:
+        depth_m, rgb = (
+            np.ascontiguousarray(depth_m[::step, ::step]),
+            np.ascontiguousarray(rgb[::step, ::step]),
+        )
+        intrinsics = intrinsics.copy()
+        intrinsics[:2, 2] -= 0.5
+        intrinsics[:2] /= step
+        intrinsics[:2, 2] += 0.5
+    return cloud_of(depth_m, rgb, intrinsics, pose, camera=frame.camera, stamp_ns=frame.stamp_ns)
+
+
+def thinning(frame: CameraFrame) -> int:
+    """Every how many-th row and column of a frame is used."""
+    return max(1, math.ceil(math.sqrt(frame.width * frame.height / MOST_PIXELS)))
+
+
+def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
+    content, wanted = plane.read(), math.prod(shape) * np.dtype(kind).itemsize
+    if len(content) != wanted or not wanted:
+        raise BadRequest(
+            f"camera {plane.frame.camera}: {len(content)} bytes are no {plane.frame.encoding} picture of"
+            f" {plane.frame.width} x {plane.frame.height} pixels, which has {wanted}"
+        )
+    return np.frombuffer(content, np.dtype(kind).newbyteorder("<")).astype(kind, copy=False).reshape(shape)
+
+
+def _intrinsics(frame: CameraFrame) -> Transform:
+    numbers = np.array(frame.intrinsics, dtype=float)
+    if numbers.size == 9 and np.isfinite(numbers).all():
+        k = numbers.reshape(3, 3)
+        focal, middle = k[[0, 1], [0, 1]], k[:2, 2]
+        size = np.array([frame.width, frame.height])
+        if (
+            (focal > 0.1 * size).all()
+            and (np.abs(middle - size / 2.0) < size).all()
+            and (k[2] == [0, 0, 1]).all()
+        ):
+            return k
+    raise BadRequest(
+        f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit a picture of {frame.width} x"
+        f" {frame.height} pixels; they are fx 0 cx 0 fy cy 0 0 1"
+    )
+
+
+def _pose(frame: CameraFrame) -> Transform:
+    numbers = np.array(frame.map_from_camera, dtype=float)
+    if numbers.size == 16 and np.isfinite(numbers).all():
+        pose = numbers.reshape(4, 4)
+        turn = pose[:3, :3]
+        if np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) and np.linalg.det(turn) > 0:
+            return pose
+    raise BadRequest(
+        f"camera {frame.camera}: its map_from_camera is no pose: a rotation, a position, 0 0 0 1"
+    )

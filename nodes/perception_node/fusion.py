@@ -1,0 +1,67 @@
+"""Which segments of several views show the same thing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.sights import Sight
+
+_PROBES = 300
+_SAME_SHARE = 0.5
+_FEWEST_SEEN = 12
+
+Member = tuple[int, int]
+"""The number of a sight, and that of a segment in its `segments`."""
+
+
+def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
+    """Group segments by the thing they show.
+
+    The points of a segment are looked up in the other pictures: where another camera sees them too, its label
+    says what it took them for. Clouds without intrinsics or pose see nothing of what others do.
+    """
+    members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
+    row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
+    votes = np.zeros((len(members), len(members)))
+    shown = np.ones((len(members), len(members)))
+    views = np.array([view for view, _ in members], dtype=int)
+    for at, (view, n) in enumerate(members):
+        points = sights[view].segments[n].points
+        probes = points[:: max(1, len(points) // _PROBES)]
+        for other, sight in enumerate(sights):
+            if other == view:
+                continue
+            hits = _labels_of(probes, sight)
+            shown[at, views == other] = max(1, len(hits))
+            for label, count in zip(*np.unique(hits[hits > 0], return_counts=True), strict=True):
+                votes[at, row[other, int(label)]] = count
+    same = (votes > _SAME_SHARE * shown) & (votes >= _FEWEST_SEEN)
+    return _groups(same | same.T, members)
+
+
+def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
+    """The labels of those map points (N, 3) that a camera sees, and not merely what is before them."""
+    cloud, pose = sight.cloud, sight.map_from_camera
+    if cloud.intrinsics is None or cloud.map_from_camera is None:
+        return np.empty(0, np.int32)
+    camera = (points - pose[:3, 3]) @ pose[:3, :3]
+    camera = camera[camera[:, 2] > 0.1]
+    pixel = camera @ cloud.intrinsics.T
+    column, row = (pixel[:, :2] // pixel[:, 2:]).astype(int).T
+    height, width = sight.labels.shape
+    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    column, row, depth = column[inside], row[inside], camera[inside, 2]
+    with np.errstate(invalid="ignore"):
+        visible = np.abs(cloud.points_camera[row, column, 2] - depth) < 0.01 + 0.008 * depth**2
+    return np.asarray(sight.labels[row[visible], column[visible]])
+
+
+def _groups(same: NDArray[np.bool_], members: Sequence[Member]) -> list[list[Member]]:
+    """The connected components of a symmetrical relation (N, N)."""
+    root = np.arange(len(members))
+    for a, b in np.argwhere(same):
+        root[root == root[a]] = root[b]
+    return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in np.unique(root)]

@@ -1,0 +1,104 @@
+"""Which observation is of which thing: optimal assignment, in steps from the surest on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.likeness import Target, cost_elsewhere, cost_in_place
+from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.tracks import Track
+from nodes.perception_node.visibility import Looks, Sight
+from schemas.perception import Observation
+
+A = TypeVar("A")
+B = TypeVar("B")
+K = TypeVar("K", str, int)
+Cost = Callable[[Target, Observation, Kinship], float]
+
+_PROHIBITIVE = 1e6
+
+
+class Candidate(NamedTuple):
+    """Something that may be seen: what is remembered of it, and what it should look like."""
+
+    track: Track
+    target: Target
+
+
+class Matching(NamedTuple):
+    """Which observation, by its number, is of which entity and of which of those that are none yet.
+
+    `places` tells of each entity that was not seen what is seen of its place; `odd` are those of them in
+    whose place something of another size is seen. `new` are the observations of nothing known.
+    """
+
+    known: dict[str, int]
+    tentative: dict[int, int]
+    places: dict[str, Sight]
+    odd: set[str]
+    new: list[int]
+
+
+def match(
+    known: Mapping[str, Candidate],
+    tentative: Sequence[Candidate],
+    observations: Sequence[Observation],
+    looks: Looks,
+    kinship: Kinship,
+    config: TrackingConfig,
+) -> Matching:
+    """Things in their places first; then what vanished, found elsewhere; then what is no entity yet."""
+
+    def pairs(of: Mapping[K, Candidate], to: Collection[int], cost: Cost) -> dict[K, int]:
+        free = sorted(to)
+        targets, seen = [c.target for c in of.values()], [observations[j] for j in free]
+        found = assign(targets, seen, lambda target, o: cost(target, o, kinship))
+        return {list(of)[a]: free[b] for a, b in found}
+
+    every = set(range(len(observations)))
+    seen = pairs(known, every, cost_in_place)
+    places = {name: _look_at(c.target, looks) for name, c in known.items() if name not in seen}
+    parts = {
+        name: {j for j in every.difference(seen.values()) if _may_be_of(c.target, observations[j])}
+        for name, c in known.items()
+        if places.get(name) != "open"
+    }
+    gone = {name for name in places if known[name].track.is_gone(config)}
+    left = every.difference(seen.values(), *(of_one for name, of_one in parts.items() if name not in gone))
+    vanished = {
+        name: known[name]
+        for name, sight in places.items()
+        if sight == "open" or name in gone or known[name].track.unseen
+    }
+    found = pairs(vanished, left, cost_elsewhere)
+    again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
+    unseen = places.keys() - found.keys()
+    return Matching(
+        known=seen | found,
+        tentative=again,
+        places={name: places[name] for name in unseen},
+        odd={name for name in unseen if places[name] == "filled" and parts[name]},
+        new=sorted(left.difference(found.values(), again.values())),
+    )
+
+
+def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
+    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never."""
+    costs = np.array([[cost(a, b) for b in columns] for a in rows]).reshape(len(rows), len(columns))
+    pairs = zip(*linear_sum_assignment(np.minimum(costs, _PROHIBITIVE)), strict=True)
+    return [(int(i), int(j)) for i, j in pairs if costs[i, j] < _PROHIBITIVE]
+
+
+def _look_at(target: Target, looks: Looks) -> Sight:
+    """Of a thing of unknown size nobody can tell whether it is there."""
+    return "hidden" if target.size_m is None else looks(target.pose, target.size_m)
+
+
+def _may_be_of(target: Target, seen: Observation) -> bool:
+    return target.place is not None and are_of_one(target.place, Place(seen.pose, seen.size_m))

@@ -1,0 +1,247 @@
+"""Perception on the wire: the cameras' frames in, observations and commands out.
+
+Zenoh's threads only keep the newest frames, and a thread of this node's own looks at them. The node's thread
+owns the tracks, compares what was seen with the map, and tells the map.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
+from functools import partial
+from typing import Any
+
+from msgspec import structs
+
+from nodes import bus
+from nodes.loop import Node, open_node
+from nodes.perception_node.association import associate
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.config import PerceptionConfig
+from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
+from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.map_view import MapView, kinship_of
+from nodes.perception_node.pipeline import Look, look, shipped
+from nodes.perception_node.shown import segmented_cloud
+from nodes.perception_node.telling import subject_of
+from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.visibility import looking
+from schemas import codec, errors, keys
+from schemas.bridge import BRIDGE, SnapshotQuery
+from schemas.commands import Changed, Classes, Command
+from schemas.commits import Commit, Snapshot
+from schemas.entities import Size
+from schemas.health import Health
+
+log = logging.getLogger(__name__)
+
+_TAKE_S = 0.5
+_COMPLAINT_S = 60.0
+"""What is wrong is over when it was not heard of for so long."""
+_NO_FRAMES_S = 5.0
+_CLOUD_S = 1.0
+"""A cloud is published no more often."""
+_REFUSED_S = 10.0
+"""What was refused is not said again before that."""
+
+
+class Perception:
+    """Binds the pipeline and the association to the wire."""
+
+    def __init__(
+        self,
+        node: Node,
+        config: PerceptionConfig,
+        look: Callable[[Sequence[Cloud]], Look],
+        usual_m: Mapping[str, Size],
+    ) -> None:
+        """`look(clouds)` tells what clouds of one moment show, `usual_m` what things of a class measure."""
+        self._node = node
+        self._config = config
+        self._see = look
+        self._usual_m = usual_m
+        self._map = MapView()
+        self._kinship = Kinship()
+        self._tracks = Tracks()
+        self._fetching = False
+        self._kb_started_ns = 0
+        self._untold = 0
+        self._told_commit = 0
+        self._refused: dict[str, float] = {}
+        self._complaints: dict[str, float] = {}
+        self._frames = Frames()
+        self._stopping = threading.Event()
+        self._observations = bus.publisher(node.session, keys.OBSERVATIONS)
+        self._cloud_due = 0.0
+        self._looked_at = time.monotonic()
+        self._cloud = bus.publisher(node.session, keys.CLOUD)
+        self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
+        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.HEALTH, self._on_health)
+        node.every(0.5, self._tick)
+        for plane in ("rgb", "depth"):
+            bus.follow_cameras(node.session, plane, self._keep, self._complain)
+        self._eye = threading.Thread(target=self._watch, name="eye", daemon=True)
+        self._eye.start()
+
+    def close(self) -> None:
+        """Let the look in hand be finished, and no other be begun."""
+        self._stopping.set()
+        self._eye.join()
+
+    # Frames, on other threads
+
+    def _keep(self, frame: Any, read: Any) -> None:
+        try:
+            self._frames.put(frame, read)
+        except errors.BadRequest as error:
+            self._complain(error.text)
+
+    def _watch(self) -> None:
+        while not self._stopping.is_set():
+            pairs = self._frames.take(_TAKE_S)
+            try:
+                clouds = [cloud for pair in pairs if (cloud := self._read(pair)) is not None]
+                if clouds:
+                    self._look(clouds)
+            except Exception as error:
+                log.exception("fault in a look")
+                self._complain(f"a look failed: {type(error).__name__}: {error}")
+
+    def _read(self, pair: Pair) -> Cloud | None:
+        frame = pair.depth.frame
+        try:
+            cloud = read_cloud(pair)
+        except errors.BadRequest as error:
+            self._complain(error.text)
+            return None
+        step = thinning(frame)
+        if step > 1:
+            size = f"{frame.width} x {frame.height} pixels"
+            self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
+        return cloud
+
+    def _look(self, clouds: Sequence[Cloud]) -> None:
+        start = time.perf_counter()
+        found = self._see(clouds)
+        took_s = time.perf_counter() - start
+        self._node.soon(lambda: self._on_look(clouds, found, took_s))
+
+    def _complain(self, text: str) -> None:
+        self._node.soon(lambda: self._on_complaint(text))
+
+    # What follows is the node's own thread's
+
+    def _on_complaint(self, text: str) -> None:
+        """Say what is wrong: once for as long as it goes on."""
+        now = time.monotonic()
+        if now - self._complaints.get(text, -math.inf) > _COMPLAINT_S:
+            self._node.report(text)
+        self._complaints = {said: at for said, at in self._complaints.items() if now - at < _COMPLAINT_S}
+        self._complaints[text] = now
+
+    def _on_look(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
+        self._looked_at = time.monotonic()
+        seen = found.observations
+        if self._map_is_current():
+            result = associate(
+                self._map.entities,
+                self._tracks,
+                seen.observations,
+                looking(clouds),
+                self._kinship,
+                self._config.tracking,
+            )
+            self._tracks = result.tracks
+            named = zip(seen.observations, result.entities, strict=True)
+            seen = structs.replace(seen, observations=tuple(structs.replace(o, entity=e) for o, e in named))
+            self._tell(result.commands)
+        self._observations.put(codec.encode(seen), encoding=codec.encoding_of(seen))
+        if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
+            self._cloud_due = time.monotonic() + _CLOUD_S
+            cloud = segmented_cloud(clouds, found)
+            self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
+        self._node.describe(
+            f"{len(clouds)} cameras, {len(seen.observations)} things seen, {1000 * took_s:.0f} ms a look"
+        )
+
+    # The map
+
+    def _map_is_current(self) -> bool:
+        """Whether the map is known, and has taken all that it was told."""
+        return self._map.seq >= self._told_commit and self._map.seq >= 0 and not self._untold
+
+    def _tell(self, commands: Sequence[Command]) -> None:
+        now = time.monotonic()
+        for command in commands:
+            if self._refused.get(subject_of(command), 0.0) < now:
+                verb = str(command.__struct_config__.tag)
+                self._untold += 1
+                future = self._node.ask_later(keys.CMD, verb, command, Changed)
+                future.add_done_callback(partial(self._on_told, command))
+
+    def _on_told(self, command: Command, done: Future[Changed]) -> None:
+        self._untold -= 1
+        error = done.exception()
+        if error is None:
+            self._told_commit = max(self._told_commit, done.result().commit or 0)
+            return
+        self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
+        self._on_complaint(f"the map did not take what was seen: {error}")
+
+    def _on_commit(self, commit: Commit) -> None:
+        if self._map.seq >= 0 and (not self._map.take(commit) or commit.tbox):
+            self._fetch_map()
+
+    def _on_health(self, health: Health) -> None:
+        """A new knowledge base may know another map."""
+        if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
+            self._kb_started_ns = health.started_ns
+            self._fetch_map()
+
+    def _tick(self) -> None:
+        if self._map.seq < 0:
+            self._fetch_map()
+        elif time.monotonic() - self._looked_at > _NO_FRAMES_S:
+            self._node.describe("no frames of cameras come")
+
+    def _fetch_map(self) -> None:
+        """Ask for the class table and a snapshot: at the start, and when a commit was missed."""
+        if self._fetching:
+            return
+        self._fetching = True
+        classes: list[Kinship] = []
+
+        def on_classes(future: Future[Any]) -> None:
+            if future.exception() is None:
+                classes.append(kinship_of(future.result(), self._usual_m))
+            self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+
+        def on_snapshot(future: Future[Snapshot]) -> None:
+            self._fetching = False
+            if future.exception() is not None or not classes:
+                return
+            (self._kinship,) = classes
+            self._map.begin(future.result())
+            self._told_commit = min(self._told_commit, self._map.seq)
+            self._node.ready("no frames of cameras yet")
+
+        self._ask_kb("classes", Classes()).add_done_callback(on_classes)
+
+    def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+
+
+def run(config: PerceptionConfig) -> None:
+    """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
+    learnt = shipped()
+    with open_node("perception_node", config.network) as node:
+        perception = Perception(node, config, lambda clouds: look(clouds, learnt), learnt.usual_m)
+        try:
+            node.run()
+        finally:
+            perception.close()

@@ -1,0 +1,60 @@
+"""How much of one upright box lies in another."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from schemas.entities import Pose, Size
+
+_GRID = np.stack(
+    np.meshgrid(*[(np.arange(n) + 0.5) / n - 0.5 for n in (6, 6, 4)], indexing="ij"), axis=-1
+).reshape(-1, 3)
+"""Points of a unit cube around the origin."""
+_A_PART, _NO_PART = 0.3, 0.02
+
+
+class Place(NamedTuple):
+    """The box that a thing fills: `pose` is that of its bottom centre."""
+
+    pose: Pose
+    size_m: Size
+
+    @property
+    def volume_m3(self) -> float:
+        """Of the box."""
+        return math.prod(self.size_m)
+
+
+def share(inner: Place, outer: Place) -> float:
+    """The part of the volume of `inner` that is in `outer`, roughly, in [0, 1]."""
+    if _apart(inner, outer):
+        return 0.0
+    points = _GRID * inner.size_m @ _turn(inner.pose.yaw_rad).T
+    points += np.array(inner.pose.position_m) - outer.pose.position_m
+    points[:, 2] += (inner.size_m[2] - outer.size_m[2]) / 2.0
+    return float(
+        (np.abs(points @ _turn(outer.pose.yaw_rad)) <= np.array(outer.size_m) / 2.0).all(axis=1).mean()
+    )
+
+
+def are_of_one(one: Place, other: Place) -> bool:
+    """Whether one box may hold a part of the other's thing: they overlap, and neither is tiny."""
+    ratio = one.volume_m3 / other.volume_m3
+    return (ratio > _NO_PART and share(one, other) > _A_PART) or (
+        1.0 / ratio > _NO_PART and share(other, one) > _A_PART
+    )
+
+
+def _apart(one: Place, other: Place) -> bool:
+    reach = (math.hypot(*one.size_m[:2]) + math.hypot(*other.size_m[:2])) / 2.0
+    aside = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
+    above = other.pose.position_m[2] - one.pose.position_m[2]
+    return aside > reach or above > one.size_m[2] or -above > other.size_m[2]
+
+
+def _turn(yaw_rad: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -1,0 +1,36 @@
+"""From a depth picture to points."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud, Transform
+
+
+def cloud_of(
+    depth_m: NDArray[np.float32],
+    rgb: NDArray[np.uint8] | None,
+    intrinsics: Transform,
+    map_from_camera: Transform | None = None,
+    *,
+    camera: str = "",
+    stamp_ns: int = 0,
+) -> Cloud:
+    """The points that a depth picture (H, W) [m] sees, 0 or NaN for nothing; the first pixel's middle is 0.5.
+
+    Raises ValueError where picture, colours and intrinsics do not fit together.
+    """
+    height, width = depth_m.shape
+    if rgb is not None and rgb.shape != (height, width, 3):
+        raise ValueError(f"colours of shape {rgb.shape} do not go with a depth picture of {depth_m.shape}")
+    if intrinsics.shape != (3, 3) or not (
+        np.isfinite(intrinsics).all() and intrinsics[0, 0] > 0 < intrinsics[1, 1]
+    ):
+        raise ValueError("intrinsics are three rows of three numbers with positive focal lengths")
+    right = ((np.arange(width) + 0.5 - intrinsics[0, 2]) / intrinsics[0, 0]).astype(np.float32)
+    down = ((np.arange(height) + 0.5 - intrinsics[1, 2]) / intrinsics[1, 1]).astype(np.float32)
+    seen = np.where((depth_m > 0.0) & np.isfinite(depth_m), depth_m, np.float32(np.nan))
+    points = np.empty((height, width, 3), np.float32)
+    points[..., 0], points[..., 1], points[..., 2] = seen * right, seen * down[:, None], seen
+    return Cloud(points, rgb, map_from_camera, intrinsics, camera, stamp_ns)

@@ -1,0 +1,130 @@
+"""What the classifiers look at: the box of a thing, the histogram of its shape, its colours.
+
+`inside` is (N, 3) the thing's cells in its box, each axis from 0 to 1, with x along the longer side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.boxes import Numbers, in_frame
+from nodes.perception_node.things import Thing
+
+_SLICES = 8
+_RINGS = 5
+_PAIRS = 400
+_PAIR_BINS = 10
+_PICKS = np.random.default_rng(0).random((2, _PAIRS))
+_HUES = 12
+_GREYS = 4
+_BANDS = 4
+
+
+def features_of(things: Sequence[Thing]) -> list[Numbers]:
+    """For each voter (N, its own number) what it looks at: geometry, shape, colour."""
+    inside = [_normalised(thing) for thing in things]
+    return [
+        np.array([look(thing, where) for thing, where in zip(things, inside, strict=True)])
+        for look in (geometry, shape, colour)
+    ]
+
+
+def geometry(thing: Thing, inside: Numbers) -> Numbers:
+    """(G,) of the oriented box as far as it was seen, how it was seen, and how its points fill it."""
+    x, y, z = thing.box.size_m
+    long, short = max(x, y), min(x, y)
+    to_eye = in_frame(thing.eyes, thing.box.yaw_rad) - (thing.box.low + thing.box.high) / 2
+    distance = np.linalg.norm(to_eye, axis=1)
+    footprint = np.zeros((8, 8), bool)
+    footprint[tuple((inside[:, :2] * 7.999).astype(int).T)] = True
+    return np.array(
+        [
+            *np.log([long, short, z]),
+            np.log(long / short),
+            np.log(z / long),
+            np.log(long * short * z) / 3.0,
+            thing.lifted_m / z,
+            float(footprint.mean()),
+            float(np.mean(inside[:, 2] > 0.9)),
+            float(np.mean(inside[:, 2] < 0.3)),
+            *inside.std(axis=0),
+            float(np.mean(np.abs(inside[:, :2] - 0.5).max(axis=1) > 0.4)),
+            len(thing.eyes) - 1.0,
+            float(distance.min()),
+            float((to_eye[:, 2] / distance).max()),
+            float(not thing.whole),
+            np.log(thing.count),
+        ]
+    )
+
+
+def shape(thing: Thing, inside: Numbers) -> Numbers:
+    """(S,) how wide the thing is at each height, how its points lie about its axis, and pair distances."""
+    long_short = np.sort(thing.box.size_m[:2])[::-1]
+    offset = (inside[:, :2] - 0.5) * long_short / np.sqrt(long_short.prod())
+    radius = np.hypot(*offset.T)
+    level = np.minimum((inside[:, 2] * _SLICES).astype(int), _SLICES - 1)
+    count = np.bincount(level, minlength=_SLICES)
+    profile = [np.bincount(level, value, _SLICES) / np.maximum(count, 1) for value in (radius, radius**2)]
+    spans = _spans(offset, level)
+    ring = np.minimum((radius / 0.75 * _RINGS).astype(int), _RINGS - 1)
+    rings = np.bincount(ring, minlength=_RINGS) / len(inside)
+    tops = np.array([_high(inside[ring == r, 2]) for r in range(_RINGS)])
+    return np.concatenate(
+        [count / len(inside), *profile, spans.ravel(), rings, tops, _pair_distances(thing.cells)]
+    )
+
+
+def colour(thing: Thing, inside: Numbers) -> Numbers:
+    """(C,) shares of hues and greys, and the mean colours of bands from the bottom to the top.
+
+    Zeros where the cameras see no colours.
+    """
+    size = _HUES + _GREYS + 6 + 3 * _BANDS
+    if thing.colors is None:
+        return np.zeros(size)
+    red, green, blue = thing.colors.T
+    high, low = thing.colors.max(axis=1), thing.colors.min(axis=1)
+    chroma = high - low
+    with np.errstate(divide="ignore", invalid="ignore"):
+        hue = np.arctan2(np.sqrt(3.0) * (green - blue), 2.0 * red - green - blue) / (2.0 * np.pi) % 1.0
+        saturation = np.where(high > 0.0, chroma / high, 0.0)
+    vivid = np.clip(3.0 * saturation - 0.3, 0.0, 1.0)
+    hues = np.bincount((hue * _HUES).astype(int) % _HUES, vivid, _HUES) / len(hue)
+    greys = np.bincount(np.minimum((high * _GREYS).astype(int), _GREYS - 1), 1.0 - vivid, _GREYS) / len(hue)
+    band = np.minimum((inside[:, 2] * _BANDS).astype(int), _BANDS - 1)
+    count = np.maximum(np.bincount(band, minlength=_BANDS), 1)
+    bands = [np.bincount(band, channel, _BANDS) / count for channel in (red, green, blue)]
+    return np.concatenate(
+        [hues, greys, thing.colors.mean(axis=0), thing.colors.std(axis=0), np.concatenate(bands)]
+    )
+
+
+def _normalised(thing: Thing) -> Numbers:
+    """(N, 3) the cells in the box, each axis from 0 to 1; x is the longer side."""
+    turned = in_frame(thing.cells, thing.box.yaw_rad)
+    inside = np.clip((turned - thing.box.low) / thing.box.size_m, 0.0, 1.0)
+    return inside if thing.box.size_m[0] >= thing.box.size_m[1] else inside[:, [1, 0, 2]]
+
+
+def _spans(offset: Numbers, level: NDArray[np.int64]) -> Numbers:
+    """(_SLICES, 2) extents of each slice along the box's axes."""
+    low, high = np.full((_SLICES, 2), np.inf), np.full((_SLICES, 2), -np.inf)
+    np.minimum.at(low, level, offset)
+    np.maximum.at(high, level, offset)
+    return np.asarray(np.maximum(high - low, 0.0))
+
+
+def _high(heights: Numbers) -> float:
+    return float(heights.max()) if len(heights) else 0.0
+
+
+def _pair_distances(cells: Numbers) -> Numbers:
+    """(_PAIR_BINS,) shares of distances between pairs of points, in units of the largest."""
+    a, b = (_PICKS * len(cells)).astype(int)
+    distances = np.linalg.norm(cells[a] - cells[b], axis=1)
+    bins = np.minimum((distances / (distances.max() + 1e-9) * _PAIR_BINS).astype(int), _PAIR_BINS - 1)
+    return np.asarray(np.bincount(bins, minlength=_PAIR_BINS) / _PAIRS)

@@ -1,0 +1,65 @@
+"""The vote of the classifiers, and the most special class that is sure enough."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from nodes.perception_node.boxes import Numbers
+from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
+from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
+
+
+def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
+    """(N, K) probabilities of the leaves; `features`: for each voter (N, its own number).
+
+    The votes are independent evidence, so their logarithms add up, each with the weight that calibration on
+    scenes apart gave it.
+    """
+    return np.exp(pool(ballots(voters, features), weights))
+
+
+def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
+    """(voters, N, K) logarithms of the probabilities that each voter gives."""
+    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, features, strict=True)])
+
+
+def pool(votes: Numbers, weights: Numbers) -> Numbers:
+    """(N, K) logarithms of the probabilities that the votes (voters, N, K) together give."""
+    return log_softmax(np.tensordot(weights, votes, axes=1))
+
+
+def leaves(learnt: Learnt, features: Sequence[Numbers]) -> Numbers:
+    """(N, K) probabilities of the leaves, in which what is like nothing known counts as `UNKNOWN`."""
+    votes = ballots(learnt.voters, features)
+    pooled = pool(votes, learnt.weights)
+    new = learnt.novelty(features, votes, pooled)
+    probabilities = np.exp(pooled)
+    nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])
+    moved = np.where(nameable, probabilities * new[:, None], 0.0)
+    probabilities -= moved
+    probabilities[:, learnt.classes.index(UNKNOWN)] += moved.sum(axis=1)
+    return probabilities
+
+
+def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
+    """(N, 3) the size [m] that things of the likely leaves have: the geometric mean of `sizes_m` (K, 3)."""
+    return np.asarray(np.exp(probabilities @ np.log(sizes_m)))
+
+
+def answer(
+    probabilities: Mapping[str, float], ancestors: Mapping[str, Sequence[str]], sure: float
+) -> tuple[str, float]:
+    """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
+
+    Of several, none of which is below another, the likelier.
+    """
+    total: dict[str, float] = {}
+    for leaf, probability in probabilities.items():
+        for name in (leaf, *ancestors.get(leaf, ())):
+            total[name] = total.get(name, 0.0) + probability
+    certain = [name for name in total if total[name] >= sure and name not in (UNKNOWN, CLUTTER)]
+    lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]
+    best = max(lowest, key=total.__getitem__, default=UNKNOWN)
+    return best, min(1.0, total.get(best, 0.0))

@@ -1,0 +1,92 @@
+"""Small smooth patches: too many on purpose, so that none spans two objects."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from nodes.perception_node.segmentation.grid import Floats, Labels, Mask, shifted
+
+_CONCAVE = np.sin(np.radians(15))
+_CONVEX = np.sin(np.radians(30))
+_ACROSS = ((0, 2), (2, 0), (0, 4), (4, 0))  # the farther ones see past edges that the normals round off
+_STEP_M = 0.007  # times z^2, at least z
+_FEWEST_CELLS = 12
+_GROWTH = 8
+
+
+def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
+    """(h, w) numbers of patches from 1, without gaps, 0 for none; cells outside `where` are in none.
+
+    Cells are cut apart where the surface is concave, sharply convex, or steps in depth.
+    """
+    cut = _cuts(points, normals, where)
+    parts, count = ndimage.label(where & ~cut)
+    sizes = np.bincount(parts.ravel(), minlength=count + 1)
+    big = sizes >= _FEWEST_CELLS
+    big[0] = False
+    labels = np.where(big[parts], parts, 0).astype(np.int32)
+    labels = grown(labels, points, where)
+    rest, extra = ndimage.label(where & (labels == 0))
+    keep = np.bincount(rest.ravel(), minlength=extra + 1) >= _FEWEST_CELLS
+    keep[0] = False
+    labels = np.where((labels == 0) & keep[rest], rest + count, labels).astype(np.int32)
+    return _numbered(labels)
+
+
+def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
+    """Cells at which two sides meet."""
+    cut: Mask = ~np.isfinite(normals[..., 0])
+    p, n = (np.ascontiguousarray(np.moveaxis(of, -1, 0)) for of in (points, normals))  # (3, h, w) is faster
+    height, width = cut.shape
+    for rows, columns in _ACROSS:
+        end = (height - rows, width - columns)
+        apart = p[:, rows:, columns:] - p[:, : end[0], : end[1]]
+        turn = n[:, rows:, columns:] - n[:, : end[0], : end[1]]
+        # sine of the bend times the distance, positive where convex: the normals turn away from one another
+        bend = (turn * apart).sum(axis=0)
+        length = np.sqrt((apart * apart).sum(axis=0))
+        middle = cut[rows // 2 : height - rows // 2, columns // 2 : width - columns // 2]
+        middle |= (bend < -_CONCAVE * length) | (bend > _CONVEX * length)
+    for rows, columns in ((0, 1), (1, 0)):
+        z, far = shifted(points[..., 2], rows, columns)
+        here, there = shifted(cut, rows, columns)
+        step = _step(z, far)
+        here |= step & (z > far)  # the farther of the two, whose surface goes on behind
+        there |= step & (far >= z)
+    return cut & where
+
+
+def _step(z: Floats, other: Floats) -> Mask:
+    return np.asarray(np.abs(z - other) > _STEP_M * np.maximum(z, z * z))
+
+
+def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
+    """Labels spread over cells of `where` without one, each to the label of the nearest cell at its side."""
+    padded = np.pad(labels, 1)
+    width = padded.shape[1]
+    z = np.pad(points[..., 2], 1, constant_values=np.nan).ravel()
+    flat = padded.ravel()
+    free = np.flatnonzero(np.pad(where & (labels == 0), 1))
+    for _ in range(_GROWTH):
+        sides = free[:, None] + np.array([1, -1, width, -width])
+        deep = z[free][:, None]
+        off = np.where(flat[sides] > 0, np.abs(z[sides] - deep), np.float32(np.inf))
+        off[~(off <= _STEP_M * np.maximum(deep, deep * deep))] = np.inf
+        best = off.argmin(axis=1)
+        index = np.arange(len(free))
+        takes = np.isfinite(off[index, best])
+        if not takes.any():
+            break
+        flat[free[takes]] = flat[sides[index, best][takes]]
+        free = free[~takes]
+    return padded[1:-1, 1:-1]
+
+
+def _numbered(labels: Labels) -> Labels:
+    """The same with numbers from 1 without gaps."""
+    used = np.unique(labels)
+    used = used[used > 0]
+    number = np.zeros(labels.max(initial=0) + 1, np.int32)
+    number[used] = np.arange(1, len(used) + 1)
+    return number[labels]

@@ -1,0 +1,138 @@
+"""Dominant planes: floor, walls, and what carries things."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Transform
+from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
+
+Kind = Literal["floor", "wall", "support", "plane"]
+
+_SAMPLE = 2000  # points that vote
+_FEWEST_CELLS = 50
+_LEAST_AREA_M2 = 1e-5
+_TRIALS = 120
+_REACH_CELLS = 60  # the three points of a hypothesis lie this near one another
+_MOST_PLANES = 6
+_LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
+_LEAST_SHARE_UNKNOWN = 0.2  # where gravity is unknown, and a box's side might be meant
+_LEAST_SIDE_M = 0.35
+_LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or of several in a row
+_UPRIGHT_COS = np.cos(np.radians(8))
+_LEVEL_COS = np.cos(np.radians(80))
+_FLOOR_BELOW_M = 0.06
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Points p with normal · p = offset_m, camera frame; the normal looks to the camera's side.
+
+    `points`: how many cells of the working picture lie on it. `sides_m`: its extent along its longer and
+    shorter axis. Without a known pose of the camera the largest is the support, others are a mere `plane`.
+    """
+
+    normal: NDArray[np.float64]
+    offset_m: float
+    kind: Kind
+    points: int
+    sides_m: tuple[float, float]
+
+    def height_m(self, points: Floats) -> Floats:
+        """How far points (..., 3) are on the camera's side of it."""
+        height: Floats = points @ self.normal.astype(np.float32) - np.float32(self.offset_m)
+        return height
+
+
+def thickness_m(distance_m: Floats) -> Floats:
+    """How far a plane's points may be off it: noise grows with the square of the distance."""
+    return np.asarray(np.maximum(0.009, 0.006 * distance_m**2), np.float32)
+
+
+def find_planes(
+    points: Floats, map_from_camera: Transform | None, rng: np.random.Generator
+) -> tuple[tuple[Plane, ...], Labels]:
+    """The planes of a picture (h, w, 3), and of each cell the number of its plane from 1, 0 for none."""
+    of_plane = np.zeros(points.shape[:2], np.int32)
+    thickness = thickness_m(points[..., 2])
+    free = np.isfinite(thickness)
+    everything = int(free.sum())
+    share = _LEAST_SHARE_UNKNOWN if map_from_camera is None else _LEAST_SHARE
+    planes: list[Plane] = []
+    for _ in range(_MOST_PLANES):
+        if free.sum() < max(_FEWEST_CELLS, share * everything):
+            break
+        normal, offset = _best(points, free, rng)
+        on = free & (np.abs(points @ normal - offset) < thickness)
+        count = int(on.sum())
+        if count < max(_FEWEST_CELLS, share * everything):
+            break
+        free &= ~on
+        sides = _sides(points[on][:: max(1, count // _SAMPLE)], normal)
+        kind = _kind(normal, offset, map_from_camera, first=not planes)
+        least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
+        if kind is None or (planes and sides[1] < least):
+            continue
+        planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
+        of_plane[on] = len(planes)
+    return tuple(planes), of_plane
+
+
+def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats, np.float32]:
+    """The plane with most points, fitted to a sample of them: normal (3,) towards the camera, offset."""
+    cells = np.flatnonzero(free)
+    cells = cells[rng.integers(len(cells), size=_SAMPLE)]
+    voters = points.reshape(-1, 3)[cells]
+    thickness = thickness_m(voters[:, 2])
+    row, column = np.divmod(cells[:_TRIALS], free.shape[1])
+    corners = [voters[:_TRIALS]]
+    for _ in range(2):
+        near = rng.integers(-_REACH_CELLS, _REACH_CELLS + 1, size=(2, _TRIALS))
+        r = np.clip(row + near[0], 0, free.shape[0] - 1)
+        c = np.clip(column + near[1], 0, free.shape[1] - 1)
+        corners.append(np.where(free[r, c, None], points[r, c], voters[rng.integers(_SAMPLE, size=_TRIALS)]))
+    normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    length = np.linalg.norm(normals, axis=1)
+    length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
+    normals /= length[:, None]
+    offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=1))
+    votes = (np.abs(voters @ normals.T - offsets) < thickness[:, None]).sum(axis=0)
+    normal, offset = normals[votes.argmax()], offsets[votes.argmax()]
+    for _ in range(2):
+        on = voters[np.abs(voters @ normal - offset) < thickness]
+        if len(on) < 3:
+            break
+        middle = on.mean(axis=0)
+        # a plane's error in depth grows with the square of the distance, so near points count more
+        spread = (on - middle) / np.maximum(on[:, 2:], np.float32(0.3))
+        normal = np.linalg.eigh(spread.T @ spread)[1][:, 0].astype(np.float32)
+        offset = np.float32(middle @ normal)
+    return (normal, offset) if offset <= 0 else (-normal, -offset)
+
+
+def _kind(
+    normal: Floats, offset: np.float32, map_from_camera: Transform | None, *, first: bool
+) -> Kind | None:
+    """What the plane is, None for one that slopes."""
+    if map_from_camera is None:
+        return "support" if first else "plane"
+    up = map_from_camera[2, :3] @ normal
+    if up > _UPRIGHT_COS:
+        foot = map_from_camera @ np.append(normal * offset, 1.0)
+        return "floor" if foot[2] < _FLOOR_BELOW_M else "support"
+    return "wall" if abs(up) < _LEVEL_COS else None
+
+
+def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
+    """Extent along the longer and the shorter axis within the plane, without the outermost points."""
+    axes = np.linalg.svd(normal[None, :])[2][1:]
+    flat = points @ axes.T
+    flat = flat - flat.mean(axis=0)
+    main = np.linalg.eigh(flat.T @ flat)[1]
+    low, high = np.percentile(flat @ main, (2, 98), axis=0)
+    sides = high - low
+    return float(sides.max()), float(sides.min())

@@ -1,0 +1,107 @@
+"""From a cloud to its planes and objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
+from nodes.perception_node.segmentation.learnt import shipped
+from nodes.perception_node.segmentation.merging import Judge, merge
+from nodes.perception_node.segmentation.normals import normals
+from nodes.perception_node.segmentation.patches import patches
+from nodes.perception_node.segmentation.picture import as_picture
+from nodes.perception_node.segmentation.planes import Plane, find_planes
+from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
+
+LOWEST_M, HIGHEST_M = 0.009, 0.5
+"""What stands on a support lies this far above it."""
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """What of a cloud is what.
+
+    `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
+    `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, 0 for none.
+    """
+
+    labels: NDArray[np.int32]
+    planes: tuple[Plane, ...]
+    plane_labels: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A picture taken apart, before anything is put together again.
+
+    `of_plane`, `of_patch`: (h, w) the number of each cell's plane and patch, 0 for none.
+    """
+
+    grid: Grid
+    planes: tuple[Plane, ...]
+    of_plane: Labels
+    of_patch: Labels
+    statistics: Statistics
+
+
+def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
+    """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
+    if not cloud.organised:
+        picture, pixel = as_picture(cloud)
+        seen = segment(picture, learnt)
+        labels, plane_labels = (
+            np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
+        )
+        return Segmentation(labels, seen.planes, plane_labels)
+    parts = taken_apart(cloud)
+    objects = np.append(np.int32(0), merge(parts.statistics, learnt or shipped()))[parts.of_patch]
+    both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
+    return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
+
+
+def taken_apart(cloud: Cloud) -> Parts:
+    """The planes of an organised cloud, and small patches of the rest."""
+    grid = grid_of(cloud)
+    rng = np.random.default_rng(0)  # the same cloud, the same answer
+    planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
+    where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
+    window = _window(where)
+    points, colors = grid.points[window], None if grid.colors is None else grid.colors[window]
+    surface = normals(points, where[window])
+    of_patch = np.zeros_like(of_plane)
+    of_patch[window] = patches(points, surface, where[window])
+    known = statistics(of_patch[window], points, surface, colors, _upright(planes))
+    return Parts(grid, planes, of_plane, of_patch, known)
+
+
+def _window(where: Mask) -> tuple[slice, slice]:
+    """What of a picture holds all of `where`."""
+    row, column = (np.flatnonzero(where.any(axis=axis)) for axis in (1, 0))
+    if not row.size:
+        return slice(0, 1), slice(0, 1)
+    return slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
+
+
+def _candidates(
+    points: Floats, planes: tuple[Plane, ...], of_plane: NDArray[np.int32], *, known: bool
+) -> Mask:
+    """Cells that may be of objects: on no plane, and above a support where nobody knows what is up."""
+    where: Mask = np.isfinite(points[..., 2]) & (of_plane == 0)
+    if planes and not known:
+        height = planes[0].height_m(points)
+        where &= (height > LOWEST_M) & (height < HIGHEST_M)
+    return where
+
+
+def _upright(planes: tuple[Plane, ...]) -> Upright:
+    """The vertical of the largest plane on which things may stand; without one, the camera's."""
+    carrying = [plane for plane in planes if plane.kind in ("floor", "support")]
+    if not carrying:
+        return Upright(np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), np.zeros(0))
+    up = max(carrying, key=lambda plane: plane.points).normal
+    level = np.linalg.svd(up[None, :])[2][1:]
+    return Upright(np.vstack([level, up]), np.sort([plane.offset_m for plane in carrying]))

@@ -1,0 +1,73 @@
+"""One cloud, taken apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.cloud import Cloud, Floats
+from nodes.perception_node.furniture import with_furniture
+from nodes.perception_node.segmentation import Plane, Segmentation, segment
+from nodes.perception_node.segments import Segment, cut_out, map_points
+
+
+@dataclass(frozen=True)
+class Sight:
+    """A cloud in the map, with its segments.
+
+    `map_from_camera`: (4, 4); where nobody knows it, the largest plane is taken for the map's floor.
+    `points`: (H, W, 3), map frame [m]. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on
+    which others may stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of
+    horizontal planes.
+    """
+
+    cloud: Cloud
+    map_from_camera: NDArray[np.float64]
+    points: Floats
+    labels: NDArray[np.int32]
+    carriers: frozenset[int]
+    planes: NDArray[np.int32]
+    supports_m: tuple[float, ...]
+    segments: tuple[Segment, ...] = ()
+
+
+def see(cloud: Cloud) -> Sight:
+    """Take a cloud apart."""
+    segmentation = segment(cloud)
+    pose = _standing_on(segmentation.planes) if cloud.map_from_camera is None else cloud.map_from_camera
+    points = map_points(cloud, pose)
+    labels, carriers = with_furniture(segmentation, points)
+    heights = _heights(segmentation, points)
+    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights)
+    return labelled(bare, labels, carriers)
+
+
+def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) -> Sight:
+    """The same cloud cut up by other labels (H, W)."""
+    segments = cut_out(sight.cloud, sight.points, labels, sight.map_from_camera[:3, 3], carriers)
+    return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
+
+
+def _standing_on(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
+    """A map frame whose floor is the largest plane, with the camera above its origin."""
+    pose = np.eye(4)
+    if planes:
+        plane = max(planes, key=lambda plane: plane.points)
+        up = plane.normal
+        ahead = np.array([0.0, 0.0, 1.0]) - up * up[2]
+        if np.linalg.norm(ahead) < 0.1:  # the camera looks straight down
+            ahead = np.array([0.0, -1.0, 0.0]) - up * -up[1]
+        ahead /= np.linalg.norm(ahead)
+        pose[:3, :3] = np.stack([ahead, np.cross(up, ahead), up])
+        pose[2, 3] = -plane.offset_m
+    return pose
+
+
+def _heights(segmentation: Segmentation, points: Floats) -> tuple[float, ...]:
+    level = [
+        n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
+    ]
+    heights = [points[..., 2][segmentation.plane_labels == n] for n in level]
+    return tuple(float(np.median(height)) for height in heights if len(height))

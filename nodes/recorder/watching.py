@@ -1,0 +1,58 @@
+"""What cameras and perception publish is drawn: looks as they come, pictures and clouds seldom."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from nodes import bus
+from nodes.loop import Node
+from nodes.recorder import sightings
+from nodes.recorder.recording import Recording
+from schemas import keys
+from schemas.perception import Observations, SegmentedCloud
+from schemas.scenes import CameraFrame
+
+log = logging.getLogger(__name__)
+
+_PICTURE_S = 1.0
+"""A camera's picture is recorded no more often."""
+
+
+class Watching:
+    """Binds the drawing of what is seen to the wire."""
+
+    def __init__(self, node: Node, recording: Recording, at: Callable[[int], None]) -> None:
+        """`at(stamp_ns)` says of when what is recorded next is."""
+        self._recording = recording
+        self._at = at
+        self._seen = Observations(stamp_ns=0, views=(), observations=())
+        self._pictures: dict[str, tuple[CameraFrame, Callable[[], bytes]]] = {}
+        node.follow(keys.OBSERVATIONS, self._on_observations)
+        node.follow(keys.CLOUD, self._on_cloud)
+        bus.follow_cameras(node.session, "rgb", self._keep, log.warning)
+        node.every(_PICTURE_S, self._draw_pictures)
+
+    def _on_observations(self, seen: Observations) -> None:
+        self._seen = seen
+        self._at(seen.stamp_ns)
+        self._recording.show(sightings.BOXES, *sightings.boxes_of(seen))
+
+    def _on_cloud(self, cloud: SegmentedCloud) -> None:
+        self._at(cloud.stamp_ns)
+        self._recording.show(sightings.CLOUD, sightings.points_of(cloud, self._seen))
+
+    def _keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
+        """On a thread of Zenoh's: only the newest picture of each camera is kept."""
+        self._pictures[frame.camera] = (frame, read)
+
+    def _draw_pictures(self) -> None:
+        for camera in list(self._pictures):
+            frame, read = self._pictures.pop(camera)
+            try:
+                drawn = sightings.picture_of(frame, read())
+            except ValueError as error:
+                log.warning("camera %s: its picture cannot be recorded: %s", camera, error)
+                continue
+            self._at(frame.stamp_ns)
+            self._recording.show(sightings.camera_path(camera), *drawn)

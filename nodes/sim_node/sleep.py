@@ -1,0 +1,51 @@
+"""Who sleeps. MuJoCo's unit of sleep is the kinematic tree: here, one free body.
+
+`tree_asleep` counts up to -1 while a tree comes to rest, and then names the next tree of the heap that sleeps
+together. `tree_awake` is what the last step made of it; to mark a sleeper there wakes all its heap.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.bodies import Ints
+
+_AWAKE = -(1 + mujoco.mjMINAWAKE)
+_READY = -1
+
+
+def all_asleep(data: mujoco.MjData) -> bool:
+    """Nothing moves: every tree sleeps, and none is about to be woken."""
+    if (data.tree_asleep < 0).any() or data.tree_awake.any():
+        return False
+    return not (data.xfrc_applied.any() or data.qvel.any())
+
+
+def sleeping(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
+    """(N,) which of these trees sleep; -1 is what is static and never wakes."""
+    return _where(data, tree, data.tree_asleep >= 0)
+
+
+def drowsy(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
+    """(N,) which of these trees sleep, and will, or are about to."""
+    asleep = data.tree_asleep
+    return _where(data, tree, (asleep == _READY) | ((asleep >= 0) & (data.tree_awake == 0)))
+
+
+def _where(data: mujoco.MjData, tree: Ints, condition: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    return np.append(condition, True)[tree]  # the last for what has no tree
+
+
+def wake(data: mujoco.MjData, tree: int) -> None:
+    """Wake a tree, with the next step also the heap that it sleeps in."""
+    if tree >= 0 and data.tree_asleep[tree] < 0:
+        data.tree_asleep[tree] = _AWAKE
+    elif tree >= 0:
+        data.tree_awake[tree] = 1
+
+
+def lull(data: mujoco.MjData, trees: Ints) -> None:
+    """Let trees, awake only because they were compiled anew, sleep after the next step."""
+    data.tree_asleep[trees[trees >= 0]] = _READY

@@ -1,0 +1,188 @@
+"""Where things stand in a scene for training: loose, crowded, touching."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from nodes.sim_node.models.parts import Colour, Vec3
+from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.vision.view import View, look_at
+from nodes.training.scenes import Item
+
+_HANGING = (
+    "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"
+    " mirror picture poster power_plug shelf shower stairs switch tap thermostat wall window clock"
+    " washing_line rug"
+)
+HANGING = frozenset(_HANGING.split())
+"""Models that are part of a room, or hang on its walls: no objects that stand somewhere."""
+
+SMALL_M = 0.5
+_ODD = 0.6
+_ODD_SHARE = 0.08
+SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
+LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
+
+CARRIERS = ("table", "table", "desk", "counter", "cabinet")
+"""What things stand on, tables more often than others."""
+
+Rectangle = tuple[float, float, float, float, float]
+"""Middle x and y, extents along its own x and y [m], yaw [rad]."""
+
+
+def overlap(a: Rectangle, b: Rectangle, gap_m: float) -> bool:
+    """Whether two rectangles come nearer than `gap_m` to one another."""
+    offset = np.array([b[0] - a[0], b[1] - a[1]])
+    if math.hypot(*offset) > (math.hypot(*a[2:4]) + math.hypot(*b[2:4])) / 2 + gap_m:
+        return False
+    axes = np.array(
+        [(math.cos(yaw + turn), math.sin(yaw + turn)) for yaw in (a[4], b[4]) for turn in (0.0, math.pi / 2)]
+    )
+    reach = sum(
+        np.abs(axes @ (math.cos(r[4] + turn), math.sin(r[4] + turn))) * extent / 2
+        for r in (a, b)
+        for turn, extent in ((0.0, r[2]), (math.pi / 2, r[3]))
+    )
+    return bool(np.all(np.abs(axes @ offset) < reach + gap_m))
+
+
+def spread(
+    kinds: Sequence[str],
+    sizes: Sequence[Vec3],
+    area_m: tuple[float, float],
+    gap_m: float,
+    rng: np.random.Generator,
+    *,
+    crowded: bool = False,
+) -> list[Rectangle | None]:
+    """A free spot in an area around the origin for each thing, None where there is none left.
+
+    Crowded things come as near to the others as `gap_m` lets them.
+    """
+    taken: list[Rectangle] = []
+    spots: list[Rectangle | None] = []
+    for (x, y, _), _kind in zip(sizes, kinds, strict=True):
+        free: list[Rectangle] = []
+        for _ in range(60 if crowded else 25):
+            at = rng.uniform(-0.5, 0.5, 2) * (np.array(area_m) - 0.7 * max(x, y))
+            spot = (float(at[0]), float(at[1]), x, y, float(rng.uniform(-math.pi, math.pi)))
+            if not any(overlap(spot, other, gap_m) for other in taken):
+                free.append(spot)
+                if not crowded:
+                    break
+        best = min(free, key=lambda spot: _nearest(spot, taken), default=None)
+        spots.append(best)
+        if best is not None:
+            taken.append(best)
+    return spots
+
+
+def _nearest(spot: Rectangle, others: Sequence[Rectangle]) -> float:
+    return min((math.dist(spot[:2], other[:2]) for other in others), default=0.0)
+
+
+def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
+    """The model's own size, somewhat larger or smaller, slimmer or stouter; now and then quite another."""
+    if kind in SMALL and rng.random() < _ODD_SHARE:
+        factor = float(rng.choice([rng.uniform(0.4, 0.55), rng.uniform(1.9, 3.0)]))
+        x, y, z = MODELS[kind].size_m * np.exp(np.log(factor) + rng.normal(0.0, 0.2, 3))
+        return (float(x), float(y), float(z))
+    x, y, z = MODELS[kind].size_m * np.exp(rng.normal(0.0, 0.08) + rng.normal(0.0, 0.05, 3))
+    return (float(x), float(y), float(z))
+
+
+def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
+    """The model's own colour under other light; now and then another one."""
+    base = np.array(MODELS[kind].colour)
+    strange = rng.random() < 0.1
+    red, green, blue = rng.uniform(0.05, 0.95, 3) if strange else base + rng.normal(0.0, 0.05, 3)
+    return (float(np.clip(red, 0, 1)), float(np.clip(green, 0, 1)), float(np.clip(blue, 0, 1)))
+
+
+def table_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
+    """A table and these things on it; those that find no room are left out."""
+    area = (float(rng.uniform(0.7, 1.0)), float(rng.uniform(1.0, 1.5)))
+    height = float(rng.uniform(0.5, 0.85))
+    sizes = [varied_size(kind, rng) for kind in kinds]
+    crowded = rng.random() < 0.5
+    gap = float(rng.uniform(0.001, 0.02)) if crowded else float(rng.uniform(0.03, 0.08))
+    kind = str(rng.choice(CARRIERS))
+    table = Item("table", kind, (*area, height), varied_colour(kind, rng), (0.0, 0.0, 0.0), 0.0)
+    return [
+        table,
+        *standing(kinds, sizes, spread(kinds, sizes, area, gap, rng, crowded=crowded), height, rng),
+    ]
+
+
+def floor_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
+    """These things on the floor."""
+    sizes = [varied_size(kind, rng) for kind in kinds]
+    spots = spread(kinds, sizes, (3.5, 3.5), float(rng.uniform(0.02, 0.3)), rng)
+    return standing(kinds, sizes, spots, 0.0, rng)
+
+
+def standing(
+    kinds: Sequence[str],
+    sizes: Sequence[Vec3],
+    spots: Sequence[Rectangle | None],
+    height_m: float,
+    rng: np.random.Generator,
+) -> list[Item]:
+    """Things at their spots, at one height."""
+    items = []
+    for n, (kind, size, spot) in enumerate(zip(kinds, sizes, spots, strict=True)):
+        if spot is not None:
+            at = (spot[0], spot[1], height_m + 0.001)
+            odd = kind in SMALL and is_odd(kind, size)
+            items.append(Item(f"{kind}_{n}", kind, size, varied_colour(kind, rng), at, spot[4], odd))
+    return items
+
+
+def is_odd(kind: str, size_m: Vec3) -> bool:
+    """Whether this size is far from what such things measure."""
+    return bool(np.abs(np.log(np.array(size_m) / MODELS[kind].size_m)).max() > _ODD)
+
+
+def views(
+    target_m: Vec3, distance_m: tuple[float, float], rng: np.random.Generator, *, count: int = 2
+) -> list[View]:
+    """Cameras that look at about the same spot from different sides."""
+    first, found = rng.uniform(-math.pi, math.pi), []
+    for n in range(count):
+        azimuth = first + n * rng.uniform(0.9, 2.4)
+        elevation, distance = rng.uniform(0.45, 1.1), rng.uniform(*distance_m)
+        back = np.array(
+            [
+                math.cos(azimuth) * math.cos(elevation),
+                math.sin(azimuth) * math.cos(elevation),
+                math.sin(elevation),
+            ]
+        )
+        target = np.array(target_m) + rng.normal(0.0, 0.05, 3)
+        found.append(look_at(target + distance * back, target, 640, 480, float(rng.uniform(0.78, 1.05))))
+    return found
+
+
+Scene = tuple[list[Item], list[View]]
+"""Things, and the cameras."""
+
+
+def training_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
+    """Scenes in which every model comes about equally often: small things on tables, all things on floors."""
+    small, large = _deck(SMALL, rng), _deck(LARGE, rng)
+    for number in range(count):
+        if number % 5 < 4:
+            items = table_scene([next(small) for _ in range(rng.integers(8, 19))], rng)
+            yield items, views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
+        else:
+            kinds = [next(large) for _ in range(4)] + [next(small) for _ in range(3)]
+            yield floor_scene(kinds, rng), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
+
+
+def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:
+    """All of them in random order, again and again."""
+    while True:
+        yield from (str(kind) for kind in rng.permutation(kinds))

@@ -1,0 +1,142 @@
+"""Learn to recognise things from renderings of the model library: `python -m nodes.training.recognition`."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from nodes.perception_node.recognition.learnt import CLUTTER, SHIPPED, UNKNOWN, Learnt, save
+from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
+from nodes.perception_node.recognition.sides import SIZE_FEATURES
+from nodes.perception_node.recognition.vote import expected_sizes, vote
+from nodes.sim_node.models.table import MODELS
+from nodes.training import samples as sampling
+from nodes.training.arranging import training_scenes
+from nodes.training.fitting import Numbers, classifier, regressor
+from nodes.training.novelty import learn_novelty
+from nodes.training.samples import NOTHING, Samples
+from nodes.training.scenes import STRANGE, Stage
+from nodes.training.taxonomy import class_of_models, hierarchy
+
+SURE = 0.6
+_HELD_OUT = 5
+_HIDDEN = {"geometry": (96,), "shape": (96,), "colour": (64,)}
+_SIDES_HIDDEN = (64, 32)
+_FARTHEST = 1.0
+"""A side that is off by more of the thing's size than this was not seen at all."""
+
+
+def gather(scenes: int, seed: int) -> Samples:
+    """Samples from so many simulated scenes."""
+    stage, rng = Stage(), np.random.default_rng(seed)
+    found = []
+    for number, (items, views) in enumerate(training_scenes(scenes, rng)):
+        bodies = stage.show(items)
+        red, green, blue = rng.uniform(0.2, 0.9, 3).tolist()
+        stage.paint({"floor": (red, green, blue)}, light=float(rng.uniform(0.25, 0.45)))
+        samples = sampling.samples_of(stage.shoot(bodies, views, rng), items, number)
+        if samples is not None:
+            found.append(samples)
+    return sampling.joined(found)
+
+
+def learn(samples: Samples, *, without: Collection[str] = ()) -> Learnt:
+    """Train on four scenes of five, calibrate on the fifth; classes in `without` are left out altogether."""
+    class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
+    names = np.array([class_of[kind] for kind in samples.kind])
+    known = ~np.isin(names, list(without))
+    samples, names = samples[known], names[known]
+    classes = tuple(sorted(set(names.tolist())))
+    target = np.searchsorted(classes, names)
+    held = samples.scene % _HELD_OUT == 0
+    features = [getattr(samples, name) for name in _HIDDEN]
+    voters = tuple(
+        classifier(f[~held], target[~held], len(classes), hidden)
+        for f, hidden in zip(features, _HIDDEN.values(), strict=True)
+    )
+    weights = _calibrated(voters, [f[held] for f in features], target[held])
+    nameable = [k for k, name in enumerate(classes) if name not in (UNKNOWN, CLUTTER)]
+    novelty = learn_novelty(features, target, held, nameable, list(_HIDDEN.values()), weights)
+    sizes = _typical_sizes(samples, target, len(classes))
+    expected = expected_sizes(vote(voters, weights, features), sizes)
+    return Learnt(
+        classes=classes,
+        ancestors=hierarchy(),
+        sizes_m=sizes,
+        sideways=_sideways(samples, target, len(classes)),
+        voters=voters,
+        weights=weights,
+        novelty=novelty,
+        sides=_sides(samples, expected),
+        sure=SURE,
+        story=f"{len(samples)} segments, {len(classes)} leaves; rendered from the model library, 2 cameras",
+    )
+
+
+def _calibrated(
+    voters: Sequence[Perceptron], features: Sequence[Numbers], target: NDArray[np.int64]
+) -> Numbers:
+    """The weights of the votes that make the truth of held-out scenes likeliest."""
+    votes = np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, features, strict=True)])
+    rows = np.arange(len(target))
+
+    def surprise(weights: Numbers) -> float:
+        return float(-log_softmax(np.tensordot(weights, votes, axes=1))[rows, target].mean())
+
+    return np.asarray(minimize(surprise, np.full(len(voters), 0.6), method="Nelder-Mead").x)
+
+
+def _typical_sizes(samples: Samples, target: NDArray[np.int64], count: int) -> Numbers:
+    """(count, 3) geometric means of long side, short side and height [m] of each leaf's things."""
+    measured = np.isfinite(samples.size_m[:, 0])
+    long_short = np.sort(samples.size_m[:, :2], axis=1)[:, ::-1]
+    logs = np.log(np.column_stack([long_short, samples.size_m[:, 2]]))
+    sizes = np.tile(np.exp(logs[measured].mean(axis=0)), (count, 1))
+    for k in np.unique(target[measured]):
+        sizes[k] = np.exp(logs[measured & (target == k)].mean(axis=0))
+    return sizes
+
+
+def _sideways(samples: Samples, target: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+    longer = np.bincount(target, samples.size_m[:, 1] > samples.size_m[:, 0], count)
+    return np.asarray(longer > 0.5 * np.bincount(target, minlength=count))
+
+
+def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
+    things = np.isfinite(samples.shifts[:, 0])
+    inputs = samples.sides[things].copy()
+    inputs[..., SIZE_FEATURES] += np.log(expected_m[things])[:, None]
+    shifts = samples.shifts[things].ravel()
+    near = np.abs(shifts) < _FARTHEST
+    return regressor(inputs.reshape(len(shifts), -1)[near], shifts[near], _SIDES_HIDDEN)
+
+
+def main() -> None:
+    """Render, learn, and write what ships."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--scenes", type=int, default=600)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
+    parser.add_argument("--out", type=Path, default=SHIPPED)
+    options = parser.parse_args()
+    started = time.perf_counter()
+    if options.samples and options.samples.exists():
+        samples = sampling.read(options.samples)
+    else:
+        samples = gather(options.scenes, options.seed)
+        if options.samples:
+            sampling.write(samples, options.samples)
+    print(f"{len(samples)} segments after {time.perf_counter() - started:.0f} s")
+    learnt = learn(samples)
+    save(learnt, options.out)
+    print(f"{options.out} after {time.perf_counter() - started:.0f} s: {learnt.story}")
+
+
+if __name__ == "__main__":
+    main()

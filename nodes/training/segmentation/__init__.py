@@ -1,0 +1,1 @@
+"""What teaches segmentation which patches are one object."""

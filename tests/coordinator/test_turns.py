@@ -1,0 +1,127 @@
+"""What goes together, what goes at the same time, and what waits."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+import pytest
+
+from nodes.coordinator.turns import GROUP, Turns
+from schemas import errors
+from schemas.commands import Add, Changed, Update
+
+
+class KnowledgeBase:
+    """Collects groups of changes; each is done when the test says so."""
+
+    def __init__(self):
+        self.groups: list[tuple[list[str | None], Future]] = []
+
+    def __call__(self, changes, rest):
+        self.rest = rest
+        self.groups.append(([change.name for change in changes], Future()))
+        return self.groups[-1][1]
+
+    @property
+    def names(self):
+        return [names for names, _ in self.groups]
+
+    def finish(self, i: int) -> None:
+        names, future = self.groups[i]
+        future.set_result([Changed(commit=i + 1, text=str(name)) for name in names])
+
+
+@pytest.fixture
+def kb():
+    return KnowledgeBase()
+
+
+@pytest.fixture
+def turns(kb):
+    return Turns(kb)
+
+
+def move(turns, name):
+    return turns.change(Update(name=name, at=(0.0, 0.0, 0.0)))
+
+
+def test_changes_of_different_entities_go_together(kb, turns):
+    futures = [move(turns, name) for name in "abc"]
+    assert kb.groups == []
+    turns.go_on()
+    assert kb.names == [["a", "b", "c"]]
+    kb.finish(0)
+    assert [future.result().text for future in futures] == ["a", "b", "c"]
+
+
+def test_changes_of_one_entity_go_one_after_the_other(kb, turns):
+    for name in "aba":
+        move(turns, name)
+    turns.go_on()
+    assert kb.names == [["a", "b"]]
+    kb.finish(0)
+    turns.go_on()
+    assert kb.names == [["a", "b"], ["a"]]
+
+
+def test_a_second_group_is_under_way_beside_a_smaller_one(kb, turns):
+    move(turns, "a")
+    turns.go_on()
+    for name in "bc":
+        move(turns, name)
+    turns.go_on()
+    assert kb.names == [["a"], ["b", "c"]]
+    assert kb.rest
+    move(turns, "d")
+    kb.finish(0)
+    turns.go_on()
+    assert kb.names == [["a"], ["b", "c"]]
+    kb.finish(1)
+    turns.go_on()
+    assert kb.names == [["a"], ["b", "c"], ["d"]]
+    assert not kb.rest
+
+
+def test_groups_are_of_a_size(kb, turns):
+    for i in range(3 * GROUP):
+        move(turns, f"e{i}")
+    turns.go_on()
+    assert [len(names) for names in kb.names] == [GROUP, GROUP]
+
+
+@pytest.mark.parametrize("change", [Add(class_="Chair"), Add(class_="Chair", name="c")])
+def test_what_needs_a_name_or_a_place_goes_alone(kb, turns, change):
+    move(turns, "a")
+    turns.change(change)
+    move(turns, "b")
+    for i in range(3):
+        turns.go_on()
+        assert len(kb.groups) == i + 1
+        kb.finish(i)
+    assert kb.names == [["a"], [change.name], ["b"]]
+
+
+def test_everything_else_waits_for_what_came_before_and_nothing_overtakes_it(kb, turns):
+    assert turns.after(lambda: "at once") == "at once"
+    move(turns, "a")
+    later = turns.after(lambda: "done")
+    refused = turns.after(lambda: 1 / 0)
+    move(turns, "b")
+    turns.go_on()
+    assert (kb.names, later.done()) == ([["a"]], False)
+    kb.finish(0)
+    turns.go_on()
+    assert (later.result(), type(refused.exception())) == ("done", ZeroDivisionError)
+    assert kb.names == [["a"], ["b"]]
+
+
+def test_an_error_is_the_result_of_its_change_and_a_fault_that_of_its_group(kb, turns):
+    first, second = move(turns, "a"), move(turns, "b")
+    turns.go_on()
+    kb.groups[0][1].set_result([Changed(commit=1, text="a"), errors.Refused("no")])
+    assert first.result().text == "a"
+    assert isinstance(second.exception(), errors.Refused)
+    third = move(turns, "a")
+    turns.go_on()
+    kb.groups[1][1].set_exception(ZeroDivisionError())
+    assert isinstance(third.exception(), ZeroDivisionError)

@@ -1,0 +1,198 @@
+"""Perception on the wire: frames of cameras in, good and bad, observations and commands out."""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from nodes import bus
+from nodes.loop import Node
+from nodes.perception_node.config import PerceptionConfig
+from nodes.perception_node.node import Perception
+from nodes.perception_node.pipeline import Look
+from schemas import codec, errors, keys
+from schemas.bridge import SnapshotQuery
+from schemas.commands import Add, Changed, Classes
+from schemas.commits import Commit, Snapshot
+from schemas.entities import ClassInfo
+from schemas.perception import Observations
+from tests.conftest import free_endpoint, until
+from tests.perception_node.test_frames import DEPTH
+from tests.perception_node.things import at, entity, seen
+
+CUP = seen("Cup", at(3.0, 4.0, 5.9))
+CLASSES = tuple(
+    ClassInfo(
+        name=name,
+        iri=f"http://example.org/{name}",
+        parents=above[:1],
+        ancestors=above,
+        labels={"en": name.lower()},
+        spatial=True,
+        place=False,
+        fixed=False,
+        model="",
+    )
+    for name, above in {"Cup": ("Tableware", "Object"), "Tableware": ("Object",), "Object": ()}.items()
+)
+
+
+def everything_is_a_cup(clouds):
+    """A look that sees the same cup in whatever it is shown, and fails at what is near."""
+    if np.nanmin(clouds[0].points_camera[..., 2]) < 0.5:
+        raise ZeroDivisionError("too near")
+    shape = clouds[0].points_camera.shape[:2]
+    observations = Observations(stamp_ns=clouds[0].stamp_ns, views=(), observations=(CUP,))
+    return Look(observations, tuple(np.ones(shape, np.int32) for _ in clouds))
+
+
+class World:
+    """Plays the coordinator, the knowledge base and the cameras, and hears what perception says."""
+
+    def __init__(self, session):
+        self.session = session
+        self.node = Node("kb_node", session)
+        self.told = []
+        self.seen = []
+        self.clouds = []
+        self.health = None
+        self.refusal = None
+        self._seq = 1
+        self._stamp_ns = 0
+        self._commits = bus.publisher(session, keys.COMMIT)
+        bus.follow(session, keys.OBSERVATIONS, lambda _, message: self.seen.append(message))
+        bus.follow(session, keys.CLOUD, lambda _, message: self.clouds.append(message))
+        bus.follow(session, keys.HEALTH, self._hear)
+        self.node.serve(
+            keys.BRIDGE,
+            {
+                "snapshot": (SnapshotQuery, lambda _: Snapshot(seq=1, entities=())),
+                "classes": (Classes, lambda _: CLASSES),
+            },
+        )
+        self.node.serve(keys.CMD, {"add": (Add, self._add)})
+
+    def film(self, depth_m=2.0, *, rgb=None, pixels=None, **changes):
+        """One frame of a camera."""
+        self._stamp_ns += 1_000_000
+        depth = structs.replace(DEPTH, **{"stamp_ns": self._stamp_ns, **changes})
+        colour = structs.replace(depth, encoding="rgb8", **(rgb or {}))
+        shape = (depth.height, depth.width)
+        planes = {
+            "rgb": (colour, bytes(3 * colour.width * colour.height)),
+            "depth": (depth, np.full(shape, depth_m, "<f4").tobytes() if pixels is None else pixels),
+        }
+        for plane, (frame, content) in planes.items():
+            self.session.put(keys.camera_key(depth.camera, plane), content, attachment=codec.encode(frame))
+
+    def film_until(self, condition, what, **frame):
+        def filmed():
+            self.film(**frame)
+            time.sleep(0.05)
+            return condition()
+
+        return until(filmed, what)
+
+    def _add(self, command):
+        self.told.append(command)
+        if self.refusal is not None:
+            raise self.refusal
+        self._seq += 1
+        made = entity(command.name, command.class_, at(*command.at), command.size, source="perception")
+        commit = Commit(seq=self._seq, stamp_ns=1, id=str(self._seq), source="perception", changed=(made,))
+        self._commits.put(codec.encode(commit))
+        return Changed(commit=self._seq, text="added", names=(command.name,))
+
+    def _hear(self, _, health):
+        if health.node == "perception_node":
+            self.health = health
+
+
+@contextmanager
+def beside(node):
+    thread = threading.Thread(target=node.run)
+    thread.start()
+    try:
+        yield
+    finally:
+        node.stop()
+        thread.join()
+
+
+@pytest.fixture(scope="module")
+def endpoint():
+    return free_endpoint()
+
+
+@pytest.fixture
+def world(endpoint):
+    here = bus.Network(connect=(), listen=(endpoint,), mode="peer")
+    there = bus.Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
+    with bus.open_session(here) as session, bus.open_session(there) as other:
+        world = World(session)
+        node = Node("perception_node", other)
+        perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {})
+        with beside(world.node), beside(node):
+            until(lambda: world.health is not None and world.health.state == "ready", "it is ready")
+            try:
+                yield world
+            finally:
+                perception.close()
+
+
+def test_what_is_seen_becomes_an_entity_once_and_is_published_with_its_name(world):
+    world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity, "the map has it")
+    for _ in range(10):
+        world.film()
+        time.sleep(0.02)
+    (add,) = world.told
+    assert (add.class_, add.name, add.source, add.agent) == ("Cup", "cup1", "perception", "perception_node")
+    assert world.seen[-1].observations == (structs.replace(CUP, entity="cup1"),)
+    assert world.seen[-1].stamp_ns > world.seen[0].stamp_ns
+    until(lambda: world.clouds, "a cloud is published")
+    assert set(np.frombuffer(world.clouds[0].labels, "<u2")) == {1}
+    assert len(world.clouds[0].positions) == 12 * len(np.frombuffer(world.clouds[0].labels, "<u2"))
+    until(lambda: world.health.detail.startswith("1 cameras, 1 things seen"), "it says what it sees")
+
+
+def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
+    world.refusal = errors.Inconsistent("a cup cannot be here")
+    world.film_until(lambda: "a cup cannot be here" in world.health.last_error, "it says why")
+    for _ in range(10):
+        world.film()
+        time.sleep(0.02)
+    assert len(world.told) == 1
+
+
+NAN = float("nan")
+BAD = {
+    "the past": ({"stamp_ns": -5_000_000_000}, "a frame of the past is passed over"),
+    "sizes": ({"rgb": {"width": 32}}, "its picture has 32 x 48 pixels, its depth 64 x 48"),
+    "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics (0.0,"),
+    "pose": ({"map_from_camera": (2.0,) * 16}, "its map_from_camera is no pose"),
+    "bytes": ({"pixels": b"123"}, "3 bytes are no depth32f picture"),
+    "a fault": ({"depth_m": 0.1}, "a look failed: ZeroDivisionError: too near"),
+    "too large": (
+        {"width": 4000, "height": 3000, "intrinsics": (3000.0, 0, 2000.0, 0, 3000.0, 1500.0, 0, 0, 1)},
+        "of 4000 x 3000 pixels, one of 6 x 6 is used",
+    ),
+}
+
+
+@pytest.mark.parametrize(("frame", "said"), BAD.values(), ids=BAD.keys())
+def test_a_bad_frame_is_told_once_and_the_node_goes_on(world, caplog, frame, said):
+    world.film_until(lambda: world.seen, "it sees")
+    world.film_until(lambda: said in world.health.last_error, f"it says: {said}", **frame)
+    assert sum(said in record.message for record in caplog.records if record.levelname == "ERROR") == 1
+    looks = len(world.seen)
+    world.film_until(lambda: len(world.seen) > looks, "it goes on")
+
+
+def test_what_is_no_frame_is_told(world):
+    world.session.put(keys.camera_key("left", "depth"), b"x", attachment=b"y")
+    until(lambda: "semmap/sim/camera/left/depth: malformed" in world.health.last_error, "it says so")

@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.pipeline import look, observe
+from nodes.perception_node.recognition.learnt import shipped
+from tests.perception_node.scenes import HEIGHT_M, KINDS, shot
+
+
+@pytest.fixture(scope="module")
+def seen():
+    return look(shot().clouds, shipped())
+
+
+def nearest(observations, x, y):
+    return min(observations, key=lambda o: np.hypot(o.pose.position_m[0] - x, o.pose.position_m[1] - y))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_things_of_two_views_are_one_observation_each(seen, kind):
+    x, y = KINDS[kind]
+    observation = nearest([o for o in seen.observations.observations if max(o.size_m) < 0.7], x, y)
+    body = next(body for body in shot().bodies if body.name == kind)
+    assert observation.pose.position_m == pytest.approx((x, y, HEIGHT_M), abs=0.03)
+    assert [*sorted(observation.size_m[:2]), observation.size_m[2]] == pytest.approx(
+        [*sorted(body.size_m[:2]), body.size_m[2]], abs=0.04
+    )
+    assert observation.class_ in {
+        "cereals": "Cereals Food",
+        "bottle": "Bottle Wine Drink Vessel Container",
+    }.get(kind, f"{kind.title()} Fruit Food Container Object")
+
+
+def test_a_table_is_a_thing_too(seen):
+    table = max(seen.observations.observations, key=lambda o: o.size_m[0] * o.size_m[1])
+    assert table.pose.position_m[2] == pytest.approx(0.0, abs=0.02)
+    assert table.size_m[2] == pytest.approx(HEIGHT_M, abs=0.03)
+
+
+def test_labels_name_the_observations(seen):
+    for label, cloud in zip(seen.labels, shot().clouds, strict=True):
+        assert label.shape == cloud.points_camera.shape[:2]
+        assert label.max() <= len(seen.observations.observations)
+    together = np.concatenate([label.ravel() for label in seen.labels])
+    assert set(range(1, len(seen.observations.observations) + 1)) <= set(together.tolist())
+
+
+def test_the_views_are_told(seen):
+    view = seen.observations.views[1]
+    assert view.map_from_camera == pytest.approx(shot().clouds[1].map_from_camera.ravel())
+    assert (view.width, view.height) == (640, 480)
+
+
+def test_a_cloud_of_unknown_pose_stands_on_its_largest_plane():
+    cloud = shot().clouds[0]
+    alone = observe([Cloud(cloud.points_camera, cloud.colors)], shipped())
+    heights = [o.pose.position_m[2] for o in alone.observations]
+    assert len(heights) >= 3
+    assert np.isfinite(heights).all()
+
+
+def cloud_of(points, **more):
+    return Cloud(np.asarray(points, np.float32), **more)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        np.full((4, 6, 3), np.nan),
+        np.zeros((1, 0, 3)),
+        np.full((1, 1, 3), 1.0),
+        np.ones((48, 64, 3)),
+        np.full((1, 500, 3), np.nan),
+    ],
+)
+def test_what_shows_nothing_gives_nothing(points):
+    assert observe([cloud_of(points, map_from_camera=np.eye(4))], shipped()).observations == ()
+
+
+def test_no_cloud_no_observation():
+    assert observe([], shipped()).observations == ()
+
+
+def test_intrinsics_of_another_camera_do_no_worse_than_one_camera():
+    first, second = shot().clouds
+    wrong = np.array([[5.0, 0.0, -900.0], [0.0, 5.0, 2000.0], [0.0, 0.0, 1.0]])
+    strange = Cloud(second.points_camera, second.colors, second.map_from_camera, wrong)
+    assert len(observe([first, strange], shipped()).observations) >= len(KINDS)

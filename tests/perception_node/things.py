@@ -1,0 +1,147 @@
+"""A table with things on it that perception sees perfectly, and a map that does what it is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from msgspec import structs
+
+from nodes.perception_node.association import associate
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.visibility import Sight
+from schemas.commands import Add, Command, Remove, Update
+from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
+from schemas.perception import Observation
+
+CONFIG = TrackingConfig(confirm_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6)
+SIZES: dict[str, Size] = {
+    "Cup": (0.08, 0.08, 0.1),
+    "Bottle": (0.07, 0.07, 0.28),
+    "Book": (0.16, 0.24, 0.03),
+    "Object": (0.3, 0.12, 0.15),
+}
+KINSHIP = Kinship(
+    {
+        "Object": frozenset({"Physical_Thing"}),
+        "Tableware": frozenset({"Object", "Physical_Thing"}),
+        "Cup": frozenset({"Tableware", "Object", "Physical_Thing"}),
+        "Bottle": frozenset({"Object", "Physical_Thing"}),
+        "Book": frozenset({"Object", "Physical_Thing"}),
+    },
+    {"Cup": "cup"},
+    {"Cup": SIZES["Cup"]},
+)
+
+
+def at(x: float, y: float, z: float = 0.7, yaw: float = 0.0) -> Pose:
+    return Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(yaw))
+
+
+def seen(class_: str, pose: Pose, size_m: Size | None = None, *, p=0.9, whole=True) -> Observation:
+    return Observation(
+        class_=class_,
+        probability=p,
+        candidates={class_: p},
+        pose=pose,
+        size_m=size_m or SIZES[class_],
+        points=500,
+        whole=whole,
+    )
+
+
+def entity(
+    name: str,
+    class_: str,
+    pose: Pose | None,
+    size_m: Size | None = None,
+    *,
+    source: Source = "operator",
+    **more,
+) -> Entity:
+    said = Provenance(commit=1, stamp_ns=1, source=source)
+    return Entity(
+        name=name,
+        class_=class_,
+        iri=f"http://example.org/{name}",
+        types=(class_,),
+        pose=pose,
+        size_m=size_m or SIZES[class_],
+        provenance=said,
+        pose_provenance=said,
+        shape_provenance=said,
+        reference_provenance=said,
+        **more,
+    )
+
+
+@dataclass
+class Table:
+    """`things` is what stands there, `entities` what the map says of it."""
+
+    things: list[Observation] = field(default_factory=list)
+    entities: dict[str, Entity] = field(default_factory=dict)
+    tracks: Tracks = field(default_factory=Tracks)
+    config: TrackingConfig = CONFIG
+    hidden: bool = False
+    """Nobody can tell what is at the places where nothing is seen."""
+
+    def look(self) -> tuple[Command, ...]:
+        """One look, and the map takes what it is told; gives the commands."""
+        result = associate(self.entities, self.tracks, self.things, self._sight, KINSHIP, self.config)
+        self.tracks, self.taken_for = result.tracks, result.entities
+        for command in result.commands:
+            self._obey(command)
+        return result.commands
+
+    def looks(self, count: int) -> list[Command]:
+        return [command for _ in range(count) for command in self.look()]
+
+    def told(self, entities: Iterable[Entity]) -> Table:
+        self.entities |= {e.name: e for e in entities}
+        return self
+
+    def _sight(self, pose: Pose, size_m: Size) -> Sight:
+        if self.hidden:
+            return "hidden"
+        filling = (
+            math.dist(pose.position_m, thing.pose.position_m) < max(size_m[:2]) / 2
+            and all(own > 0.5 * wanted for own, wanted in zip(thing.size_m, size_m, strict=True))
+            for thing in self.things
+        )
+        return "filled" if any(filling) else "open"
+
+    def _obey(self, command: Command) -> None:
+        assert command.source == "perception"
+        assert command.agent
+        match command:
+            case Add():
+                assert command.name not in self.entities
+                assert command.at is not None
+                pose = Pose(position_m=command.at, orientation_wxyz=command.orientation)
+                made = entity(command.name, command.class_, pose, command.size, source="perception")
+                self.entities[command.name] = structs.replace(made, preferred_reference=command.ref)
+            case Remove():
+                for name in command.names:
+                    assert self.entities.pop(name).shape_provenance.source == "perception"
+            case Update():
+                self.entities[command.name] = self._updated(self.entities[command.name], command)
+
+    def _updated(self, old: Entity, command: Update) -> Entity:
+        operators = old.shape_provenance.source == "operator"
+        assert not (operators and (command.class_ or command.size or command.ref or command.alt))
+        pose = old.pose
+        if command.at is not None:
+            pose = Pose(position_m=command.at, orientation_wxyz=command.orientation)
+        conflict = old.conflict if command.conflict is None else command.conflict
+        return structs.replace(
+            old,
+            pose=pose,
+            size_m=command.size or old.size_m,
+            class_=command.class_ or old.class_,
+            preferred_reference=command.ref or old.preferred_reference,
+            conflict=conflict,
+        )
