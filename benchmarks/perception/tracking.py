@@ -1,7 +1,8 @@
 """Do things keep their names while they are moved about? The pipeline and the association, without the wire.
 
-Twenty things stand in cells of a table that two cameras see, noise on. One after the other is taken to a free
-cell and turned. Then the entity that stands where the thing really is must be the one that was it before.
+Twenty things stand in cells of a table that two cameras see from opposite corners, noise on. One after the
+other is taken to a free cell and turned. Then the entity that stands where the thing really is must be the
+one that was it before.
 """
 
 from __future__ import annotations
@@ -109,7 +110,9 @@ def identity(
     semantic_map, tracks = ObedientMap(), Tracks()
     table = Item("table", "table", _TABLE_M, (0.6, 0.5, 0.4), (0.0, 0.0, 0.0), 0.0)
     views = [
-        look_at(np.array([side * 0.9, -0.8, 1.75]), np.array([0.0, 0.0, 0.75]), 640, 480, math.radians(58.0))
+        look_at(
+            np.array([side * 0.8, side * 0.8, 1.9]), np.array([0.0, 0.0, 0.75]), 640, 480, math.radians(58.0)
+        )
         for side in (-1.0, 1.0)
     ]
 

@@ -10,7 +10,7 @@ import logging
 import math
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
 from typing import Any
@@ -34,6 +34,7 @@ from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Changed, Classes, Command
 from schemas.commits import Commit, Snapshot
+from schemas.entities import Size
 from schemas.health import Health
 
 log = logging.getLogger(__name__)
@@ -51,11 +52,18 @@ _REFUSED_S = 10.0
 class Perception:
     """Binds the pipeline and the association to the wire."""
 
-    def __init__(self, node: Node, config: PerceptionConfig, look: Callable[[Sequence[Cloud]], Look]) -> None:
-        """`look(clouds)` tells what clouds of one moment show."""
+    def __init__(
+        self,
+        node: Node,
+        config: PerceptionConfig,
+        look: Callable[[Sequence[Cloud]], Look],
+        usual_m: Mapping[str, Size],
+    ) -> None:
+        """`look(clouds)` tells what clouds of one moment show, `usual_m` what things of a class measure."""
         self._node = node
         self._config = config
         self._see = look
+        self._usual_m = usual_m
         self._map = MapView()
         self._kinship = Kinship()
         self._tracks = Tracks()
@@ -210,7 +218,7 @@ class Perception:
 
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
-                classes.append(kinship_of(future.result()))
+                classes.append(kinship_of(future.result(), self._usual_m))
             self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
 
         def on_snapshot(future: Future[Snapshot]) -> None:
@@ -232,7 +240,7 @@ def run(config: PerceptionConfig) -> None:
     """Look until stopped. Raises BadFile when what perception learnt cannot be read."""
     learnt = shipped()
     with open_node("perception_node", config.network) as node:
-        perception = Perception(node, config, lambda clouds: look(clouds, learnt))
+        perception = Perception(node, config, lambda clouds: look(clouds, learnt), learnt.usual_m)
         try:
             node.run()
         finally:

@@ -27,7 +27,9 @@ _GEOM = (
 )
 _NODE = ("depth", "child", "aabb")
 _IMMOVABLE_KG = 1e9
-_SPARE, _SPARE_OF, _SPARE_PARTS = 4, 8, (14, 14, 14, 28)
+_SPARES = (4, 32)
+_SPARE_OF = 8
+_SPARE_PARTS = (14, 14, 14, 28)
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,8 @@ class Berth:
 
 def spare_parts(bodies: int) -> list[tuple[bool, int]]:
     """The berths to compile beside so many bodies: for each whether it is static, and for how many parts."""
-    count = _SPARE + bodies // _SPARE_OF
+    least, most = _SPARES
+    count = min(most, least + bodies // _SPARE_OF)
     return [(i % 6 == 5, _SPARE_PARTS[i % len(_SPARE_PARTS)]) for i in range(count)]
 
 

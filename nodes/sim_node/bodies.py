@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.models.parts import Vec3, rotation_matrix
 from schemas.entities import Pose
+from schemas.scenes import Body
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,6 +42,22 @@ class BodyRecord:
     def static(self) -> bool:
         """Held where it is: no free joint."""
         return self.fixed or self.ghost
+
+    def message(self, pose: Pose, *, resting: bool) -> Body:
+        """The body as others are told of it."""
+        return Body(
+            name=self.name,
+            class_=self.class_,
+            model=self.model,
+            pose=pose,
+            size_m=self.size_m,
+            fixed=self.fixed,
+            entity=self.entity,
+            ghost=self.ghost,
+            resting=resting,
+            commit=self.commit,
+            shape_commit=self.shape_commit,
+        )
 
 
 @dataclass(frozen=True)

@@ -44,22 +44,23 @@ def add_bodies(spec: mujoco.MjSpec, newcomers: Sequence[tuple[BodyRecord, Model,
     To add one costs time in proportion to all that the specification holds already, so many are put
     together in small ones of their own, which are then attached.
     """
-    if len(newcomers) < _BATCH:
-        for record, model, pose in newcomers:
-            add_body(spec, record, model, pose)
-        return
     plain = [newcomer for newcomer in newcomers if not any(part.mesh for part in newcomer[1].parts)]
     for start in range(0, len(plain), _BATCH):
         batch = mujoco.MjSpec()
         for record, model, pose in plain[start : start + _BATCH]:
             add_body(batch, record, model, pose)
-        names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
-        spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
-        for element, name in names:
-            element.name = name
+        _attach(spec, batch)
     for record, model, pose in newcomers:
         if any(part.mesh for part in model.parts):  # meshes are shared, so they are known to the whole
             add_body(spec, record, model, pose)
+
+
+def _attach(spec: mujoco.MjSpec, batch: mujoco.MjSpec) -> None:
+    """Take over all bodies of a small specification, with their names."""
+    names = [(element, element.name) for element in (*batch.worldbody.bodies, *batch.joints)]
+    spec.attach(batch, prefix=f"batch{len(spec.frames)}/", frame=spec.worldbody.add_frame())
+    for element, name in names:
+        element.name = name
 
 
 def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) -> None:
@@ -79,9 +80,9 @@ def add_body(spec: mujoco.MjSpec, record: BodyRecord, model: Model, pose: Pose) 
 
 def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[str]:
     """Bodies for those to come, each static or free and of so many parts; their names, no entity's."""
-    names = []
+    names, batch = [], mujoco.MjSpec()
     for number, (static, count) in enumerate(parts):
-        body = spec.worldbody.add_body(name=f"berth/{number}")
+        body = batch.worldbody.add_body(name=f"berth/{number}")
         names.append(body.name)
         if not static:
             body.add_freejoint(name=body.name)
@@ -89,6 +90,7 @@ def add_spares(spec: mujoco.MjSpec, parts: Sequence[tuple[bool, int]]) -> list[s
         body.mass, body.inertia = 1.0, [1.0] * 3
         for _ in range(count):
             body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[1e-3] * 3, rgba=[0.5, 0.5, 0.5, 1.0])
+    _attach(spec, batch)
     return names
 
 

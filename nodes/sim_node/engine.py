@@ -12,8 +12,8 @@ from nodes.sim_node import berths, build, groundwork, sleep
 from nodes.sim_node.berths import Berth
 from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.placing import Stage
 from nodes.sim_node.rest import RestWatch
+from nodes.sim_node.stage import Stage
 from schemas.entities import Pose
 
 _STEPS_A_LOOK = 10

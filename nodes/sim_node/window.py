@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 import warnings
 
+import mujoco
+
 from nodes.sim_node.world import World
 from schemas.errors import BadRequest
 
@@ -22,6 +24,8 @@ class Window:
         before = set(threading.enumerate())
         self._viewer = viewer.launch_passive(world.model, world.data, show_left_ui=False, show_right_ui=False)
         self._threads = set(threading.enumerate()) - before
+        with self._viewer.lock():
+            mujoco.mjv_defaultFreeCamera(world.model, self._viewer.cam)
 
     def refresh(self) -> None:
         """Show the world as it is now, and take over what the mouse does."""

@@ -18,6 +18,7 @@ from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.placing import place
+from nodes.sim_node.vision.view import bulk
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned
 
@@ -25,7 +26,6 @@ REACH_M = 1000.0
 """No body is put farther than this from the origin."""
 
 _NEAR_M = 0.02
-
 ModelSource = Callable[[str, Vec3 | None], Model]
 
 
@@ -122,11 +122,10 @@ class World:
         return len(self._engine.records)
 
     def extent(self) -> tuple[Floats, Floats]:
-        """Lowest and highest corner, each (3,) [m], of the box around all bodies."""
-        if not len(self):
-            return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
+        """Lowest and highest corner, each (3,) [m], of the box around all bodies but those far off."""
         stage = self._engine.stage()
-        return stage.body_low.min(axis=0), stage.body_high.max(axis=0)
+        felt = np.isfinite(stage.body_low).all(axis=1)
+        return bulk(stage.body_low[felt], stage.body_high[felt])
 
     def poses(self) -> Poses:
         """Where all bodies are."""
@@ -254,25 +253,8 @@ class World:
     def _bodies(self, names: Iterable[str]) -> tuple[Body, ...]:
         engine = self._engine
         poses, resting = engine.poses(), engine.resting
-        bodies = []
-        for name in names:
-            record, row = engine.records[name], engine.index.row[name]
-            bodies.append(
-                Body(
-                    name=name,
-                    class_=record.class_,
-                    model=record.model,
-                    pose=pose_of(poses[row]),
-                    size_m=record.size_m,
-                    fixed=record.fixed,
-                    entity=record.entity,
-                    ghost=record.ghost,
-                    resting=bool(resting[row]),
-                    commit=record.commit,
-                    shape_commit=record.shape_commit,
-                )
-            )
-        return tuple(bodies)
+        rows = [(engine.records[name], engine.index.row[name]) for name in names]
+        return tuple(record.message(pose_of(poses[row]), resting=bool(resting[row])) for record, row in rows)
 
 
 def _check_reach(pose: Pose) -> None:

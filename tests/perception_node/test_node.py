@@ -136,7 +136,7 @@ def world(endpoint):
     with bus.open_session(here) as session, bus.open_session(there) as other:
         world = World(session)
         node = Node("perception_node", other)
-        perception = Perception(node, PerceptionConfig(), everything_is_a_cup)
+        perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {})
         with beside(world.node), beside(node):
             until(lambda: world.health is not None and world.health.state == "ready", "it is ready")
             try:

@@ -37,6 +37,15 @@ def test_a_table_that_comes_later_lifts_the_cup():
     assert bodies(world)["cup1"].pose.position_m == pytest.approx((1, 1, 0.7), abs=0.002)
 
 
+def test_it_does_not_matter_whether_the_cup_or_the_table_comes_first():
+    world = spawned(order("cup1", "cup", pose(1, 1)), order("can1", "can", pose(1.2, 1.1)))
+    world.step(0.5)
+    world.spawn([order("table1", "table", pose(1, 1))])
+    world.step(0.5)
+    assert bodies(world)["cup1"].pose.position_m == pytest.approx((1, 1, 0.75), abs=0.002)
+    assert bodies(world)["can1"].pose.position_m == pytest.approx((1.2, 1.1, 0), abs=0.002)  # below it
+
+
 def test_what_may_well_be_under_a_table_stays_there():
     world = spawned(
         order("table1", "table", pose(0, 0)), order("box1", "", pose(0.2, 0.1), size_m=(0.2, 0.2, 0.3))

@@ -27,7 +27,7 @@ def test_the_mouse_pulls_a_body_and_lets_it_go():
         world.step(0.5)
         window.refresh()
         mouse = window._viewer.perturb
-        mouse.select, mouse.active = world.model.body("chair1").id, 1
+        mouse.select, mouse.active = world.model.geom_bodyid[world.body_names().index("chair1")], 1
         mouse.refpos = mouse.refselpos = [0.5, 0.5, 1.0]
         mouse.localmass, mouse.scale = 5.0, 1.0
         for _ in range(40):

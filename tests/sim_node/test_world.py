@@ -189,6 +189,17 @@ def test_reset_brings_everything_back_to_the_map():
     assert distance_m(body(world, "table1").pose, pose(2, 1)) < 0.002
 
 
+def test_the_overview_passes_over_what_is_far_off():
+    world = World()
+    assert world.extent()[1] == pytest.approx((1, 1, 1))
+    world.spawn([order(f"chair{i}", "chair", pose(2.0 * i, 0)) for i in range(5)])
+    low, high = world.extent()
+    world.spawn([order("lost", "cup", pose(400, -300))])
+    assert world.extent()[0] == pytest.approx(low)
+    assert world.extent()[1] == pytest.approx(high)
+    assert (low[0], high[0]) == pytest.approx((-0.225, 8.225), abs=0.01)
+
+
 def test_sleeping_time_costs_nothing_and_passes():
     world = World()
     world.spawn([order("cup1", "cup", pose(0, 0))])

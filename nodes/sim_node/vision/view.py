@@ -17,6 +17,10 @@ from schemas.errors import BadRequest
 _OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 
 
+_FAR, _FAR_M = 4.0, 3.0
+"""Far off is what is so many times farther out than four fifths are, and these metres more."""
+
+
 @dataclass(frozen=True)
 class View:
     """A pinhole camera: `intrinsics` (3, 3) [pixel], `map_from_camera` (4, 4) [m]."""
@@ -58,6 +62,16 @@ def look_at(eye_m: Floats, target_m: Floats, width: int, height: int, fovy_rad: 
     pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
     pose[:3, 3] = eye_m
     return View(width, height, pinhole(width, height, fovy_rad), pose)
+
+
+def bulk(low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
+    """Lowest and highest corner, each (3,) [m], of the box around all boxes (N, 3) but those far off."""
+    if not len(low_m):
+        return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
+    middle = (low_m + high_m) / 2.0
+    apart = np.linalg.norm(middle - np.median(middle, axis=0), axis=1)
+    near = apart <= _FAR * np.quantile(apart, 0.8, method="lower") + _FAR_M
+    return low_m[near].min(axis=0), high_m[near].max(axis=0)
 
 
 def overview(low_m: Floats, high_m: Floats, width: int, height: int) -> View:

@@ -19,15 +19,10 @@ from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 @dataclass(frozen=True)
 class Example:
-    """A scene taken apart.
-
-    `overlap`: (P, objects + 1) points of each patch on each object, 0 being none of them. `sources`: the
-    recorded scenes in it, none if it was made up.
-    """
+    """A scene taken apart. `overlap`: (P, objects + 1) points of each patch on each object, 0 being none."""
 
     statistics: Statistics
     overlap: NDArray[np.float64]
-    sources: frozenset[str] = frozenset()
 
 
 class Rows(NamedTuple):
@@ -38,14 +33,14 @@ class Rows(NamedTuple):
     weight: NDArray[np.float64]
 
 
-def example(cloud: Cloud, truth: NDArray[np.int32], sources: frozenset[str] = frozenset()) -> Example:
+def example(cloud: Cloud, truth: NDArray[np.int32]) -> Example:
     """`truth`: (H, W) the number of the object of each point, 0 for background."""
     parts = taken_apart(cloud)
     of_patch = spread(parts.grid, parts.of_patch)
     shape = (int(of_patch.max(initial=0)) + 1, int(truth.max(initial=0)) + 1)
     pairs = of_patch.ravel() * shape[1] + truth.ravel()
     overlap = np.bincount(pairs, minlength=shape[0] * shape[1]).reshape(shape)
-    return Example(parts.statistics, overlap[1:].astype(np.float64), sources)
+    return Example(parts.statistics, overlap[1:].astype(np.float64))
 
 
 def right_way(of: Example, rng: np.random.Generator) -> Rows:

@@ -1,0 +1,196 @@
+"""Who is in whose way: the felt geoms of a scene at one moment, and who may stand on whom."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, Ints
+
+TOLERANCE_M = 0.004
+"""Overlap this shallow is left to the contact forces."""
+
+CLEARANCE_M = 0.0005
+SAME_SPOT_M = 0.02
+LOW_M = 0.2
+GROUND = -1
+# as numbers, which numpy compares a hundred times faster than MuJoCo's enumeration
+_PLANE, _HEIGHTS = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
+_FLAT = (
+    _PLANE,
+    int(mujoco.mjtGeom.mjGEOM_BOX),
+    int(mujoco.mjtGeom.mjGEOM_CYLINDER),
+    int(mujoco.mjtGeom.mjGEOM_MESH),
+)
+
+
+class Stage:
+    """The felt geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world itself.
+
+    `standing` (N,) tells who counts as an obstacle.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, index: BodyIndex, records: dict[str, BodyRecord]
+    ) -> None:
+        self._model, self._data, self._index = model, data, index
+        self._records = [records[name] for name in index.names]
+        self.standing = np.array([not record.ghost for record in self._records], dtype=bool)
+        self._bottoms = index.poses(data)[:, :3]
+        rows = np.full(model.nbody, GROUND)
+        rows[index.body] = np.arange(len(index.names))
+        self._owner = rows[model.body_rootid][model.geom_bodyid]  # a part belongs to its whole
+        felt = (model.geom_contype | model.geom_conaffinity) != 0
+        for row, record in enumerate(self._records):
+            if record.ghost:
+                geoms = np.flatnonzero(self._owner == row)[: len(record.masks)]  # its own come first
+                felt[geoms] = [bool(contype | conaffinity) for contype, conaffinity in record.masks]
+        self._felt: Ints = np.flatnonzero(felt)
+        self._low, self._high = self._boxes()
+        order = np.argsort(self._owner[self._felt], kind="stable")
+        self._felt, self._low, self._high = self._felt[order], self._low[order], self._high[order]
+        owners = self._owner[self._felt]
+        self._starts = np.searchsorted(owners, np.arange(-1, len(self._records)))
+        self._ends = np.searchsorted(owners, np.arange(-1, len(self._records)), side="right")
+        self.body_low, self.body_high = self._body_boxes()
+        self.footprint = self.body_high[:, :2] - self.body_low[:, :2]
+        self.volume = np.prod(self.body_high - self.body_low, axis=1)
+
+    def _boxes(self) -> tuple[Floats, Floats]:
+        """World bounding boxes of the felt geoms; a plane fills all that is below it."""
+        geoms = self._felt
+        rotation = self._data.geom_xmat[geoms].reshape(-1, 3, 3)
+        aabb = self._model.geom_aabb[geoms]
+        centre = self._data.geom_xpos[geoms] + np.einsum("nij,nj->ni", rotation, aabb[:, :3])
+        half = np.einsum("nij,nj->ni", np.abs(rotation), aabb[:, 3:])
+        low, high = centre - half, centre + half
+        plane = self._model.geom_type[geoms] == _PLANE
+        low[plane], high[plane, :2] = -np.inf, np.inf
+        high[plane, 2] = self._data.geom_xpos[geoms[plane], 2]
+        return low, high
+
+    def _slice(self, row: int) -> slice:
+        return slice(int(self._starts[row + 1]), int(self._ends[row + 1]))
+
+    def _body_boxes(self) -> tuple[Floats, Floats]:
+        count = len(self._records)
+        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        has = self._starts[1:] < self._ends[1:]
+        if has.any():
+            starts = self._starts[1:][has]
+            low[has] = np.minimum.reduceat(self._low, starts)
+            high[has] = np.maximum.reduceat(self._high, starts)
+        return low, high
+
+    def is_fixed(self, row: int) -> bool:
+        """Whether the body is held where it is said to be."""
+        return self._records[row].fixed
+
+    def raise_(self, row: int, rise_m: float) -> None:
+        """Lift one body, here only."""
+        here = self._slice(row)
+        self._data.geom_xpos[self._felt[here], 2] += rise_m
+        for corner in (self._low[here], self._high[here]):
+            corner[:, 2] += rise_m
+        self._bottoms[row, 2] += rise_m
+        self.body_low[row, 2] += rise_m
+        self.body_high[row, 2] += rise_m
+
+    def hits(self, row: int, depth_m: float = TOLERANCE_M) -> list[int]:
+        """The standing rows (and the ground) that the body is in, deeper than `depth_m`."""
+        near = (self.body_low + depth_m < self.body_high[row]) & (
+            self.body_high - depth_m > self.body_low[row]
+        )
+        rows = [int(other) for other in np.flatnonzero(near.all(axis=1) & self.standing) if other != row]
+        if self._records[row].fixed:
+            rows = [other for other in rows if not self._records[other].fixed]
+            ground: list[int] = []
+        else:
+            ground = [GROUND]
+        return [other for other in (*ground, *rows) if self._touches(row, other, depth_m)]
+
+    def touched(self, row: int, margin_m: float) -> list[int]:
+        """All rows whose boxes come within `margin_m` of the body's."""
+        near = (self.body_low - margin_m < self.body_high[row]) & (
+            self.body_high + margin_m > self.body_low[row]
+        )
+        return [int(other) for other in np.flatnonzero(near.all(axis=1))]
+
+    def _touches(self, row: int, other: int, depth_m: float) -> bool:
+        mine, theirs = self._slice(row), self._slice(other)
+        overlap = (self._low[mine, None] + depth_m < self._high[None, theirs]) & (
+            self._high[mine, None] - depth_m > self._low[None, theirs]
+        )
+        for a, b in np.argwhere(overlap.all(axis=2)):
+            if self._depth(int(self._felt[mine][a]), int(self._felt[theirs][b]), depth_m):
+                return True
+        return False
+
+    def _depth(self, geom: int, other: int, depth_m: float) -> bool:
+        kind = self._model.geom_type[other]
+        if kind == _PLANE:
+            return True  # its box is exact
+        if kind == _HEIGHTS:
+            return False
+        distance = mujoco.mj_geomDistance(self._model, self._data, geom, other, 1.0, None)
+        return bool(distance < -depth_m)
+
+    def carries(self, support: int, row: int) -> bool:
+        """Whether a thing may be lifted onto another: it fits on top, and is much smaller or squat."""
+        return self._fits(row, self.footprint[support], float(self.volume[support]))
+
+    def _fits(self, row: int, footprint: Floats, volume: float) -> bool:
+        fits = bool((np.sort(self.footprint[row]) <= 1.05 * np.sort(footprint)).all())
+        height = self.body_high[row, 2] - self.body_low[row, 2]
+        squat = height <= 1.5 * self.footprint[row].min()
+        return fits and bool(self.volume[row] < 0.2 * volume or squat)
+
+    def shared_spot(self, row: int) -> list[int]:
+        """Supports at the very spot of the body: who says so of a cup and a table means *on* it."""
+        return [other for other in self._at_spot(row) if self._belongs_on(row, other)]
+
+    def small_at_spot(self, row: int) -> list[int]:
+        """The other way round: bodies at the very spot of a support."""
+        return [other for other in self._at_spot(row) if self._belongs_on(other, row)]
+
+    def _at_spot(self, row: int) -> list[int]:
+        apart = np.abs(self._bottoms - self._bottoms[row]).max(axis=1)
+        found = np.flatnonzero((apart < SAME_SPOT_M) & self.standing)
+        return [int(other) for other in found if other != row]
+
+    def _belongs_on(self, row: int, support: int) -> bool:
+        tall = self.body_high[support, 2] - self.body_low[support, 2] > LOW_M
+        much_smaller = self.volume[row] < 0.2 * self.volume[support]
+        return bool(tall and much_smaller) and not self.is_fixed(row) and self.carries(support, row)
+
+    def surfaces(self, row: int) -> list[tuple[float, int]]:
+        """Flat tops under the middle of the body that can carry it and are above its bottom, lowest first.
+
+        Each with the row that has it.
+        """
+        x, y = ((self.body_low[row] + self.body_high[row]) / 2.0)[:2]
+        owners = self._owner[self._felt]
+        standing = np.where(owners >= 0, self.standing[owners], True) & (owners != row)
+        under = (
+            (self._low[:, 0] <= x)
+            & (x <= self._high[:, 0])
+            & (self._low[:, 1] <= y)
+            & (y <= self._high[:, 1])
+        )
+        flat = np.isin(self._model.geom_type[self._felt], _FLAT)
+        found = np.flatnonzero(flat & under & standing & (self._high[:, 2] > self.body_low[row, 2]))
+        return sorted(
+            (float(self._high[geom, 2]), int(owners[geom]))
+            for geom in found
+            if (
+                self.carries(int(owners[geom]), row)
+                if owners[geom] >= 0
+                else self._ground_carries(int(geom), row)
+            )
+        )
+
+    def _ground_carries(self, geom: int, row: int) -> bool:
+        extent = self._high[geom] - self._low[geom]
+        if np.isinf(extent).any():
+            return True  # the floor carries everything
+        return self._fits(row, extent[:2], float(extent[0] * extent[1] * self._high[geom, 2]))
