@@ -34,6 +34,19 @@ _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
 @dataclass(frozen=True)
+class Encoded:
+    """A message as it came, to be passed on."""
+
+    payload: zenoh.ZBytes
+    encoding: zenoh.Encoding
+    kind: Any
+
+    def decode(self) -> Any:
+        """The message, of type `kind`. Raises BadRequest."""
+        return codec.decode(self.payload.to_bytes(), self.kind)
+
+
+@dataclass(frozen=True)
 class Network:
     """How a process joins the system. `namespace` prefixes every key (one robot of many)."""
 
@@ -110,7 +123,7 @@ def ask(
             key, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
         )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
-            return read_reply(key, reply, kind, timeout_s)
+            return read_reply(key, reply, kind, timeout_s).decode()
         if time.monotonic() > deadline:
             _nobody(key)
         time.sleep(0.05)
@@ -143,6 +156,39 @@ def ask_later(
 
     It is called once, on the thread with which Zenoh receives everything, so it should only queue.
     """
+    _ask_later(session, prefix, verb, message, kind, lambda read: answer(lambda: read().decode()), timeout_s)
+
+
+def relay(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    request: Request,
+    *,
+    timeout_s: float = TIMEOUT_S,
+) -> None:
+    """Answer `request` with what `prefix/verb` answers to `message`, as it comes and without waiting."""
+
+    def answer(read: Callable[[], Encoded]) -> None:
+        try:
+            request.reply(read())
+        except errors.SemmapError as error:
+            request.refuse(error)
+
+    _ask_later(session, prefix, verb, message, kind, answer, timeout_s)
+
+
+def _ask_later(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    answer: Callable[[Callable[[], Encoded]], None],
+    timeout_s: float,
+) -> None:
     key = f"{prefix}/{verb}"
     waiting = [answer]
 
@@ -161,10 +207,10 @@ def ask_later(
     )
 
 
-def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Any:
-    """The message of a reply; raises the error that it carries."""
+def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
+    """The message of a reply, of type `kind`; raises the error that it carries."""
     if reply.ok is not None:
-        return codec.decode(reply.ok.payload.to_bytes(), kind)
+        return Encoded(reply.ok.payload, reply.ok.encoding, kind)
     assert reply.err is not None
     if str(reply.err.encoding) != _ERROR_ENCODING:
         raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
@@ -194,7 +240,7 @@ class Request:
         return codec.from_text(parameters, kind)
 
     def reply(self, message: Any) -> None:
-        """Answer it."""
+        """Answer it, with a message or one that is `Encoded` already."""
         self.send(message, True)
 
     def refuse(self, error: errors.SemmapError) -> None:
@@ -210,7 +256,13 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
     key = f"{prefix}/{verb}" if "*" not in verb else prefix
 
     def send(message: Any, ok: bool) -> None:
-        if as_json and isinstance(message, Document):
+        content: Any
+        encoding: Any
+        if as_json and isinstance(message, Encoded):
+            message = message.decode()
+        if isinstance(message, Encoded):
+            content, encoding = message.payload, message.encoding
+        elif as_json and isinstance(message, Document):
             content, encoding = message.content, message.media_type
         elif as_json:
             content, encoding = codec.encode_json(message), _JSON
@@ -241,6 +293,7 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
+            message = message.decode() if isinstance(message, Encoded) else message
             body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
             acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
 

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from itertools import count
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import zenoh
 
@@ -28,7 +28,18 @@ from schemas.health import Health
 log = logging.getLogger(__name__)
 
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
-"""Verb to (type of the message, function of the message). A function may return a Future."""
+"""Verb to (type of the message, function of the message). A function may return a Future, or a Relay."""
+
+
+class Relay(NamedTuple):
+    """A reply that another node gives: that to `message` at `prefix/verb`, of type `kind`."""
+
+    prefix: str
+    verb: str
+    message: Any
+    kind: Any
+    timeout_s: float
+
 
 HEARTBEAT_S = 1.0
 _AGAIN_S = 0.05
@@ -207,14 +218,20 @@ class Node:
             self._refuse(request, error)
             return
         if isinstance(result, Future):
-            result.add_done_callback(lambda future: self._answer(request, future))
+            result.add_done_callback(lambda future: self._answer_later(request, future))
+        else:
+            self._answer(request, result)
+
+    def _answer(self, request: bus.Request, result: Any) -> None:
+        if isinstance(result, Relay):
+            bus.relay(self.session, *result[:-1], request, timeout_s=result.timeout_s)
         else:
             request.reply(result)
 
-    def _answer(self, request: bus.Request, future: Future[Any]) -> None:
+    def _answer_later(self, request: bus.Request, future: Future[Any]) -> None:
         error = future.exception()
         if error is None:
-            request.reply(future.result())
+            self._answer(request, future.result())
         else:
             self._refuse(request, error)
 

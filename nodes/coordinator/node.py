@@ -4,38 +4,47 @@ from __future__ import annotations
 
 import gc
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import Any
 
 from msgspec import structs
 
-from nodes import bus
-from nodes.coordinator import formats
+from nodes.coordinator.answers import Answers
+from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
-from nodes.coordinator.talking import hold_later
-from nodes.coordinator.turns import Turns
-from nodes.loop import Node, open_node, settle, then
+from nodes.coordinator.running import Running
+from nodes.coordinator.talking import hold, hold_later
+from nodes.coordinator.turns import Results, Turns
+from nodes.loop import Node, open_node, settle
 from schemas import commands as c
 from schemas import errors, keys
-from schemas.bridge import BRIDGE, SnapshotQuery
+from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Snapshot
-from schemas.entities import BodyState, Entity, Pose, orientation_from_yaw
+from schemas.entities import BodyState
 from schemas.health import Health
-from schemas.moments import When
-from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement, Poses
+from schemas.scenes import Poses
 
 _WAIT_S = 20.0
 _EARLY_S = 10.0
-_COMMIT_TIMEOUT_S = 10.0
-_LOAD_TIMEOUT_S = 300.0
 _SIM_TIMEOUT_S = 120.0
-_CHECK_TIMEOUT_S = 660.0
-_SPARQL_TIMEOUT_S = 180.0
+_RELAYED: tuple[type[c.Command], ...] = (
+    c.History,
+    c.LastSeen,
+    c.Check,
+    c.Infer,
+    c.Explain,
+    c.Export,
+    c.Classes,
+    c.Sparql,
+    c.Watch,
+    c.Renew,
+)
+"""What the knowledge base answers as it is asked."""
 
 
 class Coordinator:
@@ -44,8 +53,9 @@ class Coordinator:
     def __init__(self, node: Node, config: CoordinatorConfig) -> None:
         self._node = node
         self._config = config
-        self._door = Door(self._ask_kb)
-        self._turns = Turns(lambda changes: hold_later(self._door.together(changes), self._commit_later))
+        self._bridge = Bridge(node)
+        self._door = Door(self._bridge.ask)
+        self._turns = Turns(self._change_together)
         self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
@@ -54,6 +64,8 @@ class Coordinator:
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
         door = self._door
+        answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
+        running = Running(config.truth, door, self._keeping, self._ask_sim)
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
             c.Add: self._change,
             c.Update: self._change,
@@ -61,25 +73,16 @@ class Coordinator:
             c.Clear: self._noted(door.clear),
             c.Load: door.load,
             c.Undo: door.undo,
-            c.History: lambda m: self._later("history", m),
-            c.LastSeen: lambda m: self._later("last-seen", m),
-            c.List: self._list,
-            c.Get: self._get,
-            c.Check: lambda m: self._later("check", m, timeout_s=_CHECK_TIMEOUT_S),
-            c.Infer: lambda m: self._later("infer", m),
-            c.Explain: lambda m: self._later("explain", m),
-            c.Export: lambda m: self._later("export", m),
-            c.Classes: lambda m: self._later("classes", m),
-            c.Status: self._status,
-            c.Move: self._move,
-            c.Pause: lambda m: self._ask_scene("pause", m, c.Done),
-            c.StepOnce: lambda m: self._ask_scene("step", m, c.Done),
-            c.Reset: self._reset,
-            c.TakePicture: self._picture,
-            c.Sparql: lambda m: self._later("sparql", m, timeout_s=_SPARQL_TIMEOUT_S),
-            c.Watch: lambda m: self._later("watch", m, timeout_s=_SPARQL_TIMEOUT_S),
-            c.Renew: lambda m: self._later("renew", m),
+            c.List: answers.list,
+            c.Get: answers.get,
+            c.Status: answers.status,
+            c.Move: running.move,
+            c.Pause: running.pause,
+            c.StepOnce: running.step,
+            c.Reset: running.reset,
+            c.TakePicture: running.picture,
         }
+        functions.update(dict.fromkeys(_RELAYED, self._bridge.relay))
         handlers = {
             verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
             for verb, kind in c.COMMANDS.items()
@@ -141,7 +144,7 @@ class Coordinator:
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
                 fetched.append(future.result())
-            self._later("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+            self._bridge.ask_later("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
 
         def on_snapshot(future: Future[Snapshot]) -> None:
             self._fetching = False
@@ -154,88 +157,7 @@ class Coordinator:
             self._node.ready(f"{len(self._door.entities)} entities")
             self._keep()
 
-        self._later("classes", c.Classes()).add_done_callback(on_classes)
-
-    # Asking
-
-    def _list(self, query: c.List) -> Any:
-        """What the door knows of now answers at once; the past is asked of the knowledge base."""
-        if query.class_ is not None:
-            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
-        if query.as_of is not None:
-            return then(self._later("list", query), lambda entities: self._formatted(entities, query.format))
-        entities = self._door.entities_of(query.class_)
-        if query.format == "json":
-            entities = tuple(map(self._with_body, entities))
-        return self._formatted(entities, query.format)
-
-    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
-        if wanted == "lu4r":
-            return formats.lu4r(entities)
-        if wanted == "legacy":
-            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
-            return formats.legacy(entities, iris)
-        return entities
-
-    def _class_name(self, word: str, as_of: When | None) -> str:
-        """The class that is meant; then there may have been others than now."""
-        try:
-            return self._door.classes.find(word).name
-        except errors.UnknownClass:
-            if as_of is None:
-                raise
-            return word
-
-    def _get(self, query: c.Get) -> Any:
-        if query.as_of is not None:
-            return self._later("get", query)
-        return self._with_body(self._door.entity(query.name))
-
-    def _with_body(self, entity: Entity) -> Entity:
-        return structs.replace(entity, body=self._keeping.body_state(entity))
-
-    def _status(self, _: c.Status) -> c.SystemStatus:
-        return c.SystemStatus(
-            truth=self._config.truth,
-            commit=self._door.seq,
-            entities=len(self._door.entities),
-            bodies=len(self._keeping.scene.bodies),
-            in_agreement=self._keeping.in_agreement(),
-            nodes=self._health.nodes(),
-            problems=tuple(self._keeping.problems()),
-        )
-
-    # Running
-
-    def _move(self, command: c.Move) -> Future[Any]:
-        body = self._keeping.scene.bodies.get(command.name)
-        if body is None:
-            state = self._keeping.body_state(self._door.entity(command.name))
-            raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
-        pose = Pose(position_m=command.at, orientation_wxyz=orientation)
-        order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
-
-        def moved(reply: BodiesMoved) -> c.Moved:
-            if command.name in reply.failed:
-                raise errors.Refused(reply.failed[command.name])
-            self._door.hands.let_go(command)
-            x, y, z = command.at
-            return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
-
-        return then(self._ask_sim("move", order, BodiesMoved), moved)
-
-    def _reset(self, command: c.Reset) -> Future[Any]:
-        if self._config.truth == "perceived":
-            return self._ask_scene("reset", command, c.Done)
-        return then(
-            self._keeping.place_all(),
-            lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
-        )
-
-    def _picture(self, m: c.TakePicture) -> Future[Any]:
-        query = PictureQuery(camera=m.camera or "", width=m.width, height=m.height)
-        return self._ask_scene("picture", query, Picture)
+        self._bridge.ask_later("classes", c.Classes()).add_done_callback(on_classes)
 
     # Changing
 
@@ -246,6 +168,15 @@ class Coordinator:
             return made
         future: Future[Any] = Future()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
+        return future
+
+    def _change_together(self, changes: Sequence[c.Add | c.Update], rest: bool) -> Future[Results]:
+        """Without anything else to do it is waited for: to be woken by another thread takes longer."""
+        talk = self._door.together(changes)
+        if rest:
+            return hold_later(talk, self._bridge.change_later)
+        future: Future[Results] = Future()
+        settle(future, lambda: hold(talk, self._bridge.ask))
         return future
 
     def _once_there_is_a_body(self, changed: c.Changed) -> Future[c.Changed]:
@@ -306,22 +237,6 @@ class Coordinator:
             return self._turns.after(lambda: handle(command))
 
         return guarded
-
-    def _ask_kb(self, verb: str, message: Any) -> Any:
-        long = verb in ("load", "load-tbox", "undo")
-        timeout_s = _LOAD_TIMEOUT_S if long else _COMMIT_TIMEOUT_S
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], beating=long, timeout_s=timeout_s)
-
-    def _commit_later(self, verb: str, message: Any) -> Future[Any]:
-        return self._later(verb, message, timeout_s=_COMMIT_TIMEOUT_S, patience_s=bus.PATIENCE_S)
-
-    def _later(self, verb: str, message: Any, **limits: float) -> Future[Any]:
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
-
-    def _ask_scene(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        if not self._keeping.scene.known:
-            raise errors.NoAnswer("no simulator runs")
-        return self._ask_sim(verb, message, kind)
 
     def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
         return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)

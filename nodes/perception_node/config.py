@@ -21,7 +21,7 @@ class TrackingConfig:
     """The same where the place that it had is not seen empty: it may only seem so."""
     odd_looks: int = 15
     """Looks in a row in which a thing of another size fills its place, before an entity is gone."""
-    gone_looks: int = 6
+    gone_looks: int = 10
     """Looks in a row in which an entity should be seen and is not, before it is gone."""
     still_m: float = 0.02
     """What moves less from one look to the next is at rest."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from schemas.entities import Size
+
 ANYTHING = "Object"
 """The class of what is like nothing known."""
 
@@ -16,10 +18,14 @@ _FORGET = 0.9
 
 @dataclass(frozen=True)
 class Kinship:
-    """The class hierarchy of the TBox: for each class all that it is a kind of, and what people call it."""
+    """What is known of classes: all that each is a kind of, and what people call it, both from the TBox.
+
+    `usual_m`: what things of a class measure, as far as perception learnt that.
+    """
 
     ancestors: Mapping[str, frozenset[str]] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
+    usual_m: Mapping[str, Size] = field(default_factory=dict)
 
     def label(self, class_name: str) -> str:
         """What people call a thing of this class."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from nodes.perception_node.kinship import Kinship
 from schemas.commits import Commit, Snapshot
-from schemas.entities import ClassInfo, Entity
+from schemas.entities import ClassInfo, Entity, Size
 
 
 class MapView:
@@ -34,8 +34,8 @@ class MapView:
         return True
 
 
-def kinship_of(classes: Iterable[ClassInfo]) -> Kinship:
-    """The hierarchy and the labels of the TBox's classes."""
+def kinship_of(classes: Iterable[ClassInfo], usual_m: Mapping[str, Size]) -> Kinship:
+    """The hierarchy and the labels of the TBox's classes, with what is known of their sizes."""
     rows = list(classes)
     labels = {row.name: row.labels.get("en") or row.labels.get("") or "" for row in rows}
-    return Kinship({row.name: frozenset(row.ancestors) for row in rows}, labels)
+    return Kinship({row.name: frozenset(row.ancestors) for row in rows}, labels, usual_m)

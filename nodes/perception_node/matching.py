@@ -1,98 +1,104 @@
-"""How unlike an observation is a thing that is known, and which go together at the least cost."""
+"""Which observation is of which thing: optimal assignment, in steps from the surest on."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from nodes.perception_node.kinship import ANYTHING, Kinship
-from schemas.entities import Pose, Size
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.likeness import Target, cost_elsewhere, cost_in_place
+from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.tracks import Track
+from nodes.perception_node.visibility import Looks, Sight
 from schemas.perception import Observation
 
 A = TypeVar("A")
 B = TypeVar("B")
+K = TypeVar("K", str, int)
+Cost = Callable[[Target, Observation, Kinship], float]
 
-FORBIDDEN = math.inf
 _PROHIBITIVE = 1e6
-_NEARBY_M = 0.05
-_SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
-"""What stands in place is the thing if its size is no more unlike (mean of |log ratio|)."""
-_OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
-"""The same for what is recognised somewhere else: by a class and size, or by its size alone."""
-_HIDDEN_PART = 0.3
-"""How much it counts that an extent is smaller of what is seen in part."""
 
 
-class Target(NamedTuple):
-    """A thing that may be seen: where it was last, how big it is if that is known, and its class.
+class Candidate(NamedTuple):
+    """Something that may be seen: what is remembered of it, and what it should look like."""
 
-    `whole`: its size was not only seen in part.
+    track: Track
+    target: Target
+
+
+class Matching(NamedTuple):
+    """Which observation, by its number, is of which entity and of which of those that are none yet.
+
+    `places` tells of each entity that was not seen what is seen of its place; `odd` are those of them in
+    whose place something of another size is seen. `new` are the observations of nothing known.
     """
 
-    pose: Pose
-    size_m: Size | None
-    class_: str
-    whole: bool = True
+    known: dict[str, int]
+    tentative: dict[int, int]
+    places: dict[str, Sight]
+    odd: set[str]
+    new: list[int]
+
+
+def match(
+    known: Mapping[str, Candidate],
+    tentative: Sequence[Candidate],
+    observations: Sequence[Observation],
+    looks: Looks,
+    kinship: Kinship,
+    config: TrackingConfig,
+) -> Matching:
+    """Things in their places first; then what vanished, found elsewhere; then what is no entity yet."""
+
+    def pairs(of: Mapping[K, Candidate], to: Collection[int], cost: Cost) -> dict[K, int]:
+        free = sorted(to)
+        targets, seen = [c.target for c in of.values()], [observations[j] for j in free]
+        found = assign(targets, seen, lambda target, o: cost(target, o, kinship))
+        return {list(of)[a]: free[b] for a, b in found}
+
+    every = set(range(len(observations)))
+    seen = pairs(known, every, cost_in_place)
+    places = {name: _look_at(c.target, looks) for name, c in known.items() if name not in seen}
+    parts = {
+        name: {j for j in every.difference(seen.values()) if _may_be_of(c.target, observations[j])}
+        for name, c in known.items()
+        if places.get(name) != "open"
+    }
+    gone = {name for name in places if known[name].track.is_gone(config)}
+    left = every.difference(seen.values(), *(of_one for name, of_one in parts.items() if name not in gone))
+    vanished = {
+        name: known[name]
+        for name, sight in places.items()
+        if sight == "open" or name in gone or known[name].track.unseen
+    }
+    found = pairs(vanished, left, cost_elsewhere)
+    again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
+    unseen = places.keys() - found.keys()
+    return Matching(
+        known=seen | found,
+        tentative=again,
+        places={name: places[name] for name in unseen},
+        odd={name for name in unseen if places[name] == "filled" and parts[name]},
+        new=sorted(left.difference(found.values(), again.values())),
+    )
 
 
 def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
-    """Pairs (row, column), as many as may be and of the least cost together; FORBIDDEN ones never."""
+    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never."""
     costs = np.array([[cost(a, b) for b in columns] for a in rows]).reshape(len(rows), len(columns))
     pairs = zip(*linear_sum_assignment(np.minimum(costs, _PROHIBITIVE)), strict=True)
     return [(int(i), int(j)) for i, j in pairs if costs[i, j] < _PROHIBITIVE]
 
 
-def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
-    """How unlike an observation is a thing that hardly moved, if at all; FORBIDDEN if it cannot be it."""
-    size_m = target.size_m or seen.size_m
-    aside, above = _apart(target.pose, size_m, seen)
-    reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
-    if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
-        return FORBIDDEN
-    unlike, alien = size_unlike(target, seen), class_unlike(target.class_, seen, kinship)
-    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
-        return FORBIDDEN
-    return aside / reach + unlike + alien
+def _look_at(target: Target, looks: Looks) -> Sight:
+    """Of a thing of unknown size nobody can tell whether it is there."""
+    return "hidden" if target.place is None else looks(*target.place)
 
 
-def cost_elsewhere(target: Target, seen: Observation, kinship: Kinship) -> float:
-    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind."""
-    if target.size_m is None or not kinship.related(target.class_, seen.class_):
-        return FORBIDDEN
-    unlike = size_unlike(target, seen)
-    if unlike > (_OF_ANY_KIND if ANYTHING in (seen.class_, target.class_) else _OF_A_KIND):
-        return FORBIDDEN
-    aside, above = _apart(target.pose, target.size_m, seen)
-    return unlike + class_unlike(target.class_, seen, kinship) + 0.1 * math.hypot(aside, above)
-
-
-def size_unlike(target: Target, seen: Observation) -> float:
-    """Mean of |log ratio| of the extents, however turned; what is seen in part may be smaller."""
-    if target.size_m is None:
-        return 0.0
-    pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
-    ratios = [math.log(now / before) for before, now in pairs]
-    shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
-    return sum(ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios) / 3.0
-
-
-def class_unlike(class_name: str, seen: Observation, kinship: Kinship) -> float:
-    """From 0 for one that is related to what was seen, to 1 for one that it can hardly be."""
-    if kinship.related(class_name, seen.class_):
-        return 0.0
-    return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if kinship.is_a(leaf, class_name)))
-
-
-def _upright(size_m: Size) -> tuple[float, float, float]:
-    x, y, z = size_m
-    return (min(x, y), max(x, y), z)
-
-
-def _apart(pose: Pose, size_m: Size, seen: Observation) -> tuple[float, float]:
-    """Distance of the middles, horizontally and vertically [m]."""
-    (x, y, z), (u, v, w) = pose.position_m, seen.pose.position_m
-    return math.hypot(u - x, v - y), abs(w + seen.size_m[2] / 2.0 - z - size_m[2] / 2.0)
+def _may_be_of(target: Target, seen: Observation) -> bool:
+    return target.place is not None and are_of_one(target.place, Place(seen.pose, seen.size_m))

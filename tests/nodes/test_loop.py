@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 from concurrent.futures import Future
@@ -9,7 +10,7 @@ from concurrent.futures import Future
 import pytest
 
 from nodes import bus
-from nodes.loop import Node, then
+from nodes.loop import Node, Relay, then
 from schemas import commands, errors, keys
 from schemas.health import Health
 from tests.conftest import free_endpoint, until
@@ -19,6 +20,11 @@ PREFIX = "semmap/test"
 
 def fail(_):
     raise ZeroDivisionError("oops")
+
+
+def relay(m):
+    """To the verb that is named, of this node or of nobody."""
+    return Relay(m.predicate, m.value, commands.Get(name=m.name), commands.Done, 1.0)
 
 
 @pytest.fixture
@@ -32,6 +38,7 @@ def network():
             "get": (commands.Get, lambda m: commands.Done(text=m.name)),
             "check": (commands.Check, fail),
             "infer": (commands.Infer, lambda _: promise),
+            "explain": (commands.Explain, relay),
         }
         node.serve(PREFIX, handlers)
         node.every(
@@ -54,7 +61,7 @@ def test_a_fault_is_answered_and_the_node_lives_on(network):
 
 def test_an_unknown_verb_is_told_with_those_that_are_there(network):
     _, client = network
-    with pytest.raises(errors.UnknownVerb, match="there are: check, get, infer"):
+    with pytest.raises(errors.UnknownVerb, match="there are: check, explain, get, infer"):
         bus.ask(client, PREFIX, "fly", commands.Get(name="x"), commands.Done)
 
 
@@ -117,3 +124,39 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
     node.serve("semmap/later", {"get": (commands.Get, later)})
     assert bus.ask(client, "semmap/later", "get", commands.Get(name="x"), commands.Done).text == "done"
     assert 1 in done
+
+
+def asking_for(prefix, verb):
+    return commands.Explain(name="x", predicate=prefix, value=verb)
+
+
+def test_a_reply_of_another_is_passed_on_as_it_comes(network):
+    _, client = network
+    assert bus.ask(client, PREFIX, "explain", asking_for(PREFIX, "get"), commands.Done).text == "x"
+    (reply,) = client.get(f"{PREFIX}/explain?name=x;predicate={PREFIX};value=get;format=json")
+    assert json.loads(reply.ok.payload.to_bytes()) == {"text": "x"}
+
+
+@pytest.mark.parametrize(
+    ("prefix", "verb", "error"),
+    [(PREFIX, "fly", errors.UnknownVerb), ("semmap/nobody", "get", errors.NoAnswer)],
+)
+def test_so_is_an_error(network, prefix, verb, error):
+    _, client = network
+    with pytest.raises(error):
+        bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), commands.Done)
+
+
+def test_somebody_who_comes_late_is_waited_for(network):
+    node, client = network
+    served: list[Future] = []
+    node._events.put(
+        lambda: served.append(
+            node.ask_later("semmap/late", "get", commands.Get(name="x"), commands.Done, patience_s=5.0)
+        )
+    )
+    until(lambda: served, "the question")
+    time.sleep(0.3)
+    assert not served[0].done()
+    bus.serve(client, "semmap/late", lambda request: request.reply(commands.Done(text="here")))
+    assert served[0].result(timeout=5).text == "here"

@@ -98,6 +98,14 @@ def test_an_operators_is_marked_missing_and_found_elsewhere():
     assert (update.name, update.at, update.conflict) == ("my_cup", (3.0, 1.0, 0.7), "")
 
 
+def test_an_operators_thing_of_unknown_size_is_looked_for_at_its_classs_usual_size_if_there_is_one():
+    table = Table().told(
+        [structs.replace(entity(name, kind, at(x, 1)), size_m=None) for name, kind, x in
+         (("my_cup", "Cup", 1), ("my_thing", "Object", 2))]
+    )  # fmt: skip
+    assert [(command.name, command.conflict) for command in table.looks(20)] == [("my_cup", MISSING)]
+
+
 def test_what_is_hidden_stays():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)
@@ -140,6 +148,14 @@ def test_what_contradicts_an_operator_is_kept_beside_his_word():
     assert table.entities["my_cup"].class_ == "Cup"
     table.things = [seen("Cup", at(1, 1))]
     assert [command.conflict for command in table.looks(50)] == [""]
+
+
+def test_where_an_operator_said_no_size_a_thing_of_any_size_may_be_what_he_meant():
+    my_cup = structs.replace(entity("my_cup", "Cup", at(1, 1)), size_m=None)
+    table = Table([seen("Bottle", at(1, 1))]).told([my_cup])
+    assert [(command.name, command.conflict) for command in table.looks(30)] == [
+        ("my_cup", "looks like a Bottle")
+    ]
 
 
 def test_what_perception_took_for_something_else_is_put_right():

@@ -33,6 +33,7 @@ KINSHIP = Kinship(
         "Book": frozenset({"Object", "Physical_Thing"}),
     },
     {"Cup": "cup"},
+    {"Cup": SIZES["Cup"]},
 )
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.novelty import Novelty
 from nodes.perception_node.recognition.perceptron import Perceptron
+from schemas.entities import Size
 from schemas.errors import BadFile
 
 SHIPPED = Path(__file__).with_name("recognition.npz")
@@ -51,6 +52,17 @@ class Learnt:
     sides: Perceptron
     sure: float
     story: str
+
+    @property
+    def usual_m(self) -> dict[str, Size]:
+        """What things of each class measure along their own axes [m]."""
+        return {
+            name: (short, long, height) if sideways else (long, short, height)
+            for name, (long, short, height), sideways in zip(
+                self.classes, self.sizes_m.tolist(), self.sideways.tolist(), strict=True
+            )
+            if name not in (UNKNOWN, CLUTTER)
+        }
 
 
 def save(learnt: Learnt, path: Path) -> None:
@@ -93,7 +105,7 @@ def load(path: Path = SHIPPED) -> Learnt:
                 sure=float(text["sure"]),
                 story=text["story"],
             )
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, EOFError, ValueError, KeyError) as error:
         raise BadFile(f"{path} does not hold what recognition learnt: {error}") from None
 
 

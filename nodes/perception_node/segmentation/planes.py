@@ -22,6 +22,7 @@ _MOST_PLANES = 6
 _LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
 _LEAST_SHARE_UNKNOWN = 0.2  # where gravity is unknown, and a box's side might be meant
 _LEAST_SIDE_M = 0.35
+_LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or of several in a row
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
@@ -73,7 +74,8 @@ def find_planes(
         free &= ~on
         sides = _sides(points[on][:: max(1, count // _SAMPLE)], normal)
         kind = _kind(normal, offset, map_from_camera, first=not planes)
-        if kind is None or (planes and sides[1] < _LEAST_SIDE_M):
+        least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
+        if kind is None or (planes and sides[1] < least):
             continue
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
+from nodes.perception_node.segmentation.learnt import shipped
 from nodes.perception_node.segmentation.merging import Judge, merge
 from nodes.perception_node.segmentation.normals import normals
-from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.patches import patches
 from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
-from nodes.perception_node.segmentation.statistics import Indices, Statistics, Upright, statistics
+from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5
 """What stands on a support lies this far above it."""
@@ -49,7 +49,10 @@ class Parts:
 
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
-    """The planes and objects of a cloud, organised or not."""
+    """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
+    if not (cloud.points_camera[..., 2] > 0).any():  # NaN is not
+        nothing = np.zeros(cloud.points_camera.shape[:2], np.int32)
+        return Segmentation(nothing, (), nothing)
     if not cloud.organised:
         picture, pixel = as_picture(cloud)
         seen = segment(picture, learnt)
@@ -58,7 +61,7 @@ def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
         )
         return Segmentation(labels, seen.planes, plane_labels)
     parts = taken_apart(cloud)
-    objects = np.append(np.int32(0), merge(parts.statistics, learnt or _by_rule))[parts.of_patch]
+    objects = np.append(np.int32(0), merge(parts.statistics, learnt or shipped()))[parts.of_patch]
     both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
     return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
 
@@ -105,11 +108,3 @@ def _upright(planes: tuple[Plane, ...]) -> Upright:
     up = max(carrying, key=lambda plane: plane.points).normal
     level = np.linalg.svd(up[None, :])[2][1:]
     return Upright(np.vstack([level, up]), np.sort([plane.offset_m for plane in carrying]))
-
-
-def _by_rule(known: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
-    """Convexity alone."""
-    rows = features(known, a, b)
-    of = {name: rows[:, i] for i, name in enumerate(NAMES)}
-    smooth = (of["bend"] > -0.1) & (of["concave"] < 0.3) & (of["bends"] > 0.5) & (of["wide"] > 0.2)
-    return np.where(smooth, 0.6 + 0.3 * of["like"], 0).astype(np.float32)

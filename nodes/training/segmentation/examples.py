@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,22 +12,17 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.segmentation.grid import spread
 from nodes.perception_node.segmentation.merging import merge
-from nodes.perception_node.segmentation.pairs import features
+from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.segment import taken_apart
 from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 
 @dataclass(frozen=True)
 class Example:
-    """A scene taken apart.
-
-    `overlap`: (P, objects + 1) points of each patch on each object, 0 being none of them. `sources`: the
-    recorded scenes in it, none if it was made up.
-    """
+    """A scene taken apart. `overlap`: (P, objects + 1) points of each patch on each object, 0 being none."""
 
     statistics: Statistics
     overlap: NDArray[np.float64]
-    sources: frozenset[str] = frozenset()
 
 
 class Rows(NamedTuple):
@@ -38,14 +33,14 @@ class Rows(NamedTuple):
     weight: NDArray[np.float64]
 
 
-def example(cloud: Cloud, truth: NDArray[np.int32], sources: frozenset[str] = frozenset()) -> Example:
+def example(cloud: Cloud, truth: NDArray[np.int32]) -> Example:
     """`truth`: (H, W) the number of the object of each point, 0 for background."""
     parts = taken_apart(cloud)
     of_patch = spread(parts.grid, parts.of_patch)
     shape = (int(of_patch.max(initial=0)) + 1, int(truth.max(initial=0)) + 1)
     pairs = of_patch.ravel() * shape[1] + truth.ravel()
     overlap = np.bincount(pairs, minlength=shape[0] * shape[1]).reshape(shape)
-    return Example(parts.statistics, overlap[1:].astype(np.float64), sources)
+    return Example(parts.statistics, overlap[1:].astype(np.float64))
 
 
 def right_way(of: Example, rng: np.random.Generator) -> Rows:
@@ -77,6 +72,10 @@ def _met(
     return joined(met)
 
 
-def joined(parts: list[Rows]) -> Rows:
+NO_ROWS = Rows(np.zeros((0, len(NAMES)), np.float32), np.zeros(0, np.bool_), np.zeros(0))
+
+
+def joined(parts: Iterable[Rows]) -> Rows:
     """All rows of all parts."""
-    return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    columns = zip(NO_ROWS, *parts, strict=True)
+    return Rows._make(np.concatenate(column) for column in columns)

@@ -1,0 +1,82 @@
+"""What the coordinator answers itself: list, get, status."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from msgspec import structs
+
+from nodes.coordinator import formats
+from nodes.coordinator.bridge import Bridge
+from nodes.coordinator.config import Truth
+from nodes.coordinator.door import Door
+from nodes.coordinator.health_view import HealthView
+from nodes.coordinator.keeping import Keeping
+from nodes.loop import then
+from schemas import commands as c
+from schemas import errors
+from schemas.entities import Entity
+from schemas.moments import When
+
+
+class Answers:
+    """What is true now is known to the door; the past is asked of the knowledge base."""
+
+    def __init__(
+        self, truth: Truth, door: Door, keeping: Keeping, health: HealthView, bridge: Bridge
+    ) -> None:
+        self._truth = truth
+        self._door = door
+        self._keeping = keeping
+        self._health = health
+        self._bridge = bridge
+
+    def list(self, query: c.List) -> Any:
+        """The entities of a class, with what has become of their bodies."""
+        if query.class_ is not None:
+            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
+        if query.as_of is not None:
+            found = self._bridge.ask_later("list", query)
+            return then(found, lambda entities: self._formatted(entities, query.format))
+        entities = self._door.entities_of(query.class_)
+        if query.format == "json":
+            entities = tuple(map(self._with_body, entities))
+        return self._formatted(entities, query.format)
+
+    def get(self, query: c.Get) -> Any:
+        """One entity, with what has become of its body."""
+        if query.as_of is not None:
+            return self._bridge.relay(query)
+        return self._with_body(self._door.entity(query.name))
+
+    def status(self, _: c.Status) -> c.SystemStatus:
+        """The nodes, the map, the scene."""
+        return c.SystemStatus(
+            truth=self._truth,
+            commit=self._door.seq,
+            entities=len(self._door.entities),
+            bodies=len(self._keeping.scene.bodies),
+            in_agreement=self._keeping.in_agreement(),
+            nodes=self._health.nodes(),
+            problems=tuple(self._keeping.problems()),
+        )
+
+    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
+        if wanted == "lu4r":
+            return formats.lu4r(entities)
+        if wanted == "legacy":
+            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
+            return formats.legacy(entities, iris)
+        return entities
+
+    def _class_name(self, word: str, as_of: When | None) -> str:
+        """The class that is meant; then there may have been others than now."""
+        try:
+            return self._door.classes.find(word).name
+        except errors.UnknownClass:
+            if as_of is None:
+                raise
+            return word
+
+    def _with_body(self, entity: Entity) -> Entity:
+        return structs.replace(entity, body=self._keeping.body_state(entity))

@@ -1,0 +1,45 @@
+"""The coordinator's end of `semmap/bridge`: what it asks of the knowledge base, and how long it waits."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from typing import Any
+
+from nodes import bus
+from nodes.loop import Node, Relay
+from schemas import keys
+from schemas.bridge import BRIDGE
+from schemas.commands import Command
+
+_LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
+"""What keeps the knowledge base busy; the heart goes on beating meanwhile."""
+_BESIDE_S = {"check": 660.0, "sparql": 180.0, "watch": 180.0}
+"""What is worked out beside its other work."""
+_USUALLY_S = 10.0
+
+
+class Bridge:
+    """Owned by the coordinator's thread."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    def ask(self, verb: str, message: Any) -> Any:
+        """The answer; nothing else is done until it comes. Raises its error."""
+        kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
+        return self._node.ask(keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s)
+
+    def ask_later(self, verb: str, message: Any) -> Future[Any]:
+        """The answer when it comes; while nobody serves the key an error, at once."""
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+
+    def change_later(self, verb: str, message: Any) -> Future[Any]:
+        """The same, as long and as patient as `ask`."""
+        limits = {"timeout_s": _USUALLY_S, "patience_s": bus.PATIENCE_S}
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+
+    def relay(self, command: Command) -> Relay:
+        """Let the knowledge base answer a command itself."""
+        verb = str(command.__struct_config__.tag)
+        timeout_s = _BESIDE_S.get(verb, bus.TIMEOUT_S)
+        return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], timeout_s)

@@ -1,0 +1,75 @@
+"""Commands to the scene: move, pause, step, reset, picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from nodes.coordinator.config import Truth
+from nodes.coordinator.door import Door
+from nodes.coordinator.keeping import Keeping
+from nodes.loop import then
+from schemas import commands as c
+from schemas import errors
+from schemas.entities import Pose, orientation_from_yaw
+from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement
+
+
+class Running:
+    """Passes them on to the simulator. Raises NoAnswer when none runs."""
+
+    def __init__(
+        self, truth: Truth, door: Door, keeping: Keeping, ask: Callable[[str, Any, Any], Future[Any]]
+    ) -> None:
+        """`ask(verb, message, kind)` asks the simulator, without waiting."""
+        self._truth = truth
+        self._door = door
+        self._keeping = keeping
+        self._ask = ask
+
+    def move(self, command: c.Move) -> Future[Any]:
+        """Take a body and put it elsewhere, as a hand would."""
+        body = self._keeping.scene.bodies.get(command.name)
+        if body is None:
+            state = self._keeping.body_state(self._door.entity(command.name))
+            raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
+        orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
+        pose = Pose(position_m=command.at, orientation_wxyz=orientation)
+        order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
+
+        def moved(reply: BodiesMoved) -> c.Moved:
+            if command.name in reply.failed:
+                raise errors.Refused(reply.failed[command.name])
+            self._door.hands.let_go(command)
+            x, y, z = command.at
+            return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
+
+        return then(self._ask("move", order, BodiesMoved), moved)
+
+    def pause(self, command: c.Pause) -> Future[Any]:
+        """Stop or start time."""
+        return self._ask_scene("pause", command, c.Done)
+
+    def step(self, command: c.StepOnce) -> Future[Any]:
+        """Let a little time pass."""
+        return self._ask_scene("step", command, c.Done)
+
+    def reset(self, command: c.Reset) -> Future[Any]:
+        """Put every body back to where the map says, or, when the map only perceives, to where it began."""
+        if self._truth == "perceived":
+            return self._ask_scene("reset", command, c.Done)
+        return then(
+            self._keeping.place_all(),
+            lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
+        )
+
+    def picture(self, command: c.TakePicture) -> Future[Any]:
+        """What a camera sees."""
+        query = PictureQuery(camera=command.camera or "", width=command.width, height=command.height)
+        return self._ask_scene("picture", query, Picture)
+
+    def _ask_scene(self, verb: str, message: Any, kind: Any) -> Future[Any]:
+        if not self._keeping.scene.known:
+            raise errors.NoAnswer("no simulator runs")
+        return self._ask(verb, message, kind)

@@ -1,0 +1,92 @@
+"""How unlike an observation is a thing that is known, by place, size and class."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from nodes.perception_node.kinship import ANYTHING, Kinship
+from nodes.perception_node.overlap import Place
+from schemas.entities import Pose, Size
+from schemas.perception import Observation
+
+FORBIDDEN = math.inf
+_NEARBY_M = 0.05
+_SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
+"""What stands in place is the thing if its size is no more unlike (mean of |log ratio|)."""
+_OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
+"""The same for what is recognised somewhere else: by a class and size, or by its size alone."""
+_HIDDEN_PART = 0.3
+"""How much it counts that an extent is smaller of what is seen in part."""
+
+
+class Target(NamedTuple):
+    """A thing that may be seen: where it was last, how big it is if that is known, and its class.
+
+    `whole`: its size was not only seen in part. `usual_m`: what its class measures, for want of its own size.
+    """
+
+    pose: Pose
+    size_m: Size | None
+    class_: str
+    whole: bool = True
+    usual_m: Size | None = None
+
+    @property
+    def place(self) -> Place | None:
+        """The box that it fills, as far as one can tell."""
+        size_m = self.size_m or self.usual_m
+        return None if size_m is None else Place(self.pose, size_m)
+
+
+def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
+    """How unlike an observation is a thing that hardly moved, if at all; FORBIDDEN if it cannot be it."""
+    size_m = target.size_m or seen.size_m
+    aside, above = _apart(target.pose, size_m, seen)
+    reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
+    if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
+        return FORBIDDEN
+    unlike, alien = size_unlike(target, seen), class_unlike(target.class_, seen, kinship)
+    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
+        return FORBIDDEN
+    return aside / reach + unlike + alien
+
+
+def cost_elsewhere(target: Target, seen: Observation, kinship: Kinship) -> float:
+    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind."""
+    place = target.place
+    if place is None or not kinship.related(target.class_, seen.class_):
+        return FORBIDDEN
+    unlike = size_unlike(target._replace(size_m=place.size_m), seen)
+    if unlike > (_OF_ANY_KIND if ANYTHING in (seen.class_, target.class_) else _OF_A_KIND):
+        return FORBIDDEN
+    aside, above = _apart(place.pose, place.size_m, seen)
+    return unlike + class_unlike(target.class_, seen, kinship) + 0.1 * math.hypot(aside, above)
+
+
+def size_unlike(target: Target, seen: Observation) -> float:
+    """Mean of |log ratio| of the extents, however turned; what is seen in part may be smaller."""
+    if target.size_m is None:
+        return 0.0
+    pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
+    ratios = [math.log(now / before) for before, now in pairs]
+    shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
+    return sum(ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios) / 3.0
+
+
+def class_unlike(class_name: str, seen: Observation, kinship: Kinship) -> float:
+    """From 0 for one that is related to what was seen, to 1 for one that it can hardly be."""
+    if kinship.related(class_name, seen.class_):
+        return 0.0
+    return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if kinship.is_a(leaf, class_name)))
+
+
+def _upright(size_m: Size) -> tuple[float, float, float]:
+    x, y, z = size_m
+    return (min(x, y), max(x, y), z)
+
+
+def _apart(pose: Pose, size_m: Size, seen: Observation) -> tuple[float, float]:
+    """Distance of the middles, horizontally and vertically [m]."""
+    (x, y, z), (u, v, w) = pose.position_m, seen.pose.position_m
+    return math.hypot(u - x, v - y), abs(w + seen.size_m[2] / 2.0 - z - size_m[2] / 2.0)

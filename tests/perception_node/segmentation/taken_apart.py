@@ -1,0 +1,22 @@
+"""Patches of made scenes, for tests of what is done with them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nodes.perception_node.segmentation.segment import Parts, taken_apart
+from tests.perception_node.segmentation.scenes import Seen
+
+
+def owners(parts: Parts, seen: Seen) -> np.ndarray:
+    """(P,) the box to which most of each patch belongs."""
+    truth = seen.truth[:: parts.grid.step, :: parts.grid.step]
+    return np.array(
+        [np.bincount(truth[parts.of_patch == n]).argmax() for n in range(1, parts.of_patch.max() + 1)]
+    )
+
+
+def apart(seen: Seen) -> tuple[Parts, np.ndarray]:
+    """The patches, and whose each is."""
+    parts = taken_apart(seen.cloud)
+    return parts, owners(parts, seen)

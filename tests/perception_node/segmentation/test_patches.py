@@ -1,0 +1,41 @@
+"""Patches are of one object each, and cover the objects."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.segmentation.patches import patches
+from tests.perception_node.segmentation.scenes import boxes_on_table
+from tests.perception_node.segmentation.taken_apart import apart
+
+SCENES = {
+    "apart": [((-0.2, -0.1, 0), (-0.1, 0, 0.1)), ((0.1, -0.1, 0), (0.2, 0, 0.1))],
+    "side by side": [((-0.1, -0.1, 0), (0, 0, 0.1)), ((0, -0.12, 0), (0.1, 0.02, 0.17))],
+    "on one another": [((-0.1, -0.1, 0), (0.1, 0.1, 0.1)), ((-0.05, -0.05, 0.1), (0.04, 0.05, 0.2))],
+    "one behind": [((-0.2, 0.05, 0), (0.2, 0.1, 0.1)), ((-0.03, -0.1, 0), (0.03, -0.05, 0.2))],
+}
+
+
+@pytest.mark.parametrize("boxes", SCENES.values(), ids=SCENES)
+def test_each_patch_is_of_one_box_and_together_they_are_all(boxes):
+    seen = boxes_on_table(*boxes)
+    parts, _ = apart(seen)
+    truth = seen.truth[::2, ::2]
+    for number in range(1, parts.of_patch.max() + 1):
+        counts = np.bincount(truth[parts.of_patch == number], minlength=3)
+        assert counts[1:].min() < 0.05 * counts.sum()
+        assert counts[0] < 0.5 * counts.sum()  # at borders a cell takes a pixel of the table in
+    for box in (1, 2):
+        assert (parts.of_patch[truth == box] > 0).mean() > 0.8
+
+
+def test_nothing_outside_what_is_asked_for():
+    seen = boxes_on_table(*SCENES["apart"])
+    points = seen.cloud.points_camera[::2, ::2]
+    where = np.zeros(points.shape[:2], dtype=bool)
+    assert not patches(points, np.full_like(points, np.nan), where).any()
+    where[100:140, 100:140] = True
+    labels = patches(points, np.broadcast_to(np.float32([0, 0, -1]), points.shape), where)
+    assert set(np.unique(labels[where])) <= set(range(labels.max() + 1))
+    assert not labels[~where].any()
