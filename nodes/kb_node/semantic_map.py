@@ -319,7 +319,7 @@ class SemanticMap:
 
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
+        subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
         known = set(filter(self.reasoner.mentions, subjects))
         owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
@@ -363,7 +363,7 @@ class SemanticMap:
             if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
         )
         for iri in sorted(concerned):
-            known = self._known(iri)
+            known = None if iri in new else self._known(iri)
             self._progress()
             entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
             if entity is None:
