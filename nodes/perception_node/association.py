@@ -80,9 +80,9 @@ def associate(
 def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: TrackingConfig) -> Candidate:
     """An entity; if somebody else has told the map another pose of it since, that counts."""
     assert entity.pose is not None
-    said_m = entity.size_m or kinship.usual_m.get(entity.class_)
+    usual_m = kinship.usual_m.get(entity.class_)
     if track is None:
-        track = Track(entity.pose, said_m or _ANY_SIZE_M, told=entity.pose)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, told=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0)
@@ -92,9 +92,10 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     return Candidate(
         track,
         target._replace(
-            size_m=track.size_m if track.looks else said_m,
+            size_m=track.size_m if track.looks else entity.size_m,
             class_=entity.class_ if target.class_ == ANYTHING else target.class_,
             whole=track.whole or not own,
+            usual_m=usual_m,
         ),
     )
 

@@ -97,7 +97,7 @@ def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float
 
 def _look_at(target: Target, looks: Looks) -> Sight:
     """Of a thing of unknown size nobody can tell whether it is there."""
-    return "hidden" if target.size_m is None else looks(target.pose, target.size_m)
+    return "hidden" if target.place is None else looks(*target.place)
 
 
 def _may_be_of(target: Target, seen: Observation) -> bool:

@@ -37,6 +37,11 @@ class Thing:
     lifted_m: float
 
     @property
+    def carrier(self) -> bool:
+        """Others may stand on it: a top of it was seen."""
+        return any(segment.carrier for segment in self.segments)
+
+    @property
     def whole(self) -> bool:
         """No picture's edge cuts it."""
         return not any(segment.cut for segment in self.segments)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -26,9 +26,10 @@ class Engine:
     every change of the model.
     """
 
-    def __init__(self, ground: mujoco.MjSpec) -> None:
-        """A world of which nothing but the ground is there yet."""
+    def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles."""
         groundwork.prepare(ground)
+        self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
@@ -54,6 +55,10 @@ class Engine:
     def has(self, name: str) -> bool:
         """Whether there is a body of this name, or a part of one of the world's own."""
         return name in self.records or self._ground.body(name) is not None
+
+    def shape(self, name: str) -> Model | None:
+        """The model that a body was made from; None for the world's own, and for one that is not there."""
+        return self._shapes.get(name)
 
     # bodies come, go and change
 
@@ -164,7 +169,7 @@ class Engine:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
         time = self.data.time if self.revision else 0.0
-        self.model = spec.compile()
+        self.model = build.compiled(spec, self._meanwhile)
         self.data = mujoco.MjData(self.model)
         self.data.time = time
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}

@@ -24,7 +24,7 @@ from nodes.training.samples import NOTHING, Samples
 from nodes.training.scenes import STRANGE, Stage
 from nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.6
+SURE = 0.45
 _HELD_OUT = 5
 _HIDDEN = {"geometry": (96,), "shape": (96,), "colour": (64,)}
 _SIDES_HIDDEN = (64, 32)

@@ -150,6 +150,14 @@ def test_what_contradicts_an_operator_is_kept_beside_his_word():
     assert [command.conflict for command in table.looks(50)] == [""]
 
 
+def test_where_an_operator_said_no_size_a_thing_of_any_size_may_be_what_he_meant():
+    my_cup = structs.replace(entity("my_cup", "Cup", at(1, 1)), size_m=None)
+    table = Table([seen("Bottle", at(1, 1))]).told([my_cup])
+    assert [(command.name, command.conflict) for command in table.looks(30)] == [
+        ("my_cup", "looks like a Bottle")
+    ]
+
+
 def test_what_perception_took_for_something_else_is_put_right():
     table = Table([seen("Bottle", at(1, 1), SIZES["Cup"])])
     table.looks(5)

@@ -37,7 +37,8 @@ def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool
 
 def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     """(N, len(NAMES)) of the pairs of patches (a, b), the same whichever stands first."""
-    swap = of.inside[a, s.COUNT] < of.inside[b, s.COUNT]
+    count_a, count_b = of.inside[a, s.COUNT], of.inside[b, s.COUNT]
+    swap = (count_a < count_b) | ((count_a == count_b) & (a > b))
     big, small = np.where(swap, b, a), np.where(swap, a, b)
     many, few = of.inside[big], of.inside[small]
     count_big, count_small = many[:, s.COUNT], few[:, s.COUNT]

@@ -50,6 +50,9 @@ class Parts:
 
 def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
     """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
+    if not (cloud.points_camera[..., 2] > 0).any():  # NaN is not
+        nothing = np.zeros(cloud.points_camera.shape[:2], np.int32)
+        return Segmentation(nothing, (), nothing)
     if not cloud.organised:
         picture, pixel = as_picture(cloud)
         seen = segment(picture, learnt)

@@ -170,7 +170,7 @@ def _seen_between(between: Sums, labels: Labels, points: Floats, depth_sums: Sum
     line = depth[a, None] * (1 - t) + depth[b, None] * t
     z = points[r, c, 2]
     blocked = other & (z < line - _SAME_SURFACE_M)
-    open_ = other & ~(z < line + _SAME_SURFACE_M)  # farther, or nothing seen
+    open_ = other & (z > line + _SAME_SURFACE_M)  # where nothing is seen may be a shadow
     for column_, values in ((SIGHT, other), (BLOCKED, blocked), (OPEN, open_)):
         between[a, b, column_] = between[b, a, column_] = values.sum(axis=1)
 

@@ -14,7 +14,7 @@ from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.files.pictures import back_project
 from nodes.sim_node.build import add_part
 from nodes.sim_node.models.library import Model, assemble, build
-from nodes.sim_node.models.parts import box, rod
+from nodes.sim_node.models.parts import ALONG_X, box, rod
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.camera import Eye
 from nodes.sim_node.vision.noise import kinect_noise
@@ -27,11 +27,15 @@ _KINDS = tuple(
     for name, kind in MODELS.items()
     if max(kind.size_m) <= _BIGGEST_M and sorted(kind.size_m)[1] >= _SMALLEST_M
 )
+_SCREENED = 0.2  # of the piles
+_FAULTLESS = 0.2  # of the piles are seen without the faults of a Kinect
 _PLAIN = 0.4  # of the things are mere boxes and cylinders: packets and tins
 _SIZE = (640, 480)
 _FOVY_RAD = 2 * math.atan(240 / 525)
 _PARKED_M = 20.0
 _STEP_M, _FINE_M = 0.02, 0.0005
+_FOCAL_BASELINE_PX_M, _NEAREST_M = 525.0 * 0.075, 0.3
+_SHADOW_MARGIN_PX = 1.0
 
 
 class Pile(NamedTuple):
@@ -42,21 +46,25 @@ class Pile(NamedTuple):
 
 
 def pile(rng: np.random.Generator, eye: Eye) -> Pile:
-    """A table with 2 to 14 things on it."""
+    """A table with 2 to 14 things on it; in some a long one is hidden in its middle by another."""
     models = [_thing(rng) for _ in range(int(rng.integers(2, 15)))]
+    screened = rng.random() < _SCREENED
+    if screened:
+        models[:2] = _long_and_narrow(rng)
     scene = _Scene(models)
     view = _view(rng)
     eye_m = view.map_from_camera[:2, 3]
     area = rng.uniform(0.15, 0.45)
-    placed: list[int] = []
-    for thing in range(len(models)):
-        scene.place(thing, placed, area, eye_m, rng)
-        placed.append(thing)
+    if screened:
+        scene.screen(0, 1, eye_m, rng)
+    for thing in range(2 if screened else 0, len(models)):
+        scene.place(thing, area, eye_m, rng)
     mujoco.mj_forward(scene.model, scene.data)
     rgb, depth_m = eye.see(scene.model, scene.data, view)
     geom = eye.segment(scene.model, scene.data, view)
     body = np.where(geom >= 0, scene.model.geom_bodyid[geom], 0)
-    depth_m = _seen(depth_m, rng)
+    if rng.random() > _FAULTLESS:
+        depth_m = kinect_noise(np.where(shadowed(depth_m), np.float32(0), depth_m), rng)
     cloud = Cloud(back_project(depth_m, view.intrinsics), rgb, None, view.intrinsics)
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
 
@@ -64,16 +72,34 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
 def _thing(rng: np.random.Generator) -> Model:
     """A thing of the library at some size, or a plain box or cylinder."""
     if rng.random() < _PLAIN:
-        x, y, z = np.exp(rng.uniform(np.log(0.03), np.log(0.26), 3))
-        colour = tuple(rng.uniform(0.1, 0.9, 3))
-        if rng.random() < 0.6:
-            part = box((x, y, z), (0.0, 0.0, z / 2), colour)
-        else:
-            part = rod(x / 2, z, (0.0, 0.0, z / 2), colour)
-        return assemble("plain", [part], 0.5)
+        x, y, z = np.exp(rng.uniform(np.log(0.03), np.log(0.26), 3)).tolist()
+        return _plain((x, y, z), rng)
     name = str(rng.choice(_KINDS))
     size = np.array(MODELS[name].size_m) * rng.uniform(0.7, 1.25) * rng.uniform(0.85, 1.15, 3)
     return build(name, tuple(float(side) for side in np.clip(size, 0.005, 0.5)))
+
+
+def _long_and_narrow(rng: np.random.Generator) -> tuple[Model, Model]:
+    """A plain thing that lies along x, and one to stand in front of it."""
+    length = rng.uniform(0.14, 0.36)
+    side, height = rng.uniform(0.04, 0.12, 2)
+    narrow = rng.uniform(0.03, 0.4 * length)
+    tall = rng.uniform(0.6, 1.5) * height + 0.04
+    return _plain((length, side, height), rng), _plain((narrow, narrow, tall), rng)
+
+
+def _plain(size_m: tuple[float, float, float], rng: np.random.Generator) -> Model:
+    x, y, z = size_m
+    red, green, blue = rng.uniform(0.1, 0.9, 3).tolist()
+    round_ = rng.random() < 0.4
+    lying = x > z
+    if round_ and lying:
+        part = rod(z / 2, x, (0.0, 0.0, z / 2), (red, green, blue), ALONG_X)
+    elif round_:
+        part = rod(x / 2, z, (0.0, 0.0, z / 2), (red, green, blue))
+    else:
+        part = box((x, y, z), (0.0, 0.0, z / 2), (red, green, blue))
+    return assemble("plain", [part], 0.5)
 
 
 class _Scene:
@@ -95,23 +121,29 @@ class _Scene:
         self.data = mujoco.MjData(self.model)
         self._sizes = [model.size_m for model in models]
 
-    def place(
-        self,
-        thing: int,
-        placed: list[int],
-        area_m: float,
-        eye_m: NDArray[np.float64],
-        rng: np.random.Generator,
-    ) -> None:
-        """Put a thing on the table, on top of another one, between one and the eye, or beside one."""
+    def screen(self, far: int, near: int, eye_m: NDArray[np.float64], rng: np.random.Generator) -> None:
+        """Put a long thing across the view, and another one between it and the eye."""
+        away = eye_m / np.linalg.norm(eye_m)
+        yaw = math.atan2(away[1], away[0]) + math.pi / 2 + rng.normal(0, 0.4)
+        pose = self.data.qpos[7 * far : 7 * far + 7]
+        pose[3:] = (math.cos(yaw / 2), 0, 0, math.sin(yaw / 2))
+        self._lower(far, rng.uniform(-0.1, 0.1, 2))
+        along = rng.normal(0, 0.03) * np.array([math.cos(yaw), math.sin(yaw)])
+        target = pose[:2] + along
+        self._lower(near, target + away * (_PARKED_M / 2))
+        self._slide(near, target, away, self.data.qpos[7 * near + 2])
+        self.data.qpos[7 * near : 7 * near + 2] += away * rng.uniform(0.0, 0.15)
+
+    def place(self, thing: int, area_m: float, eye_m: NDArray[np.float64], rng: np.random.Generator) -> None:
+        """Put a thing on the table, on top of one before it, between one and the eye, or beside one."""
         pose = self.data.qpos[7 * thing : 7 * thing + 7]
         pose[3:] = _turn(rng)
-        way = rng.random() if placed else 0.0
+        way = rng.random() if thing else 0.0
         spot = rng.uniform(-area_m, area_m, 2)
         if way < 0.25:
             self._lower(thing, spot)
             return
-        other = int(rng.choice(placed))
+        other = int(rng.integers(thing))
         target = self.data.qpos[7 * other : 7 * other + 2].copy()
         if way < 0.5:
             self._lower(thing, target + rng.normal(0, 0.03, 2))
@@ -209,6 +241,13 @@ def _view(rng: np.random.Generator) -> View:
     return look_at(target + distance * away, target, *_SIZE, _FOVY_RAD)
 
 
-def _seen(depth_m: NDArray[np.float32], rng: np.random.Generator) -> NDArray[np.float32]:
-    """With the faults of a Kinect."""
-    return kinect_noise(depth_m, rng)
+def shadowed(depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(H, W) what a Kinect's projector does not light, because something nearer is in its way.
+
+    A pixel's disparity says in which of the projector's columns it is. A row's columns rise from left to
+    right, but for what is behind: it shares its column with something farther right.
+    """
+    disparity = _FOCAL_BASELINE_PX_M / np.maximum(depth_m, _NEAREST_M)
+    column = np.where(depth_m > 0, np.arange(depth_m.shape[1]) - disparity, np.inf)
+    lowest_right = np.minimum.accumulate(column[:, ::-1], axis=1)[:, ::-1]
+    return (depth_m > 0) & (column > lowest_right + _SHADOW_MARGIN_PX)
