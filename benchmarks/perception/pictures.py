@@ -77,7 +77,7 @@ def main() -> None:
     """Draw scenes by a model that learnt from all the others."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.perception.pictures", description=__doc__)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--scenes", default="learn24,learn33,learn36")
+    parser.add_argument("--scenes", default="learn24,learn31,learn33")
     parser.add_argument("--recorded", type=Path, default=data_folder())
     parser.add_argument("--piles", type=int, default=300)
     words = parser.parse_args()
