@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import types
+import zlib
 from collections.abc import Mapping
-from typing import Any, TypeVar, Union, get_args, get_origin
+from typing import Any, Final, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
@@ -14,16 +15,26 @@ from schemas.wording import sentence
 
 T = TypeVar("T")
 
+DENSE_FROM: Final = 64 << 20
+"""Bytes; Zenoh carries messages of up to 256 MB, and a map of a million triples is more."""
+LARGEST: Final = 4 << 30
+"""Bytes that a message may unfold to."""
+_DENSE: Final = b"x"
+"""How zlib's format begins, and no MessagePack map."""
 _encoder = msgspec.msgpack.Encoder()
 _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 
 
-def encode(message: Any) -> bytes:
-    """`message` as MessagePack. Raises BadRequest for text that cannot be written as UTF-8."""
+def encode(message: Any, *, dense_from: int = DENSE_FROM) -> bytes:
+    """`message` as MessagePack, compressed (zlib) from `dense_from` bytes on; `decode` takes both.
+
+    Raises BadRequest for text that cannot be written as UTF-8.
+    """
     try:
-        return _encoder.encode(message)
+        payload = _encoder.encode(message)
     except UnicodeEncodeError as error:
         raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
+    return payload if len(payload) < dense_from else zlib.compress(payload, 1)
 
 
 def encode_json(message: Any) -> bytes:
@@ -36,12 +47,26 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
     try:
         if looks_like_json(payload):
             return msgspec.json.decode(payload, type=kind)
+        if payload[:1] == _DENSE:
+            payload = _unfolded(payload)
         decoder = _decoders.get(kind)
         if decoder is None:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
         return decoder.decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+
+
+def _unfolded(payload: bytes) -> bytes:
+    unfolding = zlib.decompressobj()
+    try:
+        content = unfolding.decompress(payload, LARGEST)
+    except zlib.error as error:
+        raise BadRequest(f"malformed message: it is no valid MessagePack, JSON or zlib: {error}") from None
+    if not unfolding.eof:
+        reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
+        raise BadRequest(f"malformed message: it {reason}")
+    return content
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
@@ -24,29 +24,52 @@ _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
-def read_entity(reasoner: Reasoner, classes: ClassTable, iri: Term, provenance: Provenance) -> Entity | None:
+Objects = Mapping[Term, Sequence[Term]]
+"""What is asserted of a subject: predicate to objects."""
+About = Callable[[Term], Objects]
+
+
+def about(reasoner: Reasoner, triples: Iterable[Triple], new: Set[Term]) -> About:
+    """What is asserted of each subject; of `new` ones, `triples` hold all there is."""
+    at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
+    for s, p, o in triples:
+        said = at_hand.get(s)
+        if said is not None:
+            said.setdefault(p, []).append(o)
+    return lambda subject: at_hand.get(subject) or reasoner.about(subject)
+
+
+def read_entity(
+    reasoner: Reasoner,
+    classes: ClassTable,
+    iri: Term,
+    provenance: Provenance,
+    about: About | None = None,
+) -> Entity | None:
     """The Entity that the triples about `iri` describe, all of it by `provenance`; None if it is no entity.
 
-    Raises BadRequest for an entity that cannot be named, or whose star makes no sense: a number that is none,
-    is not finite or is out of all bounds, a size that is not positive.
+    `about` is where to look the triples up, if not in the reasoner. Raises BadRequest for an entity that
+    cannot be named, or whose star makes no sense: a number that is none, is not finite or is out of all
+    bounds, a size that is not positive.
     """
     types = reasoner.types(iri)
     if types.isdisjoint(classes.spatial):
         return None
-    said = _objects(reasoner, iri)
+    about = about or reasoner.about
+    said = about(iri)
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
     _require_name(iri, kind.class_name)
-    preferred = _references(reasoner, said.get(v.HAS_PREFERRED_REFERENCE, ()))
+    preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     return Entity(
         name=v.local_name(iri),
         class_=kind.class_name,
         iri=v.bare(iri),
         types=kind.types,
-        pose=_pose(reasoner, iri, said.get(v.HAS_POSITION, ())),
-        size_m=_size(reasoner, iri, said.get(v.HAS_SIZE, ())),
+        pose=_pose(about, iri, said.get(v.HAS_POSITION, ())),
+        size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
         preferred_reference=min(preferred, default=None),
-        alternative_references=tuple(_references(reasoner, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
+        alternative_references=tuple(_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         place=kind.place,
         fixed=kind.fixed,
@@ -145,66 +168,61 @@ def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
     return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 
-def _objects(reasoner: Reasoner, subject: Term) -> dict[Term, list[Term]]:
-    """What is asserted of `subject`: predicate to objects, in one look. Costs as much as there is."""
-    objects: dict[Term, list[Term]] = {}
-    for _, p, o in reasoner.asserted(subject):
-        objects.setdefault(p, []).append(o)
-    return objects
-
-
-def _pose(reasoner: Reasoner, iri: Term, nodes: Collection[Term]) -> Pose | None:
+def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:
     if not nodes:
         return None
-    said = _objects(reasoner, min(nodes))
-    position = [_number(iri, p, said) for p in v.COORDINATE_XYZ]
-    if None in position:
+    said = about(min(nodes))
+    position = _numbers(iri, v.COORDINATE_XYZ, said)
+    if position is None:
         return None
-    orientation = [_number(iri, p, said) for p in v.ORIENTATION_WXYZ]
-    if None in orientation:
-        return Pose(position_m=tuple(position))  # type: ignore[arg-type]
+    orientation = _numbers(iri, v.ORIENTATION_WXYZ, said)
+    if orientation is None:
+        return Pose(position_m=position)  # type: ignore[arg-type]
     try:
-        return Pose(position_m=tuple(position), orientation_wxyz=tuple(orientation))  # type: ignore[arg-type]
+        return Pose(position_m=position, orientation_wxyz=orientation)  # type: ignore[arg-type]
     except ValueError as error:
         raise errors.BadRequest(f"{v.local_name(iri)}: {error}") from None
 
 
-def _size(reasoner: Reasoner, iri: Term, nodes: Collection[Term]) -> tuple[float, float, float] | None:
+def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float, float] | None:
     if not nodes:
         return None
-    said = _objects(reasoner, min(nodes))
-    size = [_number(iri, p, said) for p in v.SIZE_XYZ]
-    if None in size:
-        return None
-    if any(extent <= 0 for extent in size):  # type: ignore[operator]
-        raise errors.BadRequest(f"{v.local_name(iri)}: the size {tuple(size)} must be positive")
-    return tuple(size)  # type: ignore[return-value]
+    size = _numbers(iri, v.SIZE_XYZ, about(min(nodes)))
+    if size is not None and min(size) <= 0:
+        raise errors.BadRequest(f"{v.local_name(iri)}: the size {size} must be positive")
+    return size  # type: ignore[return-value]
 
 
-def _number(iri: Term, predicate: Term, said: Mapping[Term, Collection[Term]]) -> float | None:
-    term = min(said.get(predicate, ()), default=None)
-    if term is None:
+def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[float, ...] | None:
+    """One number a predicate; None where one is missing."""
+    if said.keys().isdisjoint(predicates):
         return None
-    text = _said(term)
-    try:
-        value = float(text) if term.startswith('"') else math.nan
-    except ValueError:
-        value = math.nan
-    if not abs(value) <= REACH_M:
-        raise errors.BadRequest(
-            f"{v.local_name(iri)}: {v.local_name(predicate)} is {text}; it must be a number"
-            f" from -{REACH_M:g} to {REACH_M:g}"
-        )
-    return value
+    found: list[float] = []
+    for predicate in predicates:
+        terms = said.get(predicate, ())
+        if not terms:
+            continue
+        term = terms[0] if len(terms) == 1 else min(terms)
+        try:
+            value = float(term[1 : term.rindex('"')]) if term[0] == '"' else math.nan
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= REACH_M:
+            raise errors.BadRequest(
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_said(term)}; it must be a number"
+                f" from -{REACH_M:g} to {REACH_M:g}"
+            )
+        found.append(value)
+    return tuple(found) if len(found) == len(predicates) else None
 
 
 def _said(term: Term) -> str:
-    return v.lexical(term) if term.startswith('"') else v.local_name(term)
+    return v.lexical(term) if term[0] == '"' else v.local_name(term)
 
 
-def _references(reasoner: Reasoner, nodes: Collection[Term]) -> list[str]:
-    return [v.lexical(text) for node in sorted(nodes) for text in sorted(_texts(reasoner, node))]
-
-
-def _texts(reasoner: Reasoner, node: Term) -> Iterator[Term]:
-    return (o for _, _, o in reasoner.asserted(node, v.LEXICAL_REFERENCE) if o.startswith('"'))
+def _references(about: About, nodes: Sequence[Term]) -> list[str]:
+    found: list[str] = []
+    for node in sorted(nodes):
+        texts = sorted(about(node).get(v.LEXICAL_REFERENCE, ()))
+        found += [v.lexical(text) for text in texts if text[0] == '"']
+    return found

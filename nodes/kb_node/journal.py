@@ -20,8 +20,8 @@ from msgspec import Struct
 
 from schemas import codec, errors
 from schemas.commits import Commit
-from schemas.entities import Provenance
-from schemas.explanations import Term, Triple
+from schemas.entities import Entity
+from schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
 
@@ -39,6 +39,8 @@ CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BL
 _FORMAT = b"3"
 _ANEW = "start anew with --fresh (it is kept)"
 _PAGE = 256
+_DENSE_FROM = 1 << 16
+"""Bytes: what is larger takes less time to compress than to write."""
 
 
 class InUse(errors.Refused):
@@ -60,24 +62,14 @@ class Damaged(errors.Refused):
         self.last_good = seq - 1
 
 
-class Marks(Struct, frozen=True, array_like=True):
-    """The commits that last changed an entity at all, its pose, its class or size, what it is called."""
-
-    any: int
-    pose: int
-    shape: int
-    references: int
-
-
 class Checkpoint(Struct, frozen=True, kw_only=True):
     """The ABox after commit `seq`: start-up replays only what came later."""
 
     seq: int
     triples: tuple[Triple, ...] = ()
-    marks: dict[Term, Marks] = {}
-    """Entity to its marks."""
-    commits: dict[int, Provenance] = {}
-    """The commits that `marks` name."""
+    entities: tuple[Entity, ...] = ()
+    read_by: bytes = b""
+    """The code that read the entities from the triples."""
 
 
 class Journal:
@@ -147,7 +139,7 @@ class Journal:
         if self._digest is None:
             with self._reading():
                 self._digest = self._digest_of(self.last)
-        body = codec.encode(commit)
+        body = codec.encode(commit, dense_from=_DENSE_FROM)
         digest = _chain(self._digest, body)
         with self._writing(f"commit {commit.seq}"):
             self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
@@ -235,7 +227,7 @@ class Journal:
 
         Raises Refused, with nothing changed, when the disk does not take it.
         """
-        body = codec.encode(checkpoint)
+        body = codec.encode(checkpoint, dense_from=_DENSE_FROM)
         row = (checkpoint.seq, body, _chain(b"", body))
         with self._writing(f"the checkpoint after commit {checkpoint.seq}"):
             self._db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
@@ -330,4 +322,6 @@ class _Stamp(Struct):
 
 
 def _chain(before: bytes, body: bytes) -> bytes:
-    return hashlib.blake2b(before + body, digest_size=16).digest()
+    digest = hashlib.blake2b(before, digest_size=16)
+    digest.update(body)
+    return digest.digest()

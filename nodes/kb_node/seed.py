@@ -7,7 +7,7 @@ import uuid
 from datetime import datetime
 from pathlib import Path
 
-from nodes.kb_node import documents, rdf_files, tboxes
+from nodes.kb_node import documents, rdf_files, tbox_cache, tboxes
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import FILENAME, InUse, Journal
 from nodes.kb_node.reasoner import Reasoner
@@ -35,6 +35,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         )
     tbox_triples = read_triples(tbox, "t")
     reasoner = tboxes.compiled(tbox_triples, str(tbox))
+    closed = reasoner.closed  # as it is before the ABox may add to the schema
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tboxes.imports(tbox_triples)]
     notes: list[str] = []
     if abox is not None:
@@ -57,6 +58,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         new = path.with_name(f"new-{FILENAME}")
         size = _make(new, tbox_triples, reasoner, transaction)
         put_in_place(new, path)
+        tbox_cache.keep(closed, tbox_triples, data)
     except errors.SemmapError as error:
         raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
     except OSError as error:

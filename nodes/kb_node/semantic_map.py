@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import gc
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence, Set
+from contextlib import contextmanager
 from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import entities, placing, rdf_files, tboxes
+from nodes.kb_node import entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Checkpoint, Journal, Marks, NotWritten
+from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity, Provenance
+from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
+CHECKPOINT_AT_LATEST = 20_000
 _FEW = 64
 
 
@@ -41,9 +44,11 @@ class SemanticMap:
         journal.verify(progress)
         start = journal.last_checkpoint()
         self.tbox = self._tbox_of(start.seq)
-        self.reasoner = reasoner or Reasoner(self.tbox)
+        self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
+        self._replaced: dict[str, Entity | None] | None = None
+        """While commits are made together: the entities that were there before, None for new names."""
         self.seq = 0
         self._checkpointed = 0
         self._replay(start)
@@ -124,7 +129,7 @@ class SemanticMap:
         self._require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
         retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
-        inserted = tuple(t for t in wanted if t not in held)
+        inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
         if not retracted and not inserted:
             return None
         for triple in retracted:
@@ -132,7 +137,8 @@ class SemanticMap:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
-        return self._apply(self._signed(transaction, retracted, inserted), self._journal.append)
+        with _uncollected():
+            return self._apply(self._signed(transaction, retracted, inserted), self._journal.append)
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -161,7 +167,9 @@ class SemanticMap:
 
         When the disk does not take them, all are refused and the map is as before.
         """
-        before, known = self.seq, self._entities.copy()
+        before = self.seq
+        replaced: dict[str, Entity | None] = {}
+        self._replaced = replaced
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -176,16 +184,22 @@ class SemanticMap:
             made = {c.seq: c for c in results if isinstance(c, Commit) and c.seq > before}
             for _, commit in sorted(made.items(), reverse=True):
                 self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
-            self.seq, self._entities = before, known
+            self.seq = before
+            for name, entity in replaced.items():
+                if entity is None:
+                    self._entities.pop(name, None)
+                else:
+                    self._entities[name] = entity
             if not isinstance(error, NotWritten):
                 raise
             return [error] * len(transactions)
+        finally:
+            self._replaced = None
         return results
 
-    @property
-    def checkpoint_is_due(self) -> bool:
-        """Would the next start have much to replay?"""
-        return self.seq - self._checkpointed >= CHECKPOINT_EVERY
+    def checkpoint_is_due(self, *, quiet: bool) -> bool:
+        """Would the next start have much to replay? Unless it is `quiet`, very much?"""
+        return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.
@@ -194,14 +208,14 @@ class SemanticMap:
         """
         if self.seq == self._checkpointed:
             return
-        marks: dict[Term, Marks] = {}
-        commits: dict[int, Provenance] = {}
-        for e in self._entities.values():
-            since = (e.provenance, e.pose_provenance, e.shape_provenance, e.reference_provenance)
-            marks[v.iri(e.iri)] = Marks(*(p.commit for p in since))
-            commits.update((p.commit, p) for p in since)
-        triples = tuple(self.abox())
-        self._journal.checkpoint(Checkpoint(seq=self.seq, triples=triples, marks=marks, commits=commits))
+        self._journal.checkpoint(
+            Checkpoint(
+                seq=self.seq,
+                triples=tuple(self.abox()),
+                entities=tuple(self._entities.values()),
+                read_by=fingerprint.of_code(),
+            )
+        )
         self._checkpointed = self.seq
 
     def _spelled_out(self, transaction: Transaction) -> Transaction:
@@ -215,14 +229,16 @@ class SemanticMap:
 
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
-        named = {*transaction.require, *transaction.retract, *transaction.insert}
+        groups = transaction.require, transaction.retract, transaction.insert
+        known = set(filter(self.reasoner.mentions, {s for triples in groups for s, _, _ in triples}))
         held: set[Triple] = set()
         many: set[Term] = set()
-        for subject in {s for s, _, _ in named}:
+        for subject in known:
             said = list(islice(self.reasoner.asserted(subject), _FEW))
             held.update(said)
             if len(said) == _FEW:
                 many.add(subject)
+        named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
         return {t for t in named if t in held or (t[0] in many and self.has(t))}
 
     def _is_subject(self, term: Term) -> bool:
@@ -239,17 +255,12 @@ class SemanticMap:
     def _replay(self, start: Checkpoint) -> None:
         self.reasoner.apply(insert=start.triples)
         self.seq = self._checkpointed = start.seq
-        said_by_the_tbox = entities.of_the_tbox(self.reasoner, self.classes)
-        self._show(e for e in said_by_the_tbox if v.iri(e.iri) not in start.marks)
-        for iri, marks in start.marks.items():
-            if (entity := self._read(iri, start.commits[marks.any])) is not None:
-                entity = structs.replace(
-                    entity,
-                    pose_provenance=start.commits[marks.pose],
-                    shape_provenance=start.commits[marks.shape],
-                    reference_provenance=start.commits[marks.references],
-                )
-                self._show([entity])
+        if start.seq == 0:
+            self._show(entities.of_the_tbox(self.reasoner, self.classes))
+        elif start.read_by == fingerprint.of_code():
+            self._show(start.entities)
+        else:
+            self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
@@ -299,7 +310,7 @@ class SemanticMap:
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), concerned)
+            commit = self._with_effects(commit, set(), concerned, set())
             make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes = before
@@ -308,10 +319,12 @@ class SemanticMap:
 
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        owners = self._owners(commit)
+        subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
+        known = set(filter(self.reasoner.mentions, subjects))
+        owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change.touched)
+            commit = self._with_effects(commit, owners, change.touched, subjects - known)
             make_durable(commit)
         except BaseException:
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
@@ -326,27 +339,33 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
+        if self._replaced is not None:
+            for name in commit.names:
+                self._replaced.setdefault(name, self._entities.get(name))
         for gone in commit.removed:
             del self._entities[gone.name]
         self._show(commit.changed)
         return commit
 
-    def _owners(self, commit: Commit) -> set[Term]:
-        """Whose stars the commit's triples belong to, before it and after it.
+    def _with_effects(self, commit: Commit, owners: Set[Term], touched: Set[Term], new: Set[Term]) -> Commit:
+        """`commit` with the entities that it changed and those that it removed.
 
-        Who comes to own a node only by the commit is itself a subject of its triples.
+        `owners` are those to whose stars its triples belong, before it or after it. Of `new` ones it says
+        all there is.
         """
-        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
-        return {owner for s in subjects for owner in entities.owners(self.reasoner, s)}
-
-    def _with_effects(self, commit: Commit, owners: set[Term], touched: Iterable[Term]) -> Commit:
-        """`commit` with the entities that it changed and those that it removed."""
         changed: dict[str, Entity] = {}
         removed: list[Departed] = []
-        for iri in sorted(owners.union(touched)):
-            known = self._known(iri)
+        provenance, about = commit.provenance, entities.about(self.reasoner, commit.inserted, new)
+        types, spatial = self.reasoner.types, self.classes.spatial
+        concerned = (
+            iri
+            for iri in owners | touched
+            if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
+        )
+        for iri in sorted(concerned):
+            known = None if iri in new else self._known(iri)
             self._progress()
-            entity = self._read(iri, commit.provenance)
+            entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []
                 continue
@@ -364,8 +383,20 @@ class SemanticMap:
             removed=tuple(removed),
         )
 
-    def _read(self, iri: Term, provenance: Provenance) -> Entity | None:
-        return entities.read_entity(self.reasoner, self.classes, iri, provenance)
+    def _read_again(self, known: Entity) -> Entity | None:
+        """An entity as this code reads it, changed when it was."""
+        iri = v.iri(known.iri)
+        entity = entities.read_entity(self.reasoner, self.classes, iri, known.provenance)
+        return (
+            None
+            if entity is None
+            else structs.replace(
+                entity,
+                pose_provenance=known.pose_provenance,
+                shape_provenance=known.shape_provenance,
+                reference_provenance=known.reference_provenance,
+            )
+        )
 
     def _known(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
@@ -374,6 +405,18 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """No garbage collection: a change of the map makes much and drops little."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def _taken(holder: Entity) -> errors.NameTaken:

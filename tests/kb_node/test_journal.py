@@ -1,3 +1,4 @@
+import random
 import resource
 import sqlite3
 import subprocess
@@ -6,10 +7,9 @@ from contextlib import contextmanager
 
 import pytest
 
-from nodes.kb_node.journal import Checkpoint, InUse, Journal, Marks
+from nodes.kb_node.journal import Checkpoint, InUse, Journal
 from schemas import errors
 from schemas.commits import Commit
-from schemas.entities import Provenance
 
 
 def commit(seq, text="x"):
@@ -155,8 +155,7 @@ def checkpoint(seq):
     return Checkpoint(
         seq=seq,
         triples=(("<urn:a>", "<urn:b>", "<urn:c>"),),
-        marks={"<urn:a>": Marks(any=seq, pose=seq, shape=seq, references=seq)},
-        commits={seq: Provenance(commit=seq, stamp_ns=1, source="file")},
+        read_by=b"code",
     )
 
 
@@ -174,6 +173,10 @@ def test_the_newest_sound_checkpoint_is_taken(path, journal):
     again = Journal(path)
     assert again.last_checkpoint() == Checkpoint(seq=0)
     again.close()
+
+
+BULKY = random.Random(2).randbytes(100_000).hex()
+"""A text that no compression makes small."""
 
 
 @contextmanager
@@ -198,7 +201,7 @@ def full_by_file_size(journal):
 @pytest.mark.parametrize("full", [full_by_page_count, full_by_file_size])
 def test_a_full_disk_refuses_and_nothing_is_half_there(journal, path, full):
     journal.append(commit(1))
-    big = commit(2, "x" * 100_000)
+    big = commit(2, BULKY)
     with full(journal):
         with pytest.raises(errors.Refused, match=r"commit 2 could not be written to .*journal\.sqlite: "):
             journal.append(big)

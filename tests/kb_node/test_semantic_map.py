@@ -3,15 +3,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
+from nodes.kb_node import fingerprint
 from nodes.kb_node.journal import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
 from schemas.commits import Commit, Snapshot
-from schemas.entities import Pose
+from schemas.entities import Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
-from tests.kb_node.test_journal import full_by_page_count
+from tests.kb_node.test_journal import BULKY, full_by_page_count
 
 CHAIR1, CHAIR2 = v.entity_iri("chair1"), v.entity_iri("chair2")
 
@@ -103,7 +104,7 @@ def test_what_is_refused_leaves_everything_as_it_was(semantic_map, insert, field
 def test_a_full_disk_leaves_everything_as_it_was(semantic_map, insert, retract):
     semantic_map.commit(transaction(0, chair("chair0")))
     before = state(semantic_map), set(semantic_map.reasoner.inferred())
-    wanted = transaction(1, insert, retract, reason="x" * 100_000)
+    wanted = transaction(1, insert, retract, reason=BULKY)
     could_not = pytest.raises(errors.Refused, match="commit 2 could not be written to")
     with full_by_page_count(semantic_map._journal), could_not:
         semantic_map.commit(wanted)
@@ -221,6 +222,68 @@ def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_pat
     home.close(again)
 
 
+def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
+    semantic_map.commit(transaction(1, chair(preferred="stool")))
+    semantic_map.commit(transaction(2, turtle(":chair1 dm:hasSize :s .")))
+    before = semantic_map.snapshot()
+    assert [e.provenance.commit for e in before.entities] == [2]
+    with monkeypatch.context() as other:
+        other.setattr(fingerprint, "of_code", lambda: b"other")
+        semantic_map._entities = {
+            name: structs.replace(entity, class_="Stool") for name, entity in semantic_map._entities.items()
+        }
+        semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert again.snapshot() == before
+    assert again._checkpointed == 2
+    home.close(again)
+
+
+SIZE = "a dm:3Three_Dim_Size ; dm:float_size_x 1.0 ; dm:float_size_y 1.0 ; dm:float_size_z 1.0"
+SAYINGS = [
+    turtle(text)
+    for text in (
+        ":chair1 dm:hasSize :s .",
+        ":chair2 dm:hasSize :s .",
+        f":s {SIZE} .",
+        ":chair1 dm:isLocatedIn :k .",
+        ":k a dm:Kitchen .",
+        ":chair3 dm:hasPreferredReference :chair1_preferred_reference .",
+    )
+]
+CHAIRS = st.builds(
+    chair, st.sampled_from(["chair1", "chair2", "chair3"]), preferred=st.sampled_from(["a", "b"])
+)
+STARS = st.lists(st.one_of(CHAIRS, st.sampled_from(SAYINGS)), min_size=1, max_size=6)
+
+
+@settings(max_examples=20, deadline=None)
+@given(STARS)
+def test_a_load_gives_what_its_parts_give_one_by_one(tmp_path_factory, parts):
+    at_once, one_by_one = (home.new_map(tmp_path_factory.mktemp("map")) for _ in range(2))
+    try:
+        for number, part in enumerate(parts):
+            one_by_one.commit(transaction(number, part))
+    except errors.Refused:
+        with pytest.raises(errors.Refused):
+            at_once.commit(transaction(0, [fact for part in parts for fact in part]))
+    else:
+        at_once.commit(transaction(0, [fact for part in parts for fact in part]))
+        assert set(at_once.abox()) == set(one_by_one.abox())
+        assert list(map(without_author, at_once.entities())) == list(
+            map(without_author, one_by_one.entities())
+        )
+    home.close(at_once)
+    home.close(one_by_one)
+
+
+def without_author(entity):
+    """An entity without who said so."""
+    none = Provenance(commit=0, stamp_ns=0, source="file")
+    names = ("provenance", "pose_provenance", "shape_provenance", "reference_provenance")
+    return structs.replace(entity, **dict.fromkeys(names, none))
+
+
 NAMES = st.sampled_from(["chair1", "chair2", "chair3"])
 SEEN = st.sampled_from([0.0, 1.0])
 SAID = ["dm:isLocatedIn :kitchen", "dm:hasSize :s"]
@@ -332,3 +395,15 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
     assert state(semantic_map) == before
     assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
     assert state(home.reopened(semantic_map)) == state(semantic_map)
+
+
+def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, monkeypatch):
+    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_EVERY", 2)
+    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_AT_LATEST", 3)
+    due = []
+    for i in range(3):
+        semantic_map.commit(transaction(i, chair(f"chair{i}")))
+        due.append((semantic_map.checkpoint_is_due(quiet=True), semantic_map.checkpoint_is_due(quiet=False)))
+    assert due == [(False, False), (True, False), (True, True)]
+    semantic_map.checkpoint()
+    assert not semantic_map.checkpoint_is_due(quiet=True)

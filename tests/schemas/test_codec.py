@@ -1,5 +1,6 @@
 import contextlib
 import math
+import zlib
 from typing import Any
 
 import msgpack
@@ -28,6 +29,34 @@ def test_the_wire_is_plain_messagepack():
     assert msgpack.unpackb(codec.encode(sent)) == {"verb": "add", "class": "Chair", "at": [1, 2, 0.5]}
     assert codec.decode(msgpack.packb({"class": "Chair", "at": [1, 2, 0.5]}), Add) == sent
     assert codec.encoding_of(sent) == "application/msgpack;semmap.Add.v1"
+
+
+def test_what_is_large_is_compressed():
+    sent = Departed(name="chair1", types=("Chair",) * 1000)
+    dense = codec.encode(sent, dense_from=1000)
+    assert len(dense) < 100
+    assert codec.decode(dense, Departed) == codec.decode(codec.encode(sent), Departed) == sent
+    assert msgpack.unpackb(zlib.decompress(dense)) == {"name": "chair1", "types": ["Chair"] * 1000}
+
+
+@pytest.mark.parametrize(
+    ("payload", "text"),
+    [
+        (b"x", "it ends too early"),
+        (b"x\x9cnothing", "it is no valid MessagePack"),
+        (zlib.compress(b"\x80")[:-3], "it ends too early"),
+        (zlib.compress(b"\xc1" * 10_000), "it is no valid MessagePack"),
+    ],
+)
+def test_what_only_looks_compressed_is_malformed(payload, text):
+    with pytest.raises(errors.BadRequest, match=text):
+        codec.decode(payload, Departed)
+
+
+def test_what_unfolds_without_bounds_is_refused(monkeypatch):
+    monkeypatch.setattr(codec, "LARGEST", 1000)
+    with pytest.raises(errors.BadRequest, match="larger than 0 MB"):
+        codec.decode(zlib.compress(bytes(2000)), Departed)
 
 
 NUMBER = "must be a number from -10000 to 10000"

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.axioms import DIFFERENT, SAME, Chain, NotCompilable
 from nodes.kb_node.reasoner.equality import Equality
 from nodes.kb_node.reasoner.reasons import Claim, Clash, Edge, Member, Reason, Same, member
 from nodes.kb_node.reasoner.steps import EdgeRules, Step
-from nodes.kb_node.reasoner.store import ASSERTED, DERIVED, NONE, VALUE
+from nodes.kb_node.reasoner.store import ASSERTED, DERIVED, VALUE
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Term, Triple
 

@@ -11,23 +11,16 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from itertools import combinations
-from typing import NamedTuple
 
 from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.matching import Pattern, Plan, bind, indexed, pattern, patterns, plan, unify
-from nodes.kb_node.reasoner.rules import AXIOMS, DECLARATIONS, NUMBERS, RULES, Atom, Rule
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, NIL, REST, SAME_AS, TYPE, is_literal
+from nodes.kb_node.reasoner.facts import Facts, Reason
+from nodes.kb_node.reasoner.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
+from nodes.kb_node.reasoner.rules import AXIOMS, NUMBERS, RULES, Atom, Rule
+from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
 from schemas.explanations import Term, Triple
 
 
-class Reason(NamedTuple):
-    """Why a fact holds: a rule and the facts it was applied to. Asserted facts have None instead."""
-
-    rule: str
-    premises: tuple[Triple, ...]
-
-
-class Closure:
+class Closure(Facts):
     """A graph and all that follows from it, until a contradiction is met."""
 
     def __init__(
@@ -64,42 +57,6 @@ class Closure:
                 self.facts[triple] = None
         while self._agenda and self.clash is None:
             self._fire(self._agenda.popleft())
-
-    def match(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterable[Triple]:
-        """All facts of a pattern; None is a wildcard."""
-        if s is not None and p is not None and o is not None:
-            return ((s, p, o),) if (s, p, o) in self.facts else ()
-        if s is None and p is None and o is None:
-            return self.facts
-        if s is not None and o is not None:
-            return [fact for fact in self._index.get((s, None, None), ()) if fact[2] == o]
-        return self._index.get((s, p, o), ())
-
-    def holds(self, triple: Triple) -> bool:
-        """Whether a triple follows. Everything is the same as itself (eq-ref)."""
-        s, p, o = triple
-        return triple in self.facts or triple in DECLARATIONS or (p == SAME_AS and s == o)
-
-    def leaves(self, goal: Triple | None) -> list[Triple]:
-        """The asserted triples that a fact (None: the clash) was concluded from, in the proof's order."""
-        seen: set[Triple | None] = set()
-        leaves: list[Triple] = []
-        pending = [goal]
-        while pending:
-            fact = pending.pop()
-            if fact in seen:
-                continue
-            seen.add(fact)
-            reason = self.reason(fact)
-            if reason is not None:
-                pending += reversed(reason.premises)
-            elif fact is not None and fact in self.facts:
-                leaves.append(fact)
-        return leaves
-
-    def reason(self, fact: Triple | None) -> Reason | None:
-        """How a fact (or None: the clash) was concluded; None for what is asserted or not there."""
-        return self.clash if fact is None else self.facts.get(fact)
 
     # Facts
 
@@ -208,24 +165,9 @@ class Closure:
                 data.append((s, p, o))  # no list atom, or no list: then nothing matches it
         return rule._replace(data=tuple(data), premises=premises)
 
-    def members(self, head: Term) -> tuple[list[Term], tuple[Triple, ...]] | None:
-        """Members and cells of an asserted list; None when it is cut off, branches or runs in a circle."""
-        members: list[Term] = []
-        cells: list[Triple] = []
-        while head != NIL:
-            first = [fact for fact in self.match(head, FIRST) if self.facts[fact] is None]
-            rest = [fact for fact in self.match(head, REST) if self.facts[fact] is None]
-            if len(first) != 1 or len(rest) != 1 or rest[0] in cells:
-                return None
-            members.append(first[0][2])
-            cells += (first[0], rest[0])
-            head = rest[0][2]
-        return members, tuple(cells)
-
     def _fire(self, fact: Triple) -> None:
         """Index a fact, and apply the rules to it and to the facts indexed before: each pair meets once."""
-        for key in indexed(fact):
-            self._index.setdefault(key, {})[fact] = None
+        self._note(fact)
         for key in patterns(fact):
             for found in list(self._triggers.get(key, ())):
                 self._take(found, 0, fact, [""] * found.variables, ())

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from nodes.kb_node.reasoner.abox import ABox
 from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.closure import Closure
+from nodes.kb_node.reasoner.facts import Facts
 from nodes.kb_node.reasoner.proof import Prover
 from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
@@ -41,13 +42,14 @@ class CompiledEngine:
         Refused: the triples contradict each other.
     """
 
-    def __init__(self, triples: Iterable[Triple]) -> None:
+    def __init__(self, triples: Iterable[Triple], closed: Facts | None = None) -> None:
+        """Start with some triples; `closed` is the closure of those of the schema, if it is known."""
         triples = list(triples)
         self._prover = Prover()
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         for triple in self._schema_triples:
             check_compilable(triple)
-        closure = Closure(self._schema_triples)
+        closure = closed or Closure(self._schema_triples)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
@@ -60,6 +62,11 @@ class CompiledEngine:
 
     def __len__(self) -> int:
         return self._size
+
+    @property
+    def closed(self) -> Facts:
+        """The closure of the schema."""
+        return self._schema.closure
 
     def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
         """Delete and insert triples; the individuals that this touched.
@@ -167,6 +174,18 @@ class CompiledEngine:
         for triple in self._schema.closure.match(s, p, o):
             if triple in self._schema_triples:
                 yield triple
+
+    def about(self, subject: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject: predicate to objects."""
+        objects = self._view.about(subject)
+        for triple in self._schema.closure.match(subject):
+            if triple in self._schema_triples:
+                objects.setdefault(triple[1], []).append(triple[2])
+        return objects
+
+    def mentions(self, term: Term) -> bool:
+        """Whether a triple has a term as its subject or object."""
+        return term in self._abox.store.numbers or bool(self._schema.closure.match(term))
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted.

@@ -31,6 +31,18 @@ class GeneralEngine:
         """The asserted triples of a pattern."""
         return (triple for triple in self._closure.match(s, p, o) if triple in self._asserted)
 
+    def about(self, subject: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject: predicate to objects."""
+        objects: dict[Term, list[Term]] = {}
+        for _, p, o in self.asserted(subject, None, None):
+            objects.setdefault(p, []).append(o)
+        return objects
+
+    def mentions(self, term: Term) -> bool:
+        """Whether a triple has a term as its subject or object."""
+        patterns = ((term, None, None), (None, None, term))
+        return any(True for s, p, o in patterns for _ in self.asserted(s, p, o))
+
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted."""
         return (triple for triple in self._closure.match(s, p, o) if triple not in self._asserted)

@@ -9,12 +9,13 @@ from collections.abc import Iterable, Iterator
 from itertools import combinations, count
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.axioms import Group, Role
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.reasons import Claim, Edge, Member, Reason, Same
 from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.steps import Steps
-from nodes.kb_node.reasoner.store import NONE, Store
+from nodes.kb_node.reasoner.store import Store
 from nodes.kb_node.reasoner.terms import is_literal
 from schemas.explanations import Term
 

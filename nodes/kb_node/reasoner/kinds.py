@@ -11,8 +11,13 @@ from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.terms import iri
 from schemas.explanations import Term
 
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
-"""How programs write a floating-point number."""
+_FLOATING = (iri("xsd:float"), iri("xsd:double"))
+_NUMBER = re.compile(
+    r'"-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?"\^\^(?:'
+    + "|".join(f"({re.escape(datatype)})" for datatype in _FLOATING)
+    + ")"
+)
+"""How programs write a floating-point number; the group says of which datatype."""
 
 
 class Kind:
@@ -51,13 +56,10 @@ class Kinds:
         self._nominals = frozenset(schema.nominals.values())
         self.nothing = self.of(frozenset())
         self.ill_typed = Kind(frozenset(), 0, 0)
-        self._uniform: dict[str, tuple[re.Pattern[str], Kind]] = {}
-        """By what follows a literal's text: the texts whose literals are all of one kind."""
         self.ill_typed.base, self.ill_typed.clash = self.ill_typed, (ILL_TYPED, ILL_TYPED)
 
-        if not schema.literals:
-            for datatype in (iri("xsd:float"), iri("xsd:double")):
-                self._uniform[f"^^{datatype}"] = (_NUMBER, self._literal(f'"1"^^{datatype}'))
+        self._numbers = [] if schema.literals else [self._literal(f'"1"^^{name}') for name in _FLOATING]
+        """The kinds of all numbers, unless the schema speaks of single ones."""
 
     def __iter__(self) -> Iterator[Kind]:
         return iter(self._kinds.values())
@@ -73,11 +75,8 @@ class Kinds:
 
     def literal(self, term: Term) -> Kind:
         """The kind of a literal: the datatypes that hold its value, and its nominal."""
-        quote = term.rfind('"')
-        uniform = self._uniform.get(term[quote + 1 :])
-        if uniform is not None and uniform[0].fullmatch(term, 1, quote):
-            return uniform[1]
-        return self._literal(term)
+        number = _NUMBER.fullmatch(term) if self._numbers else None
+        return self._literal(term) if number is None else self._numbers[(number.lastindex or 0) - 1]
 
     def _literal(self, term: Term) -> Kind:
         if datatypes.is_ill_typed(term):

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from nodes.kb_node.reasoner.facts import Facts
 from nodes.kb_node.reasoner.general import GeneralEngine
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
@@ -34,9 +35,12 @@ class Reasoner:
     Terms are strings in N-Triples syntax. A pattern's None is a wildcard. Not thread-safe.
     """
 
-    def __init__(self, tbox: Iterable[Triple] = ()) -> None:
-        """Start with some triples. Raises Inconsistent when they contradict each other."""
-        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox)
+    def __init__(self, tbox: Iterable[Triple] = (), *, closed: Facts | None = None) -> None:
+        """Start with some triples. Raises Inconsistent when they contradict each other.
+
+        `closed` is what another reasoner's `closed` was that had the same schema.
+        """
+        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed)
 
     def __len__(self) -> int:
         """How many triples are asserted, the TBox's included."""
@@ -46,6 +50,11 @@ class Reasoner:
     def is_compiled(self) -> bool:
         """Whether changes are worked out one by one; else everything is, at each change."""
         return isinstance(self._engine, CompiledEngine)
+
+    @property
+    def closed(self) -> Facts | None:
+        """All that follows from the schema, if that is worked out by itself."""
+        return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
 
     def apply(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple] = ()) -> Change:
         """One transaction: deletes, then inserts, then checks.
@@ -85,6 +94,14 @@ class Reasoner:
     ) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
         return self._engine.asserted(s, p, o)
+
+    def about(self, subject: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
+        return self._engine.about(subject)
+
+    def mentions(self, term: Term) -> bool:
+        """Whether a triple may have a term as its subject or object: what is not mentioned is new."""
+        return self._engine.mentions(term)
 
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
@@ -126,11 +143,11 @@ class Reasoner:
         return self._engine.explain(triple) if self.holds(triple) else None
 
 
-def _engine_for(triples: Iterable[Triple]) -> CompiledEngine | GeneralEngine:
+def _engine_for(triples: Iterable[Triple], closed: Facts | None = None) -> CompiledEngine | GeneralEngine:
     """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
     triples = list(dict.fromkeys(triples))
     try:
-        return CompiledEngine(triples)
+        return CompiledEngine(triples, closed)
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None
     except NotCompilable:

@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.axioms import Chain, Role
 from nodes.kb_node.reasoner.individuals import Equals
 from nodes.kb_node.reasoner.reasons import Reason
-from nodes.kb_node.reasoner.store import ASSERTED, NONE, VALUE
+from nodes.kb_node.reasoner.store import ASSERTED, VALUE
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Term, Triple
 

@@ -15,7 +15,7 @@ from itertools import combinations
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.axioms import ANY, Axioms, Chain, Group, Key, Limit, NotCompilable, Role
-from nodes.kb_node.reasoner.closure import Closure
+from nodes.kb_node.reasoner.facts import Facts
 from nodes.kb_node.reasoner.rules import NUMBERS
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 from schemas.explanations import Term, Triple
@@ -24,7 +24,7 @@ from schemas.explanations import Term, Triple
 class Schema:
     """A compiled TBox. New classes and properties may be met later; nothing is said of them."""
 
-    def __init__(self, closure: Closure) -> None:
+    def __init__(self, closure: Facts) -> None:
         self.closure = closure
         self.classes: list[Term] = []
         self.supers: list[int] = []

@@ -12,10 +12,12 @@ from itertools import count
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.kinds import Kind
+from nodes.kb_node.reasoner.layout import Layout, NewEdge
 from nodes.kb_node.reasoner.proof import Proof
 from nodes.kb_node.reasoner.split import is_schema
-from nodes.kb_node.reasoner.store import NONE, VALUE, Layout, NewEdge
+from nodes.kb_node.reasoner.store import VALUE
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Explanation, Term, Triple
 

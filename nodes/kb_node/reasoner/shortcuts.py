@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 
 from nodes.kb_node.reasoner.abox import ABox
-from nodes.kb_node.reasoner.store import ASSERTED, DERIVED, NONE
+from nodes.kb_node.reasoner.adjacency import NONE
+from nodes.kb_node.reasoner.store import ASSERTED, DERIVED
 from nodes.kb_node.reasoner.terms import TYPE
 from schemas.explanations import Term, Triple
 
@@ -20,8 +21,10 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     Who they were; None, with nothing done, where it is not plain.
     """
     store = abox.store
+    wanted = set(triples)
     going = {store.numbers.get(triple[0], NONE) for triple in triples}
-    edges = None if NONE in going else _edges_of(abox, going, set(triples))
+    is_doubtful = NONE in going or len(wanted) < len(triples)
+    edges = None if is_doubtful else _edges_of(abox, going, wanted)
     if edges is None or not _concern_nobody(abox, going, edges):
         return None
     store.erase(going, edges)
@@ -88,7 +91,7 @@ def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> 
 
 
 def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
-    """The edge of an asserted triple, if nothing follows from it and it is its subject's only one; or NONE."""
+    """The edge of an asserted triple from which nothing follows and which has none beside it; or NONE."""
     store = abox.store
     subject, predicate, literal = store.numbers.get(s), abox.schema.find_property(p), store.numbers.get(o)
     if subject is None or predicate is None or literal is None:

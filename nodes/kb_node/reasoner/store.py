@@ -1,147 +1,26 @@
 """The ABox in columns: terms by number, edges as linked lists, nothing that can be worked out.
 
 A *node* is the number of an individual or literal. An *edge* is the number of a row subject, predicate,
-object. The edges at a node are linked in groups of one predicate, so that a room with ten thousand parts is
-asked for its walls without looking at the parts. Freed numbers are used again.
+object. Freed numbers are used again.
 """
 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Collection, Iterable, Iterator, Set
-from typing import Final, NamedTuple
+from collections.abc import Collection, Iterable, Set
+from typing import Final
 
+from nodes.kb_node.reasoner.adjacency import NONE, Adjacency
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.layout import Layout
 from nodes.kb_node.reasoner.terms import is_literal
 from schemas.explanations import Term
 
-NONE: Final = -1
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
 _ROOM: Final = array("i", [NONE]) * BLOCK
 ASSERTED, VALUE, DERIVED = 0, 1, 2
 """Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
-
-
-class Adjacency:
-    """The edges that leave (or enter) each node, in groups of one predicate.
-
-    `heads[node]` is the first edge of the node's first group, `group[edge]` leads from there to the first
-    edge of the next group, `after` and `before` within a group. All are NONE for an edge in no list.
-    """
-
-    __slots__ = ("after", "before", "group", "heads", "predicate")
-
-    def __init__(self, predicate: list[int]) -> None:
-        self.predicate = predicate
-        self.heads = array("i")
-        self.after = array("i")
-        self.before = array("i")
-        self.group = array("i")
-
-    def link(self, node: int, edge: int, predicate: int) -> None:
-        """Put an edge, whose predicate is set already, into the list of a node."""
-        head = first = self.heads[node]
-        if head == NONE:
-            self.heads[node] = edge
-            return
-        column, group = self.predicate, self.group
-        while first != NONE and column[first] != predicate:
-            first = group[first]
-        if first == NONE:
-            group[edge] = head
-            self.heads[node] = edge
-            return
-        # behind the first of its group, so that the chain of groups stays as it is
-        second = self.after[first]
-        self.after[first], self.before[edge] = edge, first
-        if second != NONE:
-            self.after[edge] = second
-            self.before[second] = edge
-
-    def unlink(self, node: int, edge: int) -> None:
-        """Take an edge out of the list of a node."""
-        before, after = self.before[edge], self.after[edge]
-        if after != NONE:
-            self.before[after] = before
-            self.after[edge] = NONE
-        if before != NONE:
-            self.after[before] = after
-            self.before[edge] = NONE
-            return
-        group = self.group
-        next_group = replacement = group[edge]
-        if next_group != NONE:
-            group[edge] = NONE
-        if after != NONE:
-            group[after] = next_group
-            replacement = after
-        first = self.heads[node]
-        if first == edge:
-            self.heads[node] = replacement
-            return
-        while group[first] != edge:
-            first = group[first]
-        group[first] = replacement
-
-    def clear(self, edge: int) -> None:
-        """Forget the neighbours of an edge whose whole list goes."""
-        if self.after[edge] != NONE:
-            self.after[edge] = NONE
-        if self.before[edge] != NONE:
-            self.before[edge] = NONE
-        if self.group[edge] != NONE:
-            self.group[edge] = NONE
-
-    def is_alone(self, edge: int) -> bool:
-        """Whether a node has no other edge with the edge's predicate."""
-        return self.before[edge] == NONE and self.after[edge] == NONE
-
-    def of(self, node: int, predicate: int) -> Iterator[int]:
-        """The edges of a node with a predicate."""
-        edge = self.heads[node]
-        while edge != NONE and self.predicate[edge] != predicate:
-            edge = self.group[edge]
-        while edge != NONE:
-            yield edge
-            edge = self.after[edge]
-
-    def all(self, node: int) -> Iterator[int]:
-        """All edges of a node."""
-        first = self.heads[node]
-        while first != NONE:
-            edge = first
-            while edge != NONE:
-                yield edge
-                edge = self.after[edge]
-            first = self.group[first]
-
-
-class NewEdge(NamedTuple):
-    """An edge of a layout: its ends by place, its neighbours by their index in the layout or NONE."""
-
-    subject: int
-    predicate: int
-    object: int
-    source: int
-    after: int
-    before: int
-    group: int
-
-
-class Layout(NamedTuple):
-    """New individuals and their edges, as they are written at once.
-
-    A *place* counts the new individuals first, then the other objects.
-    """
-
-    kinds: tuple[Kind, ...]
-    """Those of the individuals."""
-    others: tuple[Kind, ...]
-    """Those of the other objects, which they have already if they are there."""
-    edges: tuple[NewEdge, ...]
-    heads: tuple[int, ...]
-    """The index of each individual's first edge."""
 
 
 class Store:

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from itertools import chain
 
 from nodes.kb_node.reasoner.abox import ABox
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.axioms import DIFFERENT, SAME
-from nodes.kb_node.reasoner.store import ASSERTED, NONE
+from nodes.kb_node.reasoner.store import ASSERTED
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
 from schemas.explanations import Term, Triple
 
@@ -24,11 +25,30 @@ class View:
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
+        if s is None and p is None and o is None:
+            for node, term in enumerate(self._store.terms):
+                if term and not self._abox.is_literal(node):
+                    yield from self.asserted(term, None, None)
+            return
         if p is None or p == TYPE:
             yield from self._asserted_types(s, o)
         if p != TYPE:
             for edge in self._asserted_edges(s, p, o):
                 yield self._triple(edge)
+
+    def about(self, s: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject: predicate to objects."""
+        store, schema, node = self._store, self._schema, self._store.find(s)
+        if node is None:
+            return {}
+        objects: dict[Term, list[Term]] = {}
+        if types := [schema.classes[cls] for cls in self._given(node)]:
+            objects[TYPE] = types
+        for edge in store.out.all(node):
+            if store.source[edge] == ASSERTED:
+                predicate = schema.axioms[store.predicate[edge]].term
+                objects.setdefault(predicate, []).append(store.terms[store.object[edge]])
+        return objects
 
     def _asserted_types(self, s: Term | None, o: Term | None) -> Iterator[Triple]:
         cls = None if o is None else self._schema.find_class(o)

@@ -1,10 +1,11 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nodes.kb_node.reasoner.adjacency import NONE
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.kinds import Kinds
 from nodes.kb_node.reasoner.schema import Schema
-from nodes.kb_node.reasoner.store import ASSERTED, NONE, Store
+from nodes.kb_node.reasoner.store import ASSERTED, Store
 
 SCHEMA = Schema(Closure())
 EDGES = st.tuples(st.integers(0, 3), st.integers(2, 4), st.integers(0, 3))

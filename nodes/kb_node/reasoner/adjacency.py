@@ -1,0 +1,106 @@
+"""Edges in columns: linked lists of the edges at a node, in groups of one predicate.
+
+So a room with ten thousand parts is asked for its walls without looking at the parts.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator
+from typing import Final
+
+NONE: Final = -1
+
+
+class Adjacency:
+    """The edges that leave (or enter) each node, in groups of one predicate.
+
+    `heads[node]` is the first edge of the node's first group, `group[edge]` leads from there to the first
+    edge of the next group, `after` and `before` within a group. All are NONE for an edge in no list.
+    """
+
+    __slots__ = ("after", "before", "group", "heads", "predicate")
+
+    def __init__(self, predicate: list[int]) -> None:
+        self.predicate = predicate
+        self.heads = array("i")
+        self.after = array("i")
+        self.before = array("i")
+        self.group = array("i")
+
+    def link(self, node: int, edge: int, predicate: int) -> None:
+        """Put an edge, whose predicate is set already, into the list of a node."""
+        head = first = self.heads[node]
+        if head == NONE:
+            self.heads[node] = edge
+            return
+        column, group = self.predicate, self.group
+        while first != NONE and column[first] != predicate:
+            first = group[first]
+        if first == NONE:
+            group[edge] = head
+            self.heads[node] = edge
+            return
+        # behind the first of its group, so that the chain of groups stays as it is
+        second = self.after[first]
+        self.after[first], self.before[edge] = edge, first
+        if second != NONE:
+            self.after[edge] = second
+            self.before[second] = edge
+
+    def unlink(self, node: int, edge: int) -> None:
+        """Take an edge out of the list of a node."""
+        before, after = self.before[edge], self.after[edge]
+        if after != NONE:
+            self.before[after] = before
+            self.after[edge] = NONE
+        if before != NONE:
+            self.after[before] = after
+            self.before[edge] = NONE
+            return
+        group = self.group
+        next_group = replacement = group[edge]
+        if next_group != NONE:
+            group[edge] = NONE
+        if after != NONE:
+            group[after] = next_group
+            replacement = after
+        first = self.heads[node]
+        if first == edge:
+            self.heads[node] = replacement
+            return
+        while group[first] != edge:
+            first = group[first]
+        group[first] = replacement
+
+    def clear(self, edge: int) -> None:
+        """Forget the neighbours of an edge whose whole list goes."""
+        if self.after[edge] != NONE:
+            self.after[edge] = NONE
+        if self.before[edge] != NONE:
+            self.before[edge] = NONE
+        if self.group[edge] != NONE:
+            self.group[edge] = NONE
+
+    def is_alone(self, edge: int) -> bool:
+        """Whether a node has no other edge with the edge's predicate."""
+        return self.before[edge] == NONE and self.after[edge] == NONE
+
+    def of(self, node: int, predicate: int) -> Iterator[int]:
+        """The edges of a node with a predicate."""
+        edge = self.heads[node]
+        while edge != NONE and self.predicate[edge] != predicate:
+            edge = self.group[edge]
+        while edge != NONE:
+            yield edge
+            edge = self.after[edge]
+
+    def all(self, node: int) -> Iterator[int]:
+        """All edges of a node."""
+        first = self.heads[node]
+        while first != NONE:
+            edge = first
+            while edge != NONE:
+                yield edge
+                edge = self.after[edge]
+            first = self.group[first]
