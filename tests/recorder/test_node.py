@@ -18,9 +18,20 @@ from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commits import Snapshot
 from schemas.health import Health
-from schemas.scenes import SceneQuery
+from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
 from tests.recorder.files import column, log, positions
-from tests.recorder.messages import START_NS, body, commit, entity, pose, poses, relation, scene, star
+from tests.recorder.messages import (
+    START_NS,
+    body,
+    commit,
+    entity,
+    pose,
+    poses,
+    relation,
+    scene,
+    star,
+    surface,
+)
 
 WAIT_S = 20.0
 
@@ -54,7 +65,10 @@ class World:
                 "star": (StarQuery, lambda query: tuple(map(star, query.names))),
             },
         )
-        self.node.serve(keys.SIM, {"snapshot": (SceneQuery, self._scene)})
+        self.asked = []
+        self.node.serve(
+            keys.SIM, {"snapshot": (SceneQuery, self._scene), "surfaces": (SurfaceQuery, self._surfaces)}
+        )
 
     def publish(self, *commits):
         for made in commits:
@@ -79,6 +93,10 @@ class World:
         if self.scene is None:
             raise errors.Refused("no simulator runs")
         return self.scene
+
+    def _surfaces(self, query):
+        self.asked.append(query.names)
+        return Surfaces(surfaces={name: surface() for name in query.names})
 
 
 @pytest.fixture
@@ -145,6 +163,18 @@ def test_poses_are_recorded_when_they_change(world, tmp_path):
             time.sleep(0.01)
         wait_for(lambda: positions(path, "chair1")[-1] == [1.0, 0.0, 0.0])
     assert [x for x, _, _ in positions(path, "chair1")] == [0.0, 0.0, 0.5, 1.0]
+
+
+def test_bodies_are_drawn_as_they_look_each_kind_asked_for_once(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    world.scene = scene(body("chair1", model="chair"), body("chair2", model="chair"))
+    with recorder(world, path):
+        world.simulate({"chair1": pose(), "chair2": pose()})
+        wait_for(lambda: column(path, "/map/bodies/chair1", "Mesh3D:vertex_positions"))
+        world.scene = scene(body("chair1", model="chair"), version=2)
+        world.simulate({"chair1": pose()}, version=2)
+        wait_for(lambda: column(path, "/map/bodies/chair2", "Clear:is_recursive"))
+    assert world.asked == [("chair1",)]
 
 
 def test_new_bodies_are_drawn_and_gone_ones_erased(world, tmp_path):
