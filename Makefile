@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format schema models bench clean
+.PHONY: help setup demo test test-long lint format schema models train-perception clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -48,6 +48,10 @@ schema: setup  ## Write the JSON Schema of scene files anew
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
+
+train-perception: setup  ## Learn anew what perception knows: minutes, and the recorded scenes where they are
+	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
+	$(BIN)/python -m nodes.training.recognition
 
 clean:  ## Remove what was installed and built
 	rm -rf .venv .tools .pytest_cache .hypothesis .mypy_cache .ruff_cache demo/data

@@ -35,7 +35,7 @@ _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 @dataclass(frozen=True)
 class Encoded:
-    """A message as it came, to be passed on."""
+    """A message as it came: to be decoded, or passed on."""
 
     payload: zenoh.ZBytes
     encoding: zenoh.Encoding
@@ -148,7 +148,7 @@ def ask_later(
     verb: str,
     message: Any,
     kind: Any,
-    answer: Callable[[Callable[[], Any]], None],
+    answer: Callable[[Callable[[], Encoded]], None],
     *,
     timeout_s: float = TIMEOUT_S,
 ) -> None:
@@ -156,39 +156,6 @@ def ask_later(
 
     It is called once, on the thread with which Zenoh receives everything, so it should only queue.
     """
-    _ask_later(session, prefix, verb, message, kind, lambda read: answer(lambda: read().decode()), timeout_s)
-
-
-def relay(
-    session: zenoh.Session,
-    prefix: str,
-    verb: str,
-    message: Any,
-    kind: Any,
-    request: Request,
-    *,
-    timeout_s: float = TIMEOUT_S,
-) -> None:
-    """Answer `request` with what `prefix/verb` answers to `message`, as it comes and without waiting."""
-
-    def answer(read: Callable[[], Encoded]) -> None:
-        try:
-            request.reply(read())
-        except errors.SemmapError as error:
-            request.refuse(error)
-
-    _ask_later(session, prefix, verb, message, kind, answer, timeout_s)
-
-
-def _ask_later(
-    session: zenoh.Session,
-    prefix: str,
-    verb: str,
-    message: Any,
-    kind: Any,
-    answer: Callable[[Callable[[], Encoded]], None],
-    timeout_s: float,
-) -> None:
     key = f"{prefix}/{verb}"
     waiting = [answer]
 
@@ -223,12 +190,16 @@ def _nobody(key: str) -> NoReturn:
 
 @dataclass(frozen=True)
 class Request:
-    """A request as it came: from a query, or from a put that is answered on `semmap/ack`."""
+    """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
+
+    `plain`: the reply may be a message that is `Encoded` already.
+    """
 
     verb: str
     payload: bytes
     parameters: dict[str, str] = field(default_factory=dict)
     send: Callable[[Any, bool], None] = field(default=lambda message, ok: None)
+    plain: bool = False
 
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
@@ -240,7 +211,7 @@ class Request:
         return codec.from_text(parameters, kind)
 
     def reply(self, message: Any) -> None:
-        """Answer it, with a message or one that is `Encoded` already."""
+        """Answer it."""
         self.send(message, True)
 
     def refuse(self, error: errors.SemmapError) -> None:
@@ -258,8 +229,6 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
     def send(message: Any, ok: bool) -> None:
         content: Any
         encoding: Any
-        if as_json and isinstance(message, Encoded):
-            message = message.decode()
         if isinstance(message, Encoded):
             content, encoding = message.payload, message.encoding
         elif as_json and isinstance(message, Document):
@@ -274,7 +243,7 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
             else:
                 query.reply_err(content, encoding=encoding)
 
-    return Request(verb, payload, parameters, send)
+    return Request(verb, payload, parameters, send, plain=not as_json)
 
 
 def serve(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
@@ -293,7 +262,6 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
-            message = message.decode() if isinstance(message, Encoded) else message
             body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
             acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
 

@@ -43,6 +43,7 @@ class Relay(NamedTuple):
 
 HEARTBEAT_S = 1.0
 _AGAIN_S = 0.05
+_SHORT_BYTES = 1 << 14
 
 
 class Node:
@@ -116,12 +117,12 @@ class Node:
         def send() -> None:
             bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
 
-        def answer(read: Callable[[], Any]) -> None:
+        def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
 
-        def take(read: Callable[[], Any]) -> None:
+        def take(read: Callable[[], bus.Encoded]) -> None:
             try:
-                future.set_result(read())
+                future.set_result(read().decode())
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)
@@ -224,9 +225,31 @@ class Node:
 
     def _answer(self, request: bus.Request, result: Any) -> None:
         if isinstance(result, Relay):
-            bus.relay(self.session, *result[:-1], request, timeout_s=result.timeout_s)
+            self._relay(request, *result)
         else:
             request.reply(result)
+
+    def _relay(
+        self, request: bus.Request, prefix: str, verb: str, message: Any, kind: Any, timeout_s: float
+    ) -> None:
+        """A short reply goes on from Zenoh's thread; to send a long one may block, to decode it may last."""
+        if not request.plain:
+            future = self.ask_later(prefix, verb, message, kind, timeout_s=timeout_s)
+            future.add_done_callback(lambda done: self._answer_later(request, done))
+            return
+
+        def answer(read: Callable[[], bus.Encoded]) -> None:
+            try:
+                reply = read()
+            except errors.SemmapError as error:
+                request.refuse(error)
+                return
+            if len(reply.payload) <= _SHORT_BYTES:
+                request.reply(reply)
+            else:
+                self._events.put(lambda: request.reply(reply))
+
+        bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
 
     def _answer_later(self, request: bus.Request, future: Future[Any]) -> None:
         error = future.exception()

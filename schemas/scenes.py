@@ -97,6 +97,31 @@ class SceneQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Every body as it stands."""
 
 
+class SurfaceQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What these bodies look like."""
+
+    names: tuple[str, ...]
+
+
+class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A body's surface in triangles, for those who draw it: arrays as raw little-endian bytes, row by row.
+
+    `points` (N, 3) float32 [m] in the body's frame, whose origin is the bottom centre; outward `normals`
+    (N, 3) float32; `colours` (N, 3) uint8, red, green, blue; `triangles` (M, 3) uint32, rows of the points.
+    """
+
+    points: bytes
+    normals: bytes
+    colours: bytes
+    triangles: bytes
+
+
+class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Those of the bodies that are there and were made from a model; the world's own are not."""
+
+    surfaces: dict[str, Surface]
+
+
 class PictureQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
 

@@ -35,13 +35,13 @@ WORLD = f"""<mujoco>
 </worldbody></mujoco>"""
 
 
-@pytest.mark.parametrize("graphics", [True, False])
+@pytest.mark.parametrize("graphics", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, monkeypatch, graphics):
     if not graphics:  # the cameras cast rays
         monkeypatch.setenv("MUJOCO_GL", "disabled")
     world = tmp_path / "world.xml"
     world.write_text(WORLD)
-    words = ("--abox", "none", "--world", world, "--truth", "perceived", "--perception")
+    words = ("--world", world, "--truth", "perceived", "--perception")  # and an empty map
     with running(tmp_path, *words) as system, system.client() as client:
         looks: list[Observations] = []
         bus.follow(client.session, keys.OBSERVATIONS, lambda _, seen: looks.append(seen))

@@ -8,11 +8,11 @@ import os
 import platform
 from pathlib import Path
 
-from benchmarks.perception import simulated, unknown
+from benchmarks.perception import live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
 from nodes.perception_node.recognition.learnt import shipped
 
-PARTS = ("simulated", "unknown")
+PARTS = ("recorded", "simulated", "unknown", "tracking", "live")
 
 
 def arguments() -> argparse.Namespace:
@@ -20,8 +20,13 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.perception")
     parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
     parser.add_argument("--scenes", type=int, default=50, help="simulated rooms of each sort")
+    parser.add_argument(
+        "--recorded", type=Path, default=recorded.data_folder(), help="real scenes with labels"
+    )
+    parser.add_argument("--piles", type=int, default=300, help="rendered scenes to learn segmentation from")
     parser.add_argument("--samples", type=Path, help="from python -m nodes.training.recognition --samples")
     parser.add_argument("--training-scenes", type=int, default=400, help="where there are no samples")
+    parser.add_argument("--moves", type=int, default=100, help="of things that keep their names")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     return parser.parse_args()
 
@@ -31,10 +36,16 @@ def main() -> None:
     words = arguments()
     parts, rows = set(words.parts.split(",")), list[Row]()
     before = os.getloadavg()[0]
+    if "recorded" in parts:
+        rows += recorded.measure(words.recorded, words.piles)
     if "simulated" in parts:
         rows += simulated.measure(words.scenes, shipped())
     if "unknown" in parts:
         rows += unknown.measure(words.scenes, words.samples, words.training_scenes)
+    if "tracking" in parts:
+        rows += tracking.measure(words.moves, shipped())
+    if "live" in parts:
+        rows += live.measure()
     print(lines(rows))
     print(f"load average: {before:.1f} before, {os.getloadavg()[0]:.1f} now")
     if words.json_file:

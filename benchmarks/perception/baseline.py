@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from msgspec import structs
@@ -39,19 +39,13 @@ def _dbscan(sight: Sight) -> Sight:
     return labelled(sight, labels, frozenset())
 
 
-def guessing(
-    perceive: Callable[[Sequence[Cloud]], Look], learnt: Learnt
-) -> Callable[[Sequence[Cloud]], Look]:
+def guessed(looks: Sequence[Look], learnt: Learnt) -> Iterator[Look]:
     """The same observations, but each of a leaf drawn by lot."""
     rng = np.random.default_rng(0)
     leaves: NDArray[np.str_] = np.array([name for name in learnt.classes if name not in (UNKNOWN, CLUTTER)])
-
-    def guess(clouds: Sequence[Cloud]) -> Look:
-        look = perceive(clouds)
+    for look in looks:
         drawn = tuple(
             structs.replace(observation, class_=str(rng.choice(leaves)))
             for observation in look.observations.observations
         )
-        return Look(structs.replace(look.observations, observations=drawn), look.labels)
-
-    return guess
+        yield Look(structs.replace(look.observations, observations=drawn), look.labels)

@@ -51,7 +51,7 @@ class Counts(NamedTuple):
 
     def plus(self, other: Counts) -> Counts:
         """Both together."""
-        return Counts(*(mine + theirs for mine, theirs in zip(self, other, strict=True)))
+        return Counts(self.objects + other.objects, self.found + other.found, self.matched + other.matched)
 
 
 def data_folder() -> Path:
@@ -93,6 +93,9 @@ def by_group(scenes: Iterable[Scene], segments: Callable[[Scene], Labels]) -> di
 def measure(folder: Path, piles: int) -> list[Row]:
     """By cross-validation, with groups left out, learnt from renderings alone; baselines, and the time."""
     scenes = list(read_scenes(folder))
+    if not scenes:
+        print(f"no recorded scenes in {folder}: set SEMMAP_DATA, or give --recorded")
+        return []
     rng = np.random.default_rng(1)
     heard = lessons(made_up(piles, rng), scenes, rng)
     names = [scene.name for scene in scenes]

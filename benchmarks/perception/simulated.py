@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from benchmarks.perception.baseline import clustered, guessing
+from benchmarks.perception.baseline import clustered, guessed
 from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.table import Row
 from nodes.perception_node.cloud import Cloud
@@ -45,7 +45,6 @@ class Score:
     exact: int = 0
     position_m: list[float] = field(default_factory=list)
     size_m: list[float] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
     wrong: list[tuple[str, str]] = field(default_factory=list)
 
     def f1(self, hits: int) -> float:
@@ -78,22 +77,36 @@ def shots(rooms: Iterable[Room], seed: int) -> Iterable[tuple[Room, Shot]]:
         yield room, stage.shoot(bodies, room.views, rng)
 
 
-def judge_rooms(
+@dataclass(frozen=True)
+class Looks:
+    """What was perceived of each room, and how long it took [s]."""
+
+    looks: list[Look]
+    seconds: list[float]
+
+
+def looked(photographed: Iterable[tuple[Room, Shot]], perceive: Perceive, *, cameras: int = 2) -> Looks:
+    """Perceive every room with so many of its cameras."""
+    looks, seconds = [], []
+    for _, shot in photographed:
+        started = time.perf_counter()
+        looks.append(perceive(shot.clouds[:cameras]))
+        seconds.append(time.perf_counter() - started)
+    return Looks(looks, seconds)
+
+
+def score(
     photographed: Iterable[tuple[Room, Shot]],
-    perceive: Perceive,
+    looks: Iterable[Look],
     judge: Judge,
     *,
-    cameras: int = 2,
     of: Collection[str] = tuple(MODELS),
 ) -> Score:
-    """Perceive every room with so many of its cameras; only things of some models are asked for."""
-    score = Score()
-    for room, shot in photographed:
-        started = time.perf_counter()
-        perceived = perceive(shot.clouds[:cameras])
-        score.seconds.append(time.perf_counter() - started)
-        _count(score, room, shot, perceived, judge, of)
-    return score
+    """Compare with the truth; only things of some models are asked for."""
+    total = Score()
+    for (room, shot), seen in zip(photographed, looks, strict=True):
+        _count(total, room, shot, seen, judge, of)
+    return total
 
 
 def _count(score: Score, room: Room, shot: Shot, look: Look, judge: Judge, of: Collection[str]) -> None:
@@ -148,11 +161,6 @@ def size_error_m(observation: Observation, truth: Size) -> float:
     return float(np.abs(np.subtract(said, true)).mean())
 
 
-def milliseconds(score: Score) -> float:
-    """Median time of a look."""
-    return 1e3 * median(score.seconds)
-
-
 def measure(scenes: int, learnt: Learnt) -> list[Row]:
     """All figures of so many easy and as many crowded rooms."""
     judge = Judge(class_of_models(MODELS), learnt.ancestors)
@@ -160,9 +168,10 @@ def measure(scenes: int, learnt: Learnt) -> list[Row]:
     rows: list[Row] = []
     for crowded, name, reach, aim in ((False, "easy", 0.98, 0.99), (True, "crowded, touching", 0.93, 0.95)):
         seen = list(shots(rooms(scenes, _SEEDS[crowded], crowded=crowded), seed=1))
-        two, one = judge_rooms(seen, ours, judge), judge_rooms(seen, ours, judge, cameras=1)
-        chance = judge_rooms(seen, guessing(ours, learnt), judge)
-        plain = judge_rooms(seen, partial(clustered, learnt=learnt), judge)
+        both, alone = looked(seen, ours), looked(seen, ours, cameras=1)
+        two, one = score(seen, both.looks, judge), score(seen, alone.looks, judge)
+        chance = score(seen, guessed(both.looks, learnt), judge)
+        plain = score(seen, looked(seen, partial(clustered, learnt=learnt)).looks, judge)
         rows += [
             Row(f"{name}: detection F1", two.f1(two.found), "", reach, aim),
             Row(f"{name}: class F1 (right or an ancestor below Object)", two.f1(two.right), "", reach, aim),
@@ -179,7 +188,14 @@ def measure(scenes: int, learnt: Learnt) -> list[Row]:
                 Row("position, small things, median, 2 cameras", _mm(two.position_m), "mm", 3, 2, less=True),
                 Row("size, small things, median, 1 camera", _mm(one.size_m), "mm"),
                 Row("size, small things, median, 2 cameras", _mm(two.size_m), "mm", 12, 8, less=True),
-                Row("one 640x480 frame, whole pipeline, median", milliseconds(one), "ms", 120, 66, less=True),
+                Row(
+                    "one 640x480 frame, whole pipeline, median",
+                    1e3 * median(alone.seconds),
+                    "ms",
+                    120,
+                    66,
+                    less=True,
+                ),
             ]
     return rows
 

@@ -16,11 +16,12 @@ import numpy as np
 from msgspec import structs
 
 from benchmarks.perception.rooms import THIN_M, THINGS
+from benchmarks.perception.table import Row
 from nodes.perception_node.association import associate
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.kinship import Kinship
-from nodes.perception_node.pipeline import Look
+from nodes.perception_node.pipeline import Learnt, Look, look
 from nodes.perception_node.tracks import Tracks
 from nodes.perception_node.visibility import looking
 from nodes.sim_node.models.table import MODELS
@@ -45,6 +46,19 @@ class Kept(NamedTuple):
     held: int
     entities: int
     """How many the map had in the end."""
+
+
+def measure(moves: int, learnt: Learnt) -> list[Row]:
+    """The rows of the table."""
+    kinship = Kinship(
+        {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
+    )
+    kept = identity(lambda clouds: look(clouds, learnt), kinship, moves=moves)
+    what = f"identity kept over {moves} moves, 20 objects"
+    return [
+        Row(what, kept.kept / kept.moves, reach=0.95, aim=0.99),
+        Row(f"{what}: of those still seen", kept.kept / max(1, kept.held)),
+    ]
 
 
 class ObedientMap:
@@ -116,7 +130,7 @@ def identity(
         for side in (-1.0, 1.0)
     ]
 
-    def look(count: int) -> None:
+    def see(count: int) -> None:
         nonlocal tracks
         bodies = stage.show([table, *items])
         for _ in range(count):
@@ -130,7 +144,7 @@ def identity(
     def name_of(item: Item) -> str | None:
         return semantic_map.at(*item.position_m[:2])
 
-    look(2 * _LOOKS)
+    see(2 * _LOOKS)
     kept = held = 0
     for _ in range(moves):
         which = int(rng.integers(len(items)))
@@ -139,7 +153,7 @@ def identity(
         items[which] = replace(
             items[which], position_m=_spot(cell, rng), yaw_rad=float(rng.uniform(-3.1, 3.1))
         )
-        look(_LOOKS)
+        see(_LOOKS)
         after = name_of(items[which])
         kept += before is not None and after == before
         held += after is not None

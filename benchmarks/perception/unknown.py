@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.perception.rooms import THINGS, rooms
-from benchmarks.perception.simulated import Judge, judge_rooms, shots
+from benchmarks.perception.simulated import Judge, looked, score, shots
 from benchmarks.perception.table import Row
 from nodes.perception_node.pipeline import look
 from nodes.perception_node.recognition.learnt import UNKNOWN
@@ -30,16 +30,16 @@ def measure(scenes: int, samples: Path | None, training_scenes: int) -> list[Row
         without=[class_of[kind] for kind in kinds],
     )
     judge = Judge(class_of, learnt.ancestors)
-    seen = shots(rooms(scenes, _SEED, crowded=False, things=kinds), seed=2)
-    score = judge_rooms(seen, partial(look, learnt=learnt), judge, of=kinds)
-    unnamed = sum(said == UNKNOWN for _, said in score.wrong)
+    seen = list(shots(rooms(scenes, _SEED, crowded=False, things=kinds), seed=2))
+    total = score(seen, looked(seen, partial(look, learnt=learnt)).looks, judge, of=kinds)
+    unnamed = sum(said == UNKNOWN for _, said in total.wrong)
     return [
         Row(
             "ten classes left out: Object or a true ancestor",
-            (score.right + unnamed) / score.found,
+            (total.right + unnamed) / total.found,
             "",
             0.8,
             0.9,
         ),
-        Row("ten classes left out: called Object", unnamed / score.found),
+        Row("ten classes left out: called Object", unnamed / total.found),
     ]

@@ -27,8 +27,12 @@ def free_position(entities: Iterable[Entity], size_m: Size | None) -> Vector:
     footprints = np.array([_footprint(e) for e in entities if e.pose is not None and _is_in_the_way(e)])
     width, depth, _ = size_m or _USUAL_SIZE
     reach_m = math.hypot(width, depth) / 2.0 + _GAP_M
-    for ring in _rings(max(_STEP_M, reach_m / _STEPS_A_REACH)):
-        free = _distances_m(ring, footprints.reshape(-1, 6)).min(axis=1, initial=np.inf) > reach_m
+    footprints = footprints.reshape(-1, 6)
+    from_middle_m = np.hypot(*(footprints[:, :2] - DEFAULT_POSITION[:2]).T)
+    extent_m = np.hypot(footprints[:, 2], footprints[:, 3]) + reach_m
+    for radius_m, ring in _rings(max(_STEP_M, reach_m / _STEPS_A_REACH)):
+        near = footprints[np.abs(from_middle_m - radius_m) <= extent_m]
+        free = _distances_m(ring, near).min(axis=1, initial=np.inf) > reach_m
         if free.any():
             x, y = ring[free.argmax()].round(3)
             return (float(x), float(y), DEFAULT_POSITION[2])
@@ -56,10 +60,9 @@ def _distances_m(points: Floats, footprints: Floats) -> Floats:
     return np.asarray(np.hypot(np.maximum(0.0, along), np.maximum(0.0, across)))
 
 
-def _rings(step_m: float) -> Iterator[Floats]:
-    """Points (N, 2) around the default position, ring by ring, `step_m` apart."""
+def _rings(step_m: float) -> Iterator[tuple[float, Floats]]:
+    """Radius and points (N, 2) of rings around the default position, `step_m` apart; the first is a point."""
     middle = np.array(DEFAULT_POSITION[:2])
-    yield middle[None]
-    for ring in itertools.count(1):
-        angles = 2.0 * np.pi * np.arange(8 * ring) / (8 * ring)
-        yield middle + ring * step_m * np.column_stack([np.cos(angles), np.sin(angles)])
+    for ring in itertools.count():
+        angles = np.linspace(0.0, 2.0 * np.pi, max(1, 8 * ring), endpoint=False)
+        yield ring * step_m, middle + ring * step_m * np.column_stack([np.cos(angles), np.sin(angles)])

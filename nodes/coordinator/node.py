@@ -170,10 +170,10 @@ class Coordinator:
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
-    def _change_together(self, changes: Sequence[c.Add | c.Update], rest: bool) -> Future[Results]:
-        """Without anything else to do it is waited for: to be woken by another thread takes longer."""
+    def _change_together(self, changes: Sequence[c.Add | c.Update]) -> Future[Results]:
+        """A change that comes alone is waited for: to be woken by another thread takes longer."""
         talk = self._door.together(changes)
-        if rest:
+        if len(changes) > 1:
             return hold_later(talk, self._bridge.change_later)
         future: Future[Results] = Future()
         settle(future, lambda: hold(talk, self._bridge.ask))

@@ -43,8 +43,8 @@ class _Group(NamedTuple):
 class Turns:
     """Owned by the coordinator's thread, which calls `go_on` when it has nothing else to do."""
 
-    def __init__(self, together: Callable[[Sequence[Change], bool], Future[Results]]) -> None:
-        """`together(changes, rest)` makes changes of different entities; `rest`: others wait meanwhile."""
+    def __init__(self, together: Callable[[Sequence[Change]], Future[Results]]) -> None:
+        """`together(changes)` makes changes of different entities."""
         self._together = together
         self._waiting: deque[_Waiting] = deque()
         self._under_way: list[_Group] = []
@@ -107,8 +107,7 @@ class Turns:
             for i, (_, _, future) in enumerate(members):
                 settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
 
-        rest = bool(self._waiting) or len(self._under_way) > 1
-        self._together(changes, rest).add_done_callback(on_done)
+        self._together(changes).add_done_callback(on_done)
 
 
 def _is_alone(change: Change) -> bool:

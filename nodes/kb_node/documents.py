@@ -36,7 +36,8 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
-    if declared and not any(o in classes.spatial for _, o in types):
+    spatial = _with_subclasses(classes.spatial, triples)
+    if declared and not any(o in spatial for _, o in types):
         raise errors.BadFile("it declares classes and has no entity; a TBox is loaded with --tbox")
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
@@ -49,6 +50,14 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
     kept = _without(gone, [t for t in triples if t not in doubtful])
     return SortedOut(kept, words, _unknown_properties(kept, classes))
+
+
+def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
+    """Classes, and those which the triples put below them."""
+    found, above = set(roots), [(s, o) for s, p, o in triples if p == v.RDFS_SUB_CLASS_OF]
+    while below := {s for s, o in above if o in found and s not in found}:
+        found |= below
+    return found
 
 
 def _with_float(triple: Triple) -> Triple:

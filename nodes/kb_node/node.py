@@ -67,6 +67,7 @@ class KnowledgeBase:
         self._node = node
         self._journal = journal
         self._past = past.Past(journal)
+        self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
         self._commits = bus.publisher(node.session, keys.COMMIT)
         self._entities_are_watched = bus.watched(node.session, keys.ENTITY)
@@ -267,7 +268,9 @@ class KnowledgeBase:
             self.map.checkpoint()
 
     def _checkpoint(self) -> None:
-        if self.map.checkpoint_is_due:
+        """In a quiet moment, if there is one: nobody is answered meanwhile."""
+        quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
+        if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
 
     def _publish(self, commit: Commit) -> None:

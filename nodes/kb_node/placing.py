@@ -27,14 +27,12 @@ def place(
     said = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(said):
         raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
+    pose = _pose(entity, placed)
     edges = [t for t in said if t[1] == v.HAS_POSITION]
-    nodes = sorted(o for _, _, o in edges)
-    if nodes and all(owners(reasoner, node) == {iri, node} for node in nodes):
-        node = nodes[0]
-        gone = [t for t in reasoner.asserted(node) if t[1] in _COORDINATES]
-    else:
-        node, gone = _free_node(reasoner, entity.name), []
-    return edges + gone, stars.position(iri, node, _pose(entity, placed))
+    if len(edges) == 1 and owners(reasoner, node := edges[0][2]) == {iri, node}:
+        before = [t for t in reasoner.asserted(node) if t[1] in _COORDINATES]
+        return before, [t for t in stars.position(iri, node, pose) if t[1] in _COORDINATES]
+    return edges, stars.position(iri, _free_node(reasoner, entity.name), pose)
 
 
 def _pose(entity: Entity, placed: Placed) -> Pose:

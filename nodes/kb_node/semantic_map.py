@@ -21,6 +21,7 @@ from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
+CHECKPOINT_AT_LATEST = 20_000
 _FEW = 64
 
 
@@ -196,10 +197,9 @@ class SemanticMap:
             self._replaced = None
         return results
 
-    @property
-    def checkpoint_is_due(self) -> bool:
-        """Would the next start have much to replay?"""
-        return self.seq - self._checkpointed >= CHECKPOINT_EVERY
+    def checkpoint_is_due(self, *, quiet: bool) -> bool:
+        """Would the next start have much to replay? Unless it is `quiet`, very much?"""
+        return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.

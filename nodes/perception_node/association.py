@@ -18,7 +18,7 @@ from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.kinship import ANYTHING, Kinship
 from nodes.perception_node.likeness import Target
 from nodes.perception_node.matching import Candidate, Matching, match
-from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.overlap import Place, are_of_one, share
 from nodes.perception_node.telling import has_moved, is_sure, news, proposals
 from nodes.perception_node.tracks import Track, Tracks, slack_m
 from nodes.perception_node.visibility import Looks
@@ -80,9 +80,9 @@ def associate(
 def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: TrackingConfig) -> Candidate:
     """An entity; if somebody else has told the map another pose of it since, that counts."""
     assert entity.pose is not None
-    said_m = entity.size_m or kinship.usual_m.get(entity.class_)
+    usual_m = kinship.usual_m.get(entity.class_)
     if track is None:
-        track = Track(entity.pose, said_m or _ANY_SIZE_M, told=entity.pose)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, told=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0)
@@ -92,9 +92,10 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     return Candidate(
         track,
         target._replace(
-            size_m=track.size_m if track.looks else said_m,
+            size_m=track.size_m if track.looks else entity.size_m,
             class_=entity.class_ if target.class_ == ANYTHING else target.class_,
             whole=track.whole or not own,
+            usual_m=usual_m,
         ),
     )
 
@@ -113,10 +114,11 @@ def _after(
 
 
 def _watched(track: Track, entity: Entity, looks: Looks, config: TrackingConfig) -> Track:
-    """With a look at the place that the map has of it: is that left?"""
+    """With a look at the place that the map has of it: is that left, or does it only seem so?"""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
         return replace(track, left=False)
-    return replace(track, left=track.left or looks(entity.pose, track.size_m) == "open")
+    before, now = Place(entity.pose, track.size_m), Place(track.pose, track.size_m)
+    return replace(track, left=track.left or share(now, before) == 0.0 or looks(*before) == "open")
 
 
 def _tentative(

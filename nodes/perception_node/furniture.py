@@ -9,19 +9,23 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Floats
 from nodes.perception_node.segmentation import Segmentation
+from nodes.perception_node.segments import Segment
 
 _ROOM_M = 2.2
 """A wall is higher or wider, as far as it is seen."""
 
 _NEAR_M = 0.03
-_HANGING_M = 0.1
+_OVER_M = 0.06
+_HANGING = 0.6
+"""What reaches to less of a top's height stands under it."""
+
 _EVERY = 4
 
 
 def with_furniture(
     segmentation: Segmentation, points_map: Floats
 ) -> tuple[NDArray[np.int32], frozenset[int]]:
-    """Labels (H, W) in which such planes are things too, with what hangs below them; and their numbers.
+    """Labels (H, W) in which such planes are things too, and the numbers of these.
 
     `points_map`: (H, W, 3) [m].
     """
@@ -31,21 +35,30 @@ def with_furniture(
         for number, plane in enumerate(segmentation.planes, 1)
         if plane.kind == "support" or (plane.kind == "wall" and _stands_free(points_map, planes == number))
     ]
-    if not sides:
-        return labels, frozenset()
     boxes = [_box(points_map[::_EVERY, ::_EVERY][planes[::_EVERY, ::_EVERY] == number]) for number in sides]
     first = int(labels.max(initial=0)) + 1
     body = [first + n for n in _touching(boxes)]
     for number, own in zip(sides, body, strict=True):
         labels[planes == number] = own
-    for label, box in _boxes_of(segmentation.labels, points_map):
-        for own, (low, high) in zip(body, boxes, strict=True):
-            reaches = high[2] - _HANGING_M < box[1][2] < high[2] + 0.5 * _NEAR_M
-            middle = (box[0] + box[1])[:2] / 2
-            if reaches and (middle > low[:2] - _NEAR_M).all() and (middle < high[:2] + _NEAR_M).all():
-                labels[segmentation.labels == label] = own
-                break
     return labels, frozenset(body)
+
+
+def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
+    """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
+    boxes = [_box(np.concatenate([segment.points for segment in group])) for group in groups]
+    tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
+    joined = {n: [n] for n in range(len(groups))}
+    for n, (lowest, highest) in enumerate(boxes):
+        if n in tops:
+            continue
+        middle = (lowest + highest)[:2] / 2
+        for top in tops:
+            low, high = boxes[top]
+            below = _HANGING * high[2] < highest[2] < high[2] + 0.5 * _NEAR_M
+            if below and (middle > low[:2] - _OVER_M).all() and (middle < high[:2] + _OVER_M).all():
+                joined[top] += joined.pop(n)
+                break
+    return list(joined.values())
 
 
 Corners = tuple[NDArray[np.float32], NDArray[np.float32]]
@@ -57,12 +70,6 @@ def _box(points: Floats) -> Corners:
         return np.full(3, np.inf, np.float32), np.full(3, -np.inf, np.float32)
     low, high = np.quantile(points, [0.01, 0.99], axis=0).astype(np.float32)
     return low, high
-
-
-def _boxes_of(labels: NDArray[np.int32], points_map: Floats) -> list[tuple[int, Corners]]:
-    thin = labels[::_EVERY, ::_EVERY]
-    used = np.unique(thin[thin > 0])
-    return [(int(label), _box(points_map[::_EVERY, ::_EVERY][thin == label])) for label in used]
 
 
 def _stands_free(points_map: Floats, mask: NDArray[np.bool_]) -> bool:

@@ -23,18 +23,20 @@ _HIDDEN_PART = 0.3
 class Target(NamedTuple):
     """A thing that may be seen: where it was last, how big it is if that is known, and its class.
 
-    `whole`: its size was not only seen in part.
+    `whole`: its size was not only seen in part. `usual_m`: what its class measures, for want of its own size.
     """
 
     pose: Pose
     size_m: Size | None
     class_: str
     whole: bool = True
+    usual_m: Size | None = None
 
     @property
     def place(self) -> Place | None:
-        """The box that it fills, if its size is known."""
-        return None if self.size_m is None else Place(self.pose, self.size_m)
+        """The box that it fills, as far as one can tell."""
+        size_m = self.size_m or self.usual_m
+        return None if size_m is None else Place(self.pose, size_m)
 
 
 def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
@@ -52,12 +54,13 @@ def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
 
 def cost_elsewhere(target: Target, seen: Observation, kinship: Kinship) -> float:
     """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind."""
-    if target.size_m is None or not kinship.related(target.class_, seen.class_):
+    place = target.place
+    if place is None or not kinship.related(target.class_, seen.class_):
         return FORBIDDEN
-    unlike = size_unlike(target, seen)
+    unlike = size_unlike(target._replace(size_m=place.size_m), seen)
     if unlike > (_OF_ANY_KIND if ANYTHING in (seen.class_, target.class_) else _OF_A_KIND):
         return FORBIDDEN
-    aside, above = _apart(target.pose, target.size_m, seen)
+    aside, above = _apart(place.pose, place.size_m, seen)
     return unlike + class_unlike(target.class_, seen, kinship) + 0.1 * math.hypot(aside, above)
 
 

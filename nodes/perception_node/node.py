@@ -6,9 +6,7 @@ owns the tracks, compares what was seen with the map, and tells the map.
 
 from __future__ import annotations
 
-import logging
 import math
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
@@ -22,7 +20,7 @@ from nodes.loop import Node, open_node
 from nodes.perception_node.association import associate
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
+from nodes.perception_node.eye import Eye
 from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.map_view import MapView, kinship_of
 from nodes.perception_node.pipeline import Look, look, shipped
@@ -30,16 +28,13 @@ from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
 from nodes.perception_node.tracks import Tracks
 from nodes.perception_node.visibility import looking
-from schemas import codec, errors, keys
+from schemas import codec, keys
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Changed, Classes, Command
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Size
 from schemas.health import Health
 
-log = logging.getLogger(__name__)
-
-_TAKE_S = 0.5
 _COMPLAINT_S = 60.0
 """What is wrong is over when it was not heard of for so long."""
 _NO_FRAMES_S = 5.0
@@ -62,7 +57,6 @@ class Perception:
         """`look(clouds)` tells what clouds of one moment show, `usual_m` what things of a class measure."""
         self._node = node
         self._config = config
-        self._see = look
         self._usual_m = usual_m
         self._map = MapView()
         self._kinship = Kinship()
@@ -73,8 +67,6 @@ class Perception:
         self._told_commit = 0
         self._refused: dict[str, float] = {}
         self._complaints: dict[str, float] = {}
-        self._frames = Frames()
-        self._stopping = threading.Event()
         self._observations = bus.publisher(node.session, keys.OBSERVATIONS)
         self._cloud_due = 0.0
         self._looked_at = time.monotonic()
@@ -83,52 +75,17 @@ class Perception:
         node.follow(keys.COMMIT, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
+        self._eye = Eye(look, self._hand_over, self._complain)
         for plane in ("rgb", "depth"):
-            bus.follow_cameras(node.session, plane, self._keep, self._complain)
-        self._eye = threading.Thread(target=self._watch, name="eye", daemon=True)
-        self._eye.start()
+            bus.follow_cameras(node.session, plane, self._eye.keep, self._complain)
 
     def close(self) -> None:
         """Let the look in hand be finished, and no other be begun."""
-        self._stopping.set()
-        self._eye.join()
+        self._eye.close()
 
-    # Frames, on other threads
+    # On the eye's and on Zenoh's threads
 
-    def _keep(self, frame: Any, read: Any) -> None:
-        try:
-            self._frames.put(frame, read)
-        except errors.BadRequest as error:
-            self._complain(error.text)
-
-    def _watch(self) -> None:
-        while not self._stopping.is_set():
-            pairs = self._frames.take(_TAKE_S)
-            try:
-                clouds = [cloud for pair in pairs if (cloud := self._read(pair)) is not None]
-                if clouds:
-                    self._look(clouds)
-            except Exception as error:
-                log.exception("fault in a look")
-                self._complain(f"a look failed: {type(error).__name__}: {error}")
-
-    def _read(self, pair: Pair) -> Cloud | None:
-        frame = pair.depth.frame
-        try:
-            cloud = read_cloud(pair)
-        except errors.BadRequest as error:
-            self._complain(error.text)
-            return None
-        step = thinning(frame)
-        if step > 1:
-            size = f"{frame.width} x {frame.height} pixels"
-            self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
-        return cloud
-
-    def _look(self, clouds: Sequence[Cloud]) -> None:
-        start = time.perf_counter()
-        found = self._see(clouds)
-        took_s = time.perf_counter() - start
+    def _hand_over(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._node.soon(lambda: self._on_look(clouds, found, took_s))
 
     def _complain(self, text: str) -> None:

@@ -9,14 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.fusion import fuse
+from nodes.perception_node.furniture import with_what_hangs_below
+from nodes.perception_node.fusion import Member, fuse
+from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.learnt import Learnt, shipped
+from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.recognise import recognise
+from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.sights import Sight, see
 from nodes.perception_node.things import Thing, thing_of
-from schemas.perception import CameraView, Observations
+from schemas.perception import CameraView, Observation, Observations
 
-__all__ = ["Learnt", "Look", "look", "look_at", "observe", "shipped", "things_in"]
+__all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "shipped", "things_in"]
 
 
 @dataclass(frozen=True)
@@ -42,31 +46,60 @@ def look(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
 
 def look_at(sights: Sequence[Sight], learnt: Learnt) -> Look:
     """The same for clouds that were taken apart already."""
-    things, labels = things_in(sights)
-    found = recognise(things, learnt)
-    numbers = np.zeros(len(found) + 1, np.int32)
-    numbers[1:] = np.cumsum([observation is not None for observation in found])
-    numbers[1:][[observation is None for observation in found]] = 0
+    supports = _supports(sights)
+    groups = groups_in(sights)
+    parts, chances, members = put_together(
+        [_thing(sights, group, supports) for group in groups],
+        learnt,
+        lambda a, b: thing_of((*a.segments, *b.segments), supports),
+    )
+    found = recognise(parts, chances, learnt)
+    kept = [n for n, observation in enumerate(found) if observation is not None]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
         observations=tuple(observation for observation in found if observation is not None),
     )
-    return Look(observations, tuple(numbers[label] for label in labels))
+    return Look(observations, _labels(sights, [[m for g in members[n] for m in groups[g]] for n in kept]))
+
+
+def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
+    """What each label of one sight is taken for, by itself; None for clutter. Table tops are left out."""
+    segments = [segment for segment in sight.segments if not segment.carrier]
+    if not segments:
+        return {}
+    things = [thing_of([segment], sight.supports_m) for segment in segments]
+    found = recognise(things, leaves(learnt, features_of(things)), learnt)
+    return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
 
 def things_in(sights: Sequence[Sight]) -> tuple[list[Thing], tuple[NDArray[np.int32], ...]]:
     """What all sights together show, and for each (H, W) whose a pixel is, counted from 1, 0 for none."""
+    groups, supports = groups_in(sights), _supports(sights)
+    return [_thing(sights, group, supports) for group in groups], _labels(sights, groups)
+
+
+def groups_in(sights: Sequence[Sight]) -> list[list[Member]]:
+    """The segments of each thing."""
     groups = fuse(sights)
-    supports = [height for sight in sights for height in sight.supports_m]
+    bodies = with_what_hangs_below([[sights[v].segments[n] for v, n in group] for group in groups])
+    return [[member for number in body for member in groups[number]] for body in bodies]
+
+
+def _thing(sights: Sequence[Sight], group: Sequence[Member], supports_m: Sequence[float]) -> Thing:
+    return thing_of([sights[view].segments[n] for view, n in group], supports_m)
+
+
+def _supports(sights: Sequence[Sight]) -> list[float]:
+    return [height for sight in sights for height in sight.supports_m]
+
+
+def _labels(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> tuple[NDArray[np.int32], ...]:
     numbers = [np.zeros(int(sight.labels.max(initial=0)) + 1, np.int32) for sight in sights]
-    things = []
     for number, group in enumerate(groups, 1):
-        segments = [sights[view].segments[n] for view, n in group]
-        things.append(thing_of(segments, supports))
-        for (view, _), segment in zip(group, segments, strict=True):
-            numbers[view][segment.label] = number
-    return things, tuple(number[sight.labels] for number, sight in zip(numbers, sights, strict=True))
+        for view, n in group:
+            numbers[view][sights[view].segments[n].label] = number
+    return tuple(number[sight.labels] for number, sight in zip(numbers, sights, strict=True))
 
 
 def _view(sight: Sight) -> CameraView:

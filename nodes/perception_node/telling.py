@@ -82,19 +82,20 @@ def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig)
     if not changes:
         return None
     reason = f"{entity.name} has moved" if "at" in changes else f"a closer look at {entity.name}"
-    confidence = _confidence(track, class_name or entity.class_, kinship)
+    confidence = _confidence(track, class_name or track.votes.belief(kinship), kinship)
     return Update(
         source="perception", agent=AGENT, reason=reason, name=entity.name, confidence=confidence, **changes
     )
 
 
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
-    reason = f"{entity.name} is no longer where it was"
     if own and config.when_gone == "remove":
+        reason = f"{entity.name} is no longer where it was"
         return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
     conflict = DISPLACED if track.odd else MISSING
     if entity.conflict == conflict:
         return None
+    reason = f"{entity.name}: {conflict}"
     return Update(source="perception", agent=AGENT, reason=reason, name=entity.name, conflict=conflict)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from schemas.entities import Entity, Pose, Size, angle_rad, distance_m
-from schemas.scenes import Body
+from schemas.scenes import Body, Surface
 
 Look = Literal["solid", "ghost", "believed", "furniture", "place"]
 """`believed`: in the map, but the running simulator has no body for it. `furniture`: the world's own."""
@@ -18,12 +18,16 @@ STILL_RAD = 0.004
 
 @dataclass(frozen=True)
 class Figure:
-    """How something is drawn, apart from where. `size_m` is along its own axes, from the bottom up."""
+    """How something is drawn, apart from where. `size_m` is along its own axes, from the bottom up.
+
+    `surface` is what the body looks like, once the simulator has told.
+    """
 
     label: str
     class_: str
     size_m: Size
     look: Look
+    surface: Surface | None = None
 
     @property
     def group(self) -> str:
@@ -31,15 +35,20 @@ class Figure:
         return {"place": "places", "furniture": "furniture"}.get(self.look, "bodies")
 
 
-def figure_of(entity: Entity | None, body: Body | None, *, simulated: bool) -> Figure | None:
+def figure_of(
+    entity: Entity | None, body: Body | None, *, simulated: bool, surface: Surface | None = None
+) -> Figure | None:
     """The figure of what the map calls `entity` and the scene `body`; `simulated`: a simulator runs."""
+    if entity is None and body is None:
+        return None
     if entity is None:
-        return None if body is None else Figure(body.name, body.class_ or "", body.size_m, _look_of(body))
+        assert body is not None
+        return Figure(body.name, body.class_ or "", body.size_m, _look_of(body), surface)
     if entity.place:
         label = entity.preferred_reference or entity.name
         return Figure(label, entity.class_, entity.size_m or UNKNOWN_SIZE_M, "place")
     if body is not None:
-        return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid")
+        return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid", surface)
     look: Look = "believed" if simulated else "solid"
     return Figure(entity.name, entity.class_, entity.size_m or UNKNOWN_SIZE_M, look)
 

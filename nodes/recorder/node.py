@@ -14,16 +14,18 @@ from nodes.recorder.map_state import MapState, missed
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
+from nodes.recorder.surfaces import Kind
 from nodes.recorder.watching import Watching
 from schemas import keys
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
 from schemas.health import Health
-from schemas.scenes import Poses, Scene, SceneQuery
+from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 _SCENE_LOST_S = 10.0
 """A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
 _RECALLED_AT_ONCE = 20
+_SURFACES_AT_ONCE = 50
 
 
 class Recorder:
@@ -151,8 +153,26 @@ class Recorder:
                 self._scene.take(scene)
                 self._at(scene.stamp_ns)
                 self._show_all()
+                self._fetch_surfaces()
 
         self._node.ask_later(keys.SIM, "snapshot", SceneQuery(), Scene).add_done_callback(on_scene)
+
+    def _fetch_surfaces(self) -> None:
+        """Ask what the bodies look like, as far as that was never told."""
+        wanted = list(self._stage.surfaces.wanted(self._scene.bodies.values()).items())
+        for start in range(0, len(wanted), _SURFACES_AT_ONCE):
+            self._fetch_some_surfaces(dict(wanted[start : start + _SURFACES_AT_ONCE]))
+
+    def _fetch_some_surfaces(self, kinds: dict[str, Kind]) -> None:
+        def on_surfaces(future: Future[Surfaces]) -> None:
+            if future.exception() is None:
+                for name, surface in future.result().surfaces.items():
+                    self._stage.surfaces.take(kinds[name], surface)
+                self._at(time.time_ns())
+                self._show_all()
+
+        query = SurfaceQuery(names=tuple(kinds))
+        self._node.ask_later(keys.SIM, "surfaces", query, Surfaces).add_done_callback(on_surfaces)
 
     def _tick(self) -> None:
         if not self._has_map:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from nodes.recorder.figures import Figure, figure_of, pose_of, still
 from nodes.recorder.graph import Graph
 from nodes.recorder.recording import Recording
+from nodes.recorder.surfaces import SurfaceShelf
 from schemas.entities import Entity, Pose
 from schemas.scenes import Body
 
@@ -18,6 +19,7 @@ class Stage:
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
+        self.surfaces = SurfaceShelf()
         self._drawn: dict[str, Drawn] = {}
         self._graph = Graph({}, ())
 
@@ -33,7 +35,7 @@ class Stage:
         for name in names:
             entity, body = entities.get(name), bodies.get(name)
             pose = pose_of(entity, body)
-            figure = figure_of(entity, body, simulated=simulated)
+            figure = figure_of(entity, body, simulated=simulated, surface=self.surfaces.of(body))
             self._set(name, None if pose is None or figure is None else (figure, pose))
 
     def show_all(

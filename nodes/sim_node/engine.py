@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -26,9 +26,10 @@ class Engine:
     every change of the model.
     """
 
-    def __init__(self, ground: mujoco.MjSpec) -> None:
-        """A world of which nothing but the ground is there yet."""
+    def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles."""
         groundwork.prepare(ground)
+        self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
@@ -54,6 +55,10 @@ class Engine:
     def has(self, name: str) -> bool:
         """Whether there is a body of this name, or a part of one of the world's own."""
         return name in self.records or self._ground.body(name) is not None
+
+    def shape(self, name: str) -> Model | None:
+        """The model that a body was made from; None for the world's own, and for one that is not there."""
+        return self._shapes.get(name)
 
     # bodies come, go and change
 
@@ -101,7 +106,8 @@ class Engine:
         """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
         for name in poses:
             self._leave(name)
-        if all(self._moor(name, pose) for name, pose in poses.items()):
+        enough = len(poses) <= len(self._vacant)
+        if enough and all(self._moor(name, pose) for name, pose in poses.items()):
             self._renew()
         else:
             self._recompile(poses)
@@ -134,17 +140,11 @@ class Engine:
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
         self._compile(now)
+        self.data.time = data.time
         build.carry_joints(model, data, self.model, self.data, [joint.name for joint in self._ground.joints])
-        before = self._rows_in(index)
-        stays = np.append(index.qpos >= 0, False)[before] & (self.index.qpos >= 0)
-        stays &= ~np.isin(self.index.names, list(poses))
-        self.put(
-            {
-                name: now[name]
-                for name, row in self.index.row.items()
-                if not stays[row] and self.index.qpos[row] >= 0
-            }
-        )
+        before, names, free = self._rows_in(index), self.index.names, self.index.qpos >= 0
+        stays = free & np.append(index.qpos >= 0, False)[before] & ~np.isin(names, list(poses))
+        self.put({names[row]: now[names[row]] for row in np.flatnonzero(free & ~stays)})
         for field, width, address in (("qpos", 7, "qpos"), ("qvel", 6, "dof"), ("qacc_warmstart", 6, "dof")):
             to, of = getattr(self.index, address)[stays], getattr(index, address)[before[stays]]
             offsets = np.arange(width)
@@ -163,10 +163,8 @@ class Engine:
             if record.static and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
-        time = self.data.time if self.revision else 0.0
-        self.model = spec.compile()
+        self.model = build.compiled(spec, self._meanwhile)
         self.data = mujoco.MjData(self.model)
-        self.data.time = time
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]
         for berth in self._vacant:

@@ -27,6 +27,8 @@ from schemas.scenes import (
     SceneQuery,
     Spawn,
     Spawned,
+    SurfaceQuery,
+    Surfaces,
 )
 
 Reply = TypeVar("Reply")
@@ -48,7 +50,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = open_world(config.world, Models(config.models))
+        self._world = open_world(config.world, Models(config.models), node.beat)
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -65,6 +67,7 @@ class Simulator:
                 "step": (StepOnce, self._step),
                 "reset": (Reset, self._reset),
                 "picture": (PictureQuery, self._picture),
+                "surfaces": (SurfaceQuery, self._surfaces),
             },
         )
         self._window = Window(self._world) if config.window else None
@@ -110,6 +113,9 @@ class Simulator:
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
         return self._studio.paint(self._still(), self._view(query))
+
+    def _surfaces(self, query: SurfaceQuery) -> Surfaces:
+        return self._world.surfaces(query.names)
 
     def _still(self) -> Still:
         return Still(*self._world.snapshot())

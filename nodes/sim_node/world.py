@@ -14,13 +14,14 @@ import numpy as np
 from nodes.sim_node import build, groundwork
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from nodes.sim_node.engine import Engine
+from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.placing import place
 from nodes.sim_node.vision.view import bulk
 from schemas.entities import Pose
-from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned
+from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned, Surfaces
 
 REACH_M = 1000.0
 """No body is put farther than this from the origin."""
@@ -35,9 +36,19 @@ class World:
     Positions are bottom centres in the map frame, which is MuJoCo's world frame. One thread owns a World.
     """
 
-    def __init__(self, mjcf: Path | None = None, *, models: ModelSource = library_model) -> None:
-        """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile."""
-        self._engine = Engine(groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor())
+    def __init__(
+        self,
+        mjcf: Path | None = None,
+        *,
+        models: ModelSource = library_model,
+        meanwhile: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile.
+
+        `meanwhile` is called again and again while something takes its time.
+        """
+        ground = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
+        self._engine = Engine(ground, meanwhile)
         self._models = models
         self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
@@ -151,6 +162,11 @@ class World:
             world=self.name,
             bodies=self._bodies(self._engine.records),
         )
+
+    def surfaces(self, names: Iterable[str]) -> Surfaces:
+        """What bodies that were made from a model look like."""
+        shapes = {name: self._engine.shape(name) for name in names}
+        return Surfaces(surfaces={name: surface_of(shape) for name, shape in shapes.items() if shape})
 
     def snapshot(self) -> tuple[mujoco.MjModel, mujoco.MjData, list[str]]:
         """Copies of the model and its state, and `body_names`; the model is shared until it changes."""

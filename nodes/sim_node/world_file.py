@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from nodes.sim_node.world import ModelSource, World
@@ -10,16 +11,17 @@ from schemas.errors import BadFile
 from schemas.scenes import BodyOrder
 
 
-def open_world(path: Path | None, models: ModelSource) -> World:
+def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], None] = lambda: None) -> World:
     """The world that a file describes, a bare floor without one.
 
     Bodies of a JSON scene are the world's own furniture (commit 0), each with the model of its class's name.
-    Raises BadFile for a file that is neither MJCF nor a scene, or has a body that cannot be made.
+    `meanwhile` is as in World. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that
+    cannot be made.
     """
     content = _read(path) if path is not None else b""
     if path is None or not content.lstrip().startswith(b"{"):
-        return World(path, models=models)
-    world = World(models=models)
+        return World(path, models=models, meanwhile=meanwhile)
+    world = World(models=models, meanwhile=meanwhile)
     world.name = path.name
     spawned = world.spawn(_orders(scene_files.read(content, path.name)))
     for name, reason in spawned.failed.items():

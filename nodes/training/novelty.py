@@ -16,8 +16,11 @@ from nodes.training.fitting import Numbers, classifier
 _FOLDS = 4
 _LEFT_OUT = 0.12
 _ROUNDS = 12
+_ENOUGH = 0.5
+"""The share of the samples that the voters of a fold learn from: signs need no more."""
+
 _AXES = 30
-_SHARE = 0.15
+_SHARE = 0.05
 """How many of the things that are met are of no class that was learnt; nobody knows, so it is a guess."""
 
 
@@ -52,7 +55,7 @@ def learn_novelty(
     rows, news = [], []
     for fold in range(_FOLDS):
         out = np.isin(target, order[fold * size : (fold + 1) * size])
-        known = ~held & ~out
+        known = ~held & ~out & (rng.random(len(target)) < _ENOUGH)
         voters = [
             classifier(f[known], target[known], classes, h, rounds=_ROUNDS)
             for f, h in zip(features, hidden, strict=True)

@@ -24,7 +24,7 @@ from nodes.training.samples import NOTHING, Samples
 from nodes.training.scenes import STRANGE, Stage
 from nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.6
+SURE = 0.45
 _HELD_OUT = 5
 _HIDDEN = {"geometry": (96,), "shape": (96,), "colour": (64,)}
 _SIDES_HIDDEN = (64, 32)
@@ -120,7 +120,7 @@ def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
 def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--scenes", type=int, default=600)
+    parser.add_argument("--scenes", type=int, default=1500)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
     parser.add_argument("--out", type=Path, default=SHIPPED)

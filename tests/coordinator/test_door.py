@@ -235,7 +235,7 @@ def in_their_turn(door: Door, changes: list) -> list:
         settle(future, lambda: door._ask(verb, message))
         return future
 
-    turns = Turns(lambda group, _: hold_later(door.together(group), ask_later))
+    turns = Turns(lambda group: hold_later(door.together(group), ask_later))
     futures = [turns.change(change) for change in changes]
     turns.go_on()
     return [future.exception() or future.result() for future in futures]

@@ -17,8 +17,7 @@ class KnowledgeBase:
     def __init__(self):
         self.groups: list[tuple[list[str | None], Future]] = []
 
-    def __call__(self, changes, rest):
-        self.rest = rest
+    def __call__(self, changes):
         self.groups.append(([change.name for change in changes], Future()))
         return self.groups[-1][1]
 
@@ -71,7 +70,6 @@ def test_a_second_group_is_under_way_beside_a_smaller_one(kb, turns):
         move(turns, name)
     turns.go_on()
     assert kb.names == [["a"], ["b", "c"]]
-    assert kb.rest
     move(turns, "d")
     kb.finish(0)
     turns.go_on()
@@ -79,7 +77,6 @@ def test_a_second_group_is_under_way_beside_a_smaller_one(kb, turns):
     kb.finish(1)
     turns.go_on()
     assert kb.names == [["a"], ["b", "c"], ["d"]]
-    assert not kb.rest
 
 
 def test_groups_are_of_a_size(kb, turns):

@@ -395,3 +395,15 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
     assert state(semantic_map) == before
     assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
     assert state(home.reopened(semantic_map)) == state(semantic_map)
+
+
+def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, monkeypatch):
+    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_EVERY", 2)
+    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_AT_LATEST", 3)
+    due = []
+    for i in range(3):
+        semantic_map.commit(transaction(i, chair(f"chair{i}")))
+        due.append((semantic_map.checkpoint_is_due(quiet=True), semantic_map.checkpoint_is_due(quiet=False)))
+    assert due == [(False, False), (True, False), (True, True)]
+    semantic_map.checkpoint()
+    assert not semantic_map.checkpoint_is_due(quiet=True)

@@ -126,13 +126,19 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
     assert 1 in done
 
 
-def asking_for(prefix, verb):
-    return commands.Explain(name="x", predicate=prefix, value=verb)
+def asking_for(prefix, verb, name="x"):
+    return commands.Explain(name=name, predicate=prefix, value=verb)
 
 
-def test_a_reply_of_another_is_passed_on_as_it_comes(network):
+@pytest.mark.parametrize("length", [1, 100_000])
+def test_a_reply_of_another_is_passed_on_as_it_comes(network, length):
     _, client = network
-    assert bus.ask(client, PREFIX, "explain", asking_for(PREFIX, "get"), commands.Done).text == "x"
+    question = asking_for(PREFIX, "get", "x" * length)
+    assert bus.ask(client, PREFIX, "explain", question, commands.Done).text == "x" * length
+
+
+def test_a_reply_of_another_in_json(network):
+    _, client = network
     (reply,) = client.get(f"{PREFIX}/explain?name=x;predicate={PREFIX};value=get;format=json")
     assert json.loads(reply.ok.payload.to_bytes()) == {"text": "x"}
 

@@ -25,7 +25,9 @@ def shot() -> Shot:
     bodies = stage.show([item("table", "table", (0.0, 0.0, 0.0), 0.0, (0.8, 1.4, HEIGHT_M)), *things])
     target = np.array([0.0, 0.0, HEIGHT_M])
     views = [
-        look_at(target + np.array([1.2 * math.cos(a), 1.2 * math.sin(a), 0.9]), target, 640, 480, math.radians(50))
+        look_at(
+            target + np.array([1.2 * math.cos(a), 1.2 * math.sin(a), 0.9]), target, 640, 480, math.radians(50)
+        )
         for a in (0.3, 1.9)
     ]
     return stage.shoot(bodies, views, np.random.default_rng(0))

@@ -63,6 +63,19 @@ def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
     assert (update.name, update.at) == ("cup1", pytest.approx((1.9, 1.0, 0.7)))
 
 
+def test_a_thing_that_comes_to_stand_in_anothers_place_keeps_its_name_and_so_does_the_other():
+    table = Table([seen("Cup", at(1, 1)), seen("Bottle", at(2, 1))])
+    table.looks(5)
+    table.things = [seen("Bottle", at(1, 1))]  # and nobody sees the cup
+    table.looks(2)
+    assert table.taken_for == ("bottle1",)
+    assert table.entities["bottle1"].pose == at(1, 1)
+    table.things = [seen("Bottle", at(1, 1)), seen("Cup", at(3, 1))]
+    table.looks(3)
+    assert table.taken_for == ("bottle1", "cup1")
+    assert table.entities["cup1"].pose == at(3, 1)
+
+
 def test_a_thing_that_was_carried_out_of_sight_for_a_moment_keeps_its_name():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)
@@ -148,6 +161,14 @@ def test_what_contradicts_an_operator_is_kept_beside_his_word():
     assert table.entities["my_cup"].class_ == "Cup"
     table.things = [seen("Cup", at(1, 1))]
     assert [command.conflict for command in table.looks(50)] == [""]
+
+
+def test_where_an_operator_said_no_size_a_thing_of_any_size_may_be_what_he_meant():
+    my_cup = structs.replace(entity("my_cup", "Cup", at(1, 1)), size_m=None)
+    table = Table([seen("Bottle", at(1, 1))]).told([my_cup])
+    assert [(command.name, command.conflict) for command in table.looks(30)] == [
+        ("my_cup", "looks like a Bottle")
+    ]
 
 
 def test_what_perception_took_for_something_else_is_put_right():

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+import zenoh
 from msgspec import structs
 
 from nodes import bus
@@ -88,7 +89,12 @@ class World:
             "depth": (depth, np.full(shape, depth_m, "<f4").tobytes() if pixels is None else pixels),
         }
         for plane, (frame, content) in planes.items():
-            self.session.put(keys.camera_key(depth.camera, plane), content, attachment=codec.encode(frame))
+            self.session.put(
+                keys.camera_key(depth.camera, plane),
+                content,
+                attachment=codec.encode(frame),
+                congestion_control=zenoh.CongestionControl.BLOCK,  # 48 MB would be dropped on a busy machine
+            )
 
     def film_until(self, condition, what, **frame):
         def filmed():

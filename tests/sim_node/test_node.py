@@ -24,6 +24,8 @@ from schemas.scenes import (
     SceneQuery,
     Spawn,
     Spawned,
+    SurfaceQuery,
+    Surfaces,
 )
 from tests.sim_node.orders import hand, order, pose
 
@@ -62,6 +64,7 @@ REPLIES = {
     "step": Done,
     "reset": Done,
     "picture": Picture,
+    "surfaces": Surfaces,
 }
 
 
@@ -168,6 +171,14 @@ def test_cameras_publish_raw_planes_with_what_they_need_to_be_understood(client)
     assert set(np.frombuffer(raw, np.uint16)) == {0, 1}
     frame, raw = planes["semmap/sim/camera/overview/rgb"]
     assert len(raw) == 64 * 48 * 3
+
+
+def test_who_draws_may_ask_what_bodies_look_like(client):
+    ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
+    told = ask(client, "surfaces", SurfaceQuery(names=("cup1", "nobody"))).surfaces
+    assert set(told) == {"cup1"}
+    points = np.frombuffer(told["cup1"].points, "<f4").reshape(-1, 3)
+    assert np.ptp(points[:, 2]) == pytest.approx(0.1, abs=0.03)
 
 
 def test_nonsense_is_refused_and_the_node_lives_on(client):

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from nodes.sim_node import build
 from nodes.sim_node.world import World
 from schemas.entities import angle_rad, distance_m
 from schemas.errors import BadFile
@@ -187,6 +188,15 @@ def test_reset_brings_everything_back_to_the_map():
     world.step(0.5)
     assert distance_m(body(world, "cup1").pose, pose(0, 0)) < 0.002
     assert distance_m(body(world, "table1").pose, pose(2, 1)) < 0.002
+
+
+def test_others_hear_of_us_while_much_is_made(monkeypatch):
+    monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
+    beats = []
+    world = World(meanwhile=lambda: beats.append(None))
+    world.spawn([order(f"can{i}", "can", pose(0.5 * (i % 15), 0.5 * (i // 15))) for i in range(200)])
+    assert len(world) == 200
+    assert beats
 
 
 def test_the_overview_passes_over_what_is_far_off():

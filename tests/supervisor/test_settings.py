@@ -29,10 +29,11 @@ def test_who_listens_everywhere_is_reached_on_loopback(listen, reachable):
 def test_nodes_can_be_left_out():
     assert settings().nodes == ("coordinator", "kb_node", "sim_node", "recorder")
     assert settings(sim=False, record=False).nodes == ("coordinator", "kb_node")
+    assert settings(perception=True).nodes[-1] == "perception_node"
 
 
 def test_settings_survive_the_file_and_are_checked():
-    chosen = settings(threshold_m=0.1, truth="scene")
+    chosen = settings(threshold_m=0.1, truth="perceived", perception=True, when_gone="mark")
     assert codec.decode(codec.encode_json(chosen), Settings) == chosen
     with pytest.raises(errors.BadRequest, match="angle_threshold_deg"):
         codec.decode(codec.encode_json(settings(angle_threshold_deg=-1.0)), Settings)

@@ -27,7 +27,9 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     """The options of `up` and `node`; the function gets them as Settings."""
 
     @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
-    @click.option("--abox", help="ABox file, or none for an empty map. Default: the shipped flat.")
+    @click.option(
+        "--abox", help="ABox file, or none for an empty map. Default: the shipped flat; none if perceived."
+    )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
     )
@@ -144,7 +146,8 @@ def _settings(
     if truth is None:
         truth = before.truth if before is not None else "map"
     world = str(EMPTY_WORLD) if world in ("empty", "none") else world
-    abox = str(FLAT_TTL) if abox is None else abox
+    if abox is None:
+        abox = "none" if truth == "perceived" else str(FLAT_TTL)
     values = {
         "data": str(folder),
         "tbox": _existing(tbox),

@@ -6,10 +6,9 @@ import math
 from collections.abc import Sequence
 
 from nodes.perception_node.boxes import Box, Numbers
-from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.learnt import CLUTTER, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
-from nodes.perception_node.recognition.vote import answer, expected_sizes, leaves
+from nodes.perception_node.recognition.vote import answer, expected_sizes
 from nodes.perception_node.things import Thing
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.perception import Observation
@@ -19,13 +18,13 @@ _CLUTTER = 0.8
 _WORTH_SAYING = 0.01
 
 
-def recognise(things: Sequence[Thing], learnt: Learnt) -> list[Observation | None]:
-    """An observation of each thing, None for one that is rather clutter than a thing."""
-    if not things:
-        return []
-    probabilities = leaves(learnt, features_of(things))
-    expected = expected_sizes(probabilities, learnt.sizes_m)
-    return [_observation(*row, learnt) for row in zip(things, probabilities, expected, strict=True)]
+def recognise(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> list[Observation | None]:
+    """An observation of each thing, None for one that is rather clutter than a thing.
+
+    `chances`: (N, K) the probabilities of the leaves.
+    """
+    expected = expected_sizes(chances, learnt.sizes_m)
+    return [_observation(*row, learnt) for row in zip(things, chances, expected, strict=True)]
 
 
 def _observation(

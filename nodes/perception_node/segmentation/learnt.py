@@ -48,7 +48,7 @@ def load(path: Path = SHIPPED) -> MergeModel:
                 raise ValueError("it was learnt from other features; run make train-perception")
             trees = Trees(**{name: arrays[name] for name in _ARRAYS}, bias=float(text["bias"]))
             return MergeModel(trees, text["story"])
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, EOFError, ValueError, KeyError) as error:
         raise BadFile(f"{path} does not hold what segmentation learnt: {error}") from None
 
 

@@ -1,4 +1,4 @@
-"""Patches become objects: the surest pair is merged first, and what that changes is looked at anew."""
+"""Patches become objects: the surest pairs are merged first, and what that changes is looked at anew."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ Judge = Callable[[Statistics, Indices, Indices], NDArray[np.float32]]
 """How likely the pairs of patches (a, b) are one object: (N,)."""
 
 SURE_ENOUGH = 0.5
+_CERTAIN = 0.9  # pairs as sure as this need not wait for one another
 
 
 def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
@@ -21,22 +22,31 @@ def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
     count = len(of.inside)
     may = candidates(of)
     score = np.zeros((count, count), np.float32)
-
-    def look(a: Indices, b: Indices) -> None:
-        if len(a):
-            score[a, b] = score[b, a] = judge(of, a, b)
-
-    look(*np.nonzero(np.triu(may)))
-    while count:
-        a, b = divmod(int(score.argmax()), count)
-        if score[a, b] < SURE_ENOUGH:
-            break
-        of.merge(a, b)
-        may[a] |= may[b]
-        may[:, a] |= may[:, b]
-        may[b] = may[:, b] = False
-        may[a, a] = False
-        score[b] = score[:, b] = 0
-        others = np.flatnonzero(may[a])
-        look(np.full(len(others), a), others)
+    news = np.triu(may)
+    while news.any():
+        a, b = np.nonzero(news)
+        score[a, b] = score[b, a] = judge(of, a, b)
+        news = np.zeros_like(may)
+        grown = []
+        for keep, gone in _next(score):
+            of.merge(keep, gone)
+            may[keep] |= may[gone]
+            may[:, keep] |= may[:, gone]
+            may[gone] = may[:, gone] = False
+            may[keep, keep] = False
+            score[gone] = score[:, gone] = 0
+            grown.append(keep)
+        news[grown] = may[grown]
+        news &= ~(news.T & np.tri(count, dtype=bool))  # each pair once
     return np.unique(of.owner, return_inverse=True)[1].astype(np.int32) + 1
+
+
+def _next(score: NDArray[np.float32]) -> list[tuple[int, int]]:
+    """The pairs to merge now: all that are certain and each other's best, else the surest if sure enough."""
+    best = score.argmax(axis=1)
+    index = np.arange(len(score))
+    mutual = (best[best] == index) & (index < best) & (score[index, best] >= _CERTAIN)
+    if mutual.any():
+        return [(int(a), int(best[a])) for a in np.flatnonzero(mutual)]
+    a, b = divmod(int(score.argmax()), len(score))
+    return [(a, b)] if score[a, b] >= SURE_ENOUGH else []

@@ -56,5 +56,5 @@ def normals(points: Floats, where: Mask) -> Floats:
 def _pitch(rays: Floats, axis: int) -> np.float32:
     """From one cell's ray to the next: (h, w) along `axis`."""
     steps = np.diff(rays, axis=axis)
-    steps = steps[np.isfinite(steps)]
+    steps = steps[np.isfinite(steps) & (steps != 0)]
     return np.median(steps) if steps.size else np.float32(1)

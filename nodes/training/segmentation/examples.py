@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.segmentation.grid import spread
 from nodes.perception_node.segmentation.merging import merge
-from nodes.perception_node.segmentation.pairs import features
+from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.segment import taken_apart
 from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
@@ -72,6 +72,10 @@ def _met(
     return joined(met)
 
 
-def joined(parts: list[Rows]) -> Rows:
+NO_ROWS = Rows(np.zeros((0, len(NAMES)), np.float32), np.zeros(0, np.bool_), np.zeros(0))
+
+
+def joined(parts: Iterable[Rows]) -> Rows:
     """All rows of all parts."""
-    return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    columns = zip(NO_ROWS, *parts, strict=True)
+    return Rows._make(np.concatenate(column) for column in columns)

@@ -13,16 +13,16 @@ from nodes.training.segmentation.examples import Rows
 TREES = 150
 
 
-def fit(rows: Rows, seed: int = 0) -> Trees:
+def fit(rows: Rows, trees: int = TREES) -> Trees:
     """Trees that tell pairs that are one object from those that are not."""
     model = HistGradientBoostingClassifier(
-        max_iter=TREES,
+        max_iter=trees,
         learning_rate=0.1,
         max_leaf_nodes=LEAVES,
         min_samples_leaf=20,
         l2_regularization=1.0,
         max_features=0.4,
-        random_state=seed,
+        random_state=0,
     )
     model.fit(rows.features, rows.one, sample_weight=rows.weight)
     grown = [predictors[0].nodes for predictors in model._predictors]

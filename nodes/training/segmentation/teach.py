@@ -37,7 +37,7 @@ def lessons(made: Iterable[Example], scenes: Iterable[Scene], rng: np.random.Gen
     Each scene gives those met on the right way, and those that a model meets that knows made-up scenes
     only: so no recorded scene has a part in another one's rows.
     """
-    made = [one for one in made if len(one.overlap) > 1]
+    made = list(made)
     right = _some(joined([right_way(one, rng) for one in made]), _MADE_ROWS, rng)
     novice = fit(right)
     own = _some(joined([own_way(one, novice.probability) for one in made]), _MADE_ROWS // 2, rng)
@@ -46,10 +46,8 @@ def lessons(made: Iterable[Example], scenes: Iterable[Scene], rng: np.random.Gen
         rows = []
         for way in (scene, mirrored(scene)) if scene.cloud.organised else (scene,):
             one = example(way.cloud, way.truth)
-            if len(one.overlap) > 1:
-                rows += [right_way(one, rng), right_way(one, rng), own_way(one, novice.probability)]
-        if rows:
-            recorded.append((scene.name, joined(rows)))
+            rows += [right_way(one, rng), right_way(one, rng), own_way(one, novice.probability)]
+        recorded.append((scene.name, joined(rows)))
     return Lessons(joined([right, own]), tuple(recorded))
 
 

@@ -1,4 +1,4 @@
-"""Boxes on a table, seen by a perfect depth camera."""
+"""Boxes on a table, seen by a good depth camera."""
 
 from __future__ import annotations
 
@@ -45,6 +45,7 @@ def boxes_on_table(*boxes, pose=None, posed=False, table=((-1, -1, -0.05), (1, 1
         hit = (enters < leaves) & (enters > 0) & (enters < depth)
         depth[hit], truth[hit] = enters[hit], number
     depth[np.isinf(depth)] = np.nan
+    depth += np.random.default_rng(0).normal(0, 0.001, depth.shape) * depth**2
     points = (rays * depth[..., None]).astype(np.float32)
     intrinsics = np.array([[FOCAL_PX, 0, WIDTH / 2], [0, FOCAL_PX, HEIGHT / 2], [0, 0, 1]])
     return Seen(Cloud(points, None, pose if posed else None, intrinsics), truth)

@@ -1,0 +1,121 @@
+"""The surface of a model as triangles, for those who draw it elsewhere."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.sim_node.models.library import Model
+from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
+from schemas.scenes import Surface
+
+_SLICES = 14
+_RINGS = 7
+
+
+class Facets(NamedTuple):
+    """`points` and outward unit `normals` (N, 3), `triangles` (M, 3) of rows of these, counterclockwise."""
+
+    points: Floats
+    normals: Floats
+    triangles: NDArray[np.int64]
+
+
+@lru_cache(maxsize=512)
+def surface_of(model: Model) -> Surface:
+    """All that is seen of a model, in its own frame: the bottom centre, z up."""
+    seen = [part for part in model.parts if part.role is not Role.FELT]
+    pieces = [facets(part) for part in seen]
+    counts = [len(piece.points) for piece in pieces]
+    colours = np.repeat(np.array([part.colour for part in seen]), counts, axis=0)
+    starts = np.cumsum([0, *counts[:-1]])
+    triangles = [piece.triangles + start for piece, start in zip(pieces, starts, strict=True)]
+    return Surface(
+        points=np.concatenate([piece.points for piece in pieces]).astype("<f4").tobytes(),
+        normals=np.concatenate([piece.normals for piece in pieces]).astype("<f4").tobytes(),
+        colours=np.round(255.0 * colours).astype("u1").tobytes(),
+        triangles=np.concatenate(triangles).astype("<u4").tobytes(),
+    )
+
+
+def facets(part: Part) -> Facets:
+    """The surface of one part, in the model's frame."""
+    half = np.asarray(part.half)
+    match part.shape:
+        case Shape.BOX:
+            own = _scaled(_box(), half)
+        case Shape.ELLIPSOID:
+            own = _scaled(_turned(_arc(0.0, 1.0)), half)
+        case Shape.CYLINDER:
+            own = _scaled(_turned(_CAN), half)
+        case Shape.CAPSULE:
+            radius, straight = float(half[0]), float(half[2])
+            own = _turned(
+                np.concatenate([_arc(-straight, radius)[:_RINGS], _arc(straight, radius)[_RINGS - 1 :]])
+            )
+        case Shape.MESH:
+            own = _flat(part)
+    rotation = rotation_matrix(part.turn)
+    return Facets(own.points @ rotation.T + part.centre, own.normals @ rotation.T, own.triangles)
+
+
+_CAN = np.array(
+    [(0, -1, 0, -1), (1, -1, 0, -1), (1, -1, 1, 0), (1, 1, 1, 0), (1, 1, 0, 1), (0, 1, 0, 1)], dtype=float
+)
+"""Radius, height, and the normal's share of each, from the bottom up."""
+
+
+def _arc(height: float, radius: float) -> Floats:
+    """The profile of a ball, (2 * _RINGS - 1, 4)."""
+    angle = np.linspace(0.0, np.pi, 2 * _RINGS - 1)
+    out, up = np.sin(angle), -np.cos(angle)
+    return np.column_stack([radius * out, height + radius * up, out, up])
+
+
+def _turned(profile: Floats) -> Facets:
+    """The profile (K, 4) turned about z."""
+    angle = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1)
+    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    radius, height, out, up = profile.T
+    level = np.ones_like(cos)
+    points = np.stack([cos * radius, sin * radius, level * height], axis=-1).reshape(-1, 3)
+    normals = np.stack([cos * out, sin * out, level * up], axis=-1).reshape(-1, 3)
+    count = len(profile)
+    corner = (np.arange(_SLICES)[:, None] * count + np.arange(count - 1)).ravel()
+    lower = np.column_stack([corner, corner + count, corner + 1])
+    upper = np.column_stack([corner + 1, corner + count, corner + count + 1])
+    return Facets(points, normals, np.concatenate([lower, upper]))
+
+
+def _box() -> Facets:
+    """A box of half extents one: four corners to each face, so that its edges are sharp."""
+    square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
+    points, normals = [], []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            face = np.insert(square if side > 0 else square[::-1], 0, side, axis=1)
+            points.append(np.roll(face, axis, axis=1))
+            normals.append(np.tile(np.roll([side, 0.0, 0.0], axis), (4, 1)))
+    corners = 4 * np.arange(6)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])
+    return Facets(np.concatenate(points), np.concatenate(normals), corners.reshape(-1, 3))
+
+
+def _flat(part: Part) -> Facets:
+    """A mesh, each triangle with corners of its own."""
+    assert part.mesh is not None
+    corners = part.mesh.vertices[part.mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return Facets(
+        corners.reshape(-1, 3), np.repeat(normals, 3, axis=0), np.arange(3 * len(corners)).reshape(-1, 3)
+    )
+
+
+def _scaled(facets: Facets, half: Floats) -> Facets:
+    normals = facets.normals / half
+    return Facets(
+        facets.points * half, normals / np.linalg.norm(normals, axis=1, keepdims=True), facets.triangles
+    )

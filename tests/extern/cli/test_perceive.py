@@ -1,0 +1,55 @@
+"""`semmap perceive`, which needs no system."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nodes.extern.cli.app import execute
+from tests.perception_node.files.made import header
+from tests.perception_node.segmentation.scenes import boxes_on_table
+from tests.perception_node.segmentation.test_patches import SCENES
+
+SEEN = boxes_on_table(*SCENES["apart"])
+
+
+def write_cloud(file, *, organised=True):
+    points = SEEN.cloud.points_camera
+    height, width = points.shape[:2] if organised else (1, points.size // 3)
+    head = header("binary", fields="x y z", width=width, height=height)
+    file.write_bytes(head + points.astype(np.float32).tobytes())
+    return str(file)
+
+
+@pytest.mark.parametrize("organised", [True, False])
+def test_labels_have_the_shape_of_the_cloud(tmp_path, capsys, organised):
+    cloud = write_cloud(tmp_path / "boxes.pcd", organised=organised)
+    assert execute(["perceive", cloud, "--labels", str(tmp_path / "labels.npy")]) == 0
+    labels = np.load(tmp_path / "labels.npy")
+    assert np.issubdtype(labels.dtype, np.integer)
+    assert labels.shape == ((480, 640) if organised else (1, 480 * 640))
+    assert labels.max() == 2
+    for box in (1, 2):
+        assert np.bincount(SEEN.truth.ravel()[labels.ravel() == box]).argmax() > 0
+    assert "2 objects" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["missing.pcd"], "missing.pcd cannot be read"),
+        (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "one frame"),
+        (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
+        (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
+        (["empty.pcd"], "it has no points"),
+        ([], "FILE"),
+    ],
+)
+def test_what_cannot_be_done_is_told_in_one_line(tmp_path, capsys, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    write_cloud(tmp_path / "boxes.pcd")
+    (tmp_path / "empty.pcd").write_bytes(header("binary", width=0, height=0))
+    assert execute(["perceive", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
