@@ -116,6 +116,7 @@ class Coordinator:
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
         self._answer_early()
+        self._turns.go_on()  # however busy the node is
         self._keep()
 
     def _keep(self) -> None:
