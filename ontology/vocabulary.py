@@ -80,6 +80,8 @@ def lexical(term: Term) -> str:
     Raises:
         ValueError: the term is not a literal, or has an escape that N-Triples does not know.
     """
+    if term[-1:] == '"' and "\\" not in term and term.count('"') == 2 and term[0] == '"':
+        return term[1:-1]  # most are this plain
     return _parts(term)[0]
 
 

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from benchmarks.kb.made import Figures, each, entities, timed
+from benchmarks.kb.made import Cost, Figures, cost, each, entities
 from nodes.kb_node import answers
 from nodes.kb_node.journal import FILENAME, Journal
 from nodes.kb_node.seed import seed
@@ -22,10 +22,10 @@ class Disk(NamedTuple):
     """A map of so many entities in one process, with its journal."""
 
     entities: int
-    bulk_load_s: float
+    bulk_load: Cost
     """One durable commit of all of them into an empty map."""
-    start_up_s: float
-    """From the journal's file to a map that answers."""
+    start_up: Cost
+    """From the journal's file to a map that answers, when it was started before."""
     list_all: Figures
     """All of them, encoded as for the wire."""
     sync: Figures
@@ -36,27 +36,27 @@ def measure(where: Path | None, size: int) -> Disk:
     """Journals in a new folder in `where`, or in the temporary one."""
     with tempfile.TemporaryDirectory(dir=where) as folder:
         path = Path(folder)
-        bulk_load_s = prepare(path, size)
+        bulk_load = prepare(path, size)
         journal = Journal(path / FILENAME)
         maps: list[SemanticMap] = []
-        start_up_s = timed(lambda: maps.append(SemanticMap(journal)))
+        start_up = cost(lambda: maps.append(SemanticMap(journal)))
         list_all = each(range(10), lambda _: codec.encode(answers.entities_of(maps[0], None)))
         journal.close()
-        return Disk(size, bulk_load_s, start_up_s, list_all, _sync(path / "sync"))
+        return Disk(size, bulk_load, start_up, list_all, _sync(path / "sync"))
 
 
-def prepare(folder: Path, size: int) -> float:
-    """A journal of `size` entities in `folder`, as a node leaves it that was stopped; its bulk load [s]."""
+def prepare(folder: Path, size: int) -> Cost:
+    """A journal of `size` entities in `folder`, as a node leaves it that was stopped; its bulk load."""
     seed(folder, HOUSEHOLD_TTL, None)
     journal = Journal(folder / FILENAME)
     semantic_map = SemanticMap(journal)
     random_ = random.Random(size)
     triples = tuple(triple for star in entities(size, random_) for triple in star)
     transaction = Transaction(id="load", source="file", reason="benchmark", insert=triples)
-    took_s = timed(lambda: semantic_map.commit(transaction))
+    load = cost(lambda: semantic_map.commit(transaction))
     semantic_map.checkpoint()
     journal.close()
-    return took_s
+    return load
 
 
 def _sync(path: Path) -> Figures:

@@ -6,8 +6,8 @@ import random
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from statistics import median, quantiles
-from time import perf_counter, thread_time
-from typing import Any
+from time import perf_counter, process_time, thread_time
+from typing import Any, NamedTuple
 
 from nodes.kb_node import rdf_files
 from ontology import HOUSEHOLD_TTL, stars
@@ -51,6 +51,20 @@ def timed(act: Callable[[], object]) -> float:
     started = perf_counter()
     act()
     return perf_counter() - started
+
+
+class Cost(NamedTuple):
+    """What one long act took: by the clock on the wall, and of this process's CPU time, in seconds."""
+
+    wall_s: float
+    cpu_s: float
+
+
+def cost(act: Callable[[], object]) -> Cost:
+    """What it takes."""
+    cpu = process_time()
+    wall_s = timed(act)
+    return Cost(wall_s, process_time() - cpu)
 
 
 def percentiles(times_s: list[float]) -> Figures:

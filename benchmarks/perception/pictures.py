@@ -1,17 +1,22 @@
-"""Labels over recorded scenes: `python -m benchmarks.perception.pictures OUT.png [--scenes NAME,...]`."""
+"""Labels over recorded and simulated scenes: `python -m benchmarks.perception.pictures OUT.png`."""
 
 from __future__ import annotations
 
 import argparse
 import colorsys
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.perception.recorded import data_folder
+from benchmarks.perception.rooms import rooms
+from benchmarks.perception.simulated import shots
+from nodes.perception_node.pipeline import Look, look
+from nodes.perception_node.recognition.learnt import shipped
 from nodes.perception_node.segmentation import segment
 from nodes.perception_node.segmentation.learnt import MergeModel
 from nodes.perception_node.segmentation.merging import Judge
@@ -20,6 +25,7 @@ from nodes.training.segmentation.teach import learn, lessons, made_up
 
 Picture = NDArray[np.uint8]
 
+_ROOMS = ((7, False), (8, True), (9, True))
 _DIM, _TINT = 0.5, 0.6
 _GOLDEN = 0.618034  # neighbours in number are far apart in hue
 
@@ -36,6 +42,29 @@ def recorded_row(scenes: Sequence[Scene], judge: Judge) -> Picture:
     """Each scene's labels over its picture, side by side, at half the size."""
     panels = [overlay(_colors(scene), segment(scene.cloud, judge).labels)[::2, ::2] for scene in scenes]
     return np.concatenate(panels, axis=1)
+
+
+def simulated_row(width: int) -> Picture:
+    """Three simulated rooms, one loose, two crowded, with what things were taken for; `width` in pixels."""
+    chosen = chain(*(rooms(1, seed, crowded=crowded) for seed, crowded in _ROOMS))
+    panels = []
+    for _, shot in shots(chosen, seed=3):
+        seen = look(shot.clouds, shipped())
+        panels.append(_named(overlay(np.asarray(shot.clouds[0].colors), seen.labels[0]), seen))
+    row = Image.fromarray(np.concatenate(panels, axis=1))
+    return np.asarray(row.resize((width, row.height * width // row.width), Image.Resampling.LANCZOS))
+
+
+def _named(picture: Picture, seen: Look) -> Picture:
+    """The class of each observation written in the middle of its pixels."""
+    image = Image.fromarray(picture)
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(20)
+    for number, observation in enumerate(seen.observations.observations, 1):
+        rows, columns = np.nonzero(seen.labels[0] == number)
+        if len(rows):
+            at = (float(np.median(columns)), float(np.median(rows)))
+            draw.text(at, observation.class_, "white", font, anchor="mm", stroke_width=2, stroke_fill="black")
+    return np.asarray(image)
 
 
 def _colors(scene: Scene) -> Picture:
@@ -56,7 +85,7 @@ def main() -> None:
     drawn = words.scenes.split(",")
     heard = lessons(made_up(words.piles, rng), (s for s in scenes if s.name not in drawn), rng)
     row = recorded_row([s for s in scenes if s.name in drawn], MergeModel(learn(heard), ""))
-    Image.fromarray(row).save(words.out)
+    Image.fromarray(np.concatenate([row, simulated_row(row.shape[1])])).save(words.out)
 
 
 if __name__ == "__main__":

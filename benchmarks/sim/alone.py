@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from statistics import median
-from time import perf_counter
+from time import perf_counter, thread_time
 
 import mujoco
 import numpy as np
@@ -68,14 +68,17 @@ def real_time_factors() -> list[Row]:
     asleep = 1000.0 / timed(lambda: world.step(1000.0))
     rng = np.random.default_rng(0)
     free = free_dofs(world)
-    took = []
+    took, own = [], []
     for _ in range(20):
         world.data.qvel[free[:, :3]] += rng.normal(0.0, 0.4, (len(free), 3))
-        took.append(timed(lambda: world.step(0.1)))
+        started = thread_time()
+        took.append(timed(partial(world.step, 0.1)))
+        own.append(thread_time() - started)
     return [
         Row("real-time factor, 100 bodies at rest", asleep, "times", 100.0, more=True),
         Row("the same, MuJoCo alone", engine, "times"),
         Row("real-time factor, 100 bodies being shaken", 0.1 / median(took), "times", 4.0, more=True),
+        Row("the same, by its own CPU time", 0.1 / median(own), "times"),
         Row("contacts of these", float(world.data.ncon), ""),
     ]
 
@@ -90,4 +93,5 @@ def frames() -> list[Row]:
         kind = "OpenGL" if eye.has_graphics else "rays"
         reach = 20.0 if eye.has_graphics else None
         rows.append(Row(f"RGB-D frame 640x480, 50 bodies, {kind}, p50", 1e3 * median(times[2:]), "ms", reach))
+        rows.append(Row(f"RGB-D frame 640x480, 50 bodies, {kind}, fastest", 1e3 * min(times), "ms"))
     return rows

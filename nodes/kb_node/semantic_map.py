@@ -47,6 +47,8 @@ class SemanticMap:
         self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
+        self._replaced: dict[str, Entity | None] | None = None
+        """While commits are made together: the entities that were there before, None for new names."""
         self.seq = 0
         self._checkpointed = 0
         self._replay(start)
@@ -165,7 +167,9 @@ class SemanticMap:
 
         When the disk does not take them, all are refused and the map is as before.
         """
-        before, known = self.seq, self._entities.copy()
+        before = self.seq
+        replaced: dict[str, Entity | None] = {}
+        self._replaced = replaced
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -180,10 +184,17 @@ class SemanticMap:
             made = {c.seq: c for c in results if isinstance(c, Commit) and c.seq > before}
             for _, commit in sorted(made.items(), reverse=True):
                 self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
-            self.seq, self._entities = before, known
+            self.seq = before
+            for name, entity in replaced.items():
+                if entity is None:
+                    self._entities.pop(name, None)
+                else:
+                    self._entities[name] = entity
             if not isinstance(error, NotWritten):
                 raise
             return [error] * len(transactions)
+        finally:
+            self._replaced = None
         return results
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
@@ -308,7 +319,7 @@ class SemanticMap:
 
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        subjects = {s for s, _, _ in (*commit.retracted, *commit.inserted)}
+        subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
         known = set(filter(self.reasoner.mentions, subjects))
         owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
@@ -328,6 +339,9 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
+        if self._replaced is not None:
+            for name in commit.names:
+                self._replaced.setdefault(name, self._entities.get(name))
         for gone in commit.removed:
             del self._entities[gone.name]
         self._show(commit.changed)
@@ -349,7 +363,7 @@ class SemanticMap:
             if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
         )
         for iri in sorted(concerned):
-            known = self._known(iri)
+            known = None if iri in new else self._known(iri)
             self._progress()
             entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
             if entity is None:

@@ -18,7 +18,7 @@ from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.kinship import ANYTHING, Kinship
 from nodes.perception_node.likeness import Target
 from nodes.perception_node.matching import Candidate, Matching, match
-from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.overlap import Place, are_of_one, share
 from nodes.perception_node.telling import has_moved, is_sure, news, proposals
 from nodes.perception_node.tracks import Track, Tracks, slack_m
 from nodes.perception_node.visibility import Looks
@@ -114,10 +114,11 @@ def _after(
 
 
 def _watched(track: Track, entity: Entity, looks: Looks, config: TrackingConfig) -> Track:
-    """With a look at the place that the map has of it: is that left?"""
+    """With a look at the place that the map has of it: is that left, or does it only seem so?"""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
         return replace(track, left=False)
-    return replace(track, left=track.left or looks(entity.pose, track.size_m) == "open")
+    before, now = Place(entity.pose, track.size_m), Place(track.pose, track.size_m)
+    return replace(track, left=track.left or share(now, before) == 0.0 or looks(*before) == "open")
 
 
 def _tentative(

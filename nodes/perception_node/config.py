@@ -18,7 +18,7 @@ class TrackingConfig:
     rest_looks: int = 2
     """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
     nudge_looks: int = 8
-    """The same where the place that it had is not seen empty: it may only seem so."""
+    """The same where it is still half in its place, which is not seen empty: it may only seem so."""
     odd_looks: int = 15
     """Looks in a row in which a thing of another size fills its place, before an entity is gone."""
     gone_looks: int = 10

@@ -22,7 +22,7 @@ MOST_PIXELS = 640 * 480 * 3 // 2
 """Of a picture with more, every second, third ... row and column is used."""
 _SILENT_S = 2.0
 """A camera that was silent for so long may begin with another clock."""
-_LATE_S = 0.3
+_LATE_S = 1.0
 """So long the others of a moment wait for a camera."""
 
 

@@ -70,15 +70,28 @@ def match(
         if places.get(name) != "open"
     }
     gone = {name for name in places if known[name].track.is_gone(config)}
-    left = every.difference(seen.values(), *(of_one for name, of_one in parts.items() if name not in gone))
+    standing = parts.keys() - gone
+    left = every.difference(seen.values(), *(parts[name] for name in standing))
+    strangers = {
+        j
+        for j in every.difference(seen.values(), left)
+        if not any(
+            j in parts[name] and kinship.related(known[name].target.class_, observations[j].class_)
+            for name in standing
+        )
+    }
     vanished = {
         name: known[name]
         for name, sight in places.items()
         if sight == "open" or name in gone or known[name].track.unseen
     }
-    found = pairs(vanished, left, cost_elsewhere)
+    found = pairs(vanished, left | strangers, cost_elsewhere)
     again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
     unseen = places.keys() - found.keys()
+    for name in unseen:
+        others = {*found.values(), *(seen.values() if known[name].track.unseen else ())}
+        if any(_may_be_of(known[name].target, observations[j]) for j in others):
+            places[name] = "open"  # to itself: another has come to stand there
     return Matching(
         known=seen | found,
         tentative=again,

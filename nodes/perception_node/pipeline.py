@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.furniture import with_what_hangs_below
 from nodes.perception_node.fusion import Member, fuse
+from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.learnt import Learnt, shipped
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.recognise import recognise
+from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.sights import Sight, see
 from nodes.perception_node.things import Thing, thing_of
-from schemas.perception import CameraView, Observations
+from schemas.perception import CameraView, Observation, Observations
 
-__all__ = ["Learnt", "Look", "look", "look_at", "observe", "shipped", "things_in"]
+__all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "shipped", "things_in"]
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,16 @@ def look_at(sights: Sequence[Sight], learnt: Learnt) -> Look:
         observations=tuple(observation for observation in found if observation is not None),
     )
     return Look(observations, _labels(sights, [[m for g in members[n] for m in groups[g]] for n in kept]))
+
+
+def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
+    """What each label of one sight is taken for, by itself; None for clutter. Table tops are left out."""
+    segments = [segment for segment in sight.segments if not segment.carrier]
+    if not segments:
+        return {}
+    things = [thing_of([segment], sight.supports_m) for segment in segments]
+    found = recognise(things, leaves(learnt, features_of(things)), learnt)
+    return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
 
 def things_in(sights: Sequence[Sight]) -> tuple[list[Thing], tuple[NDArray[np.int32], ...]]:

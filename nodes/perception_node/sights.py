@@ -38,7 +38,9 @@ def see(cloud: Cloud) -> Sight:
     segmentation = segment(cloud)
     pose = _standing_on(segmentation.planes) if cloud.map_from_camera is None else cloud.map_from_camera
     points = map_points(cloud, pose)
-    labels, carriers = with_furniture(segmentation, points)
+    labels, carriers = segmentation.labels, frozenset[int]()
+    if cloud.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
+        labels, carriers = with_furniture(segmentation, points)
     heights = _heights(segmentation, points)
     bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights)
     return labelled(bare, labels, carriers)

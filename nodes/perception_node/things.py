@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from nodes.perception_node.boxes import Box, Numbers, best_yaw, box_around
 from nodes.perception_node.cloud import Floats
@@ -15,6 +16,9 @@ from nodes.perception_node.segments import Segment
 _CELLS_ALONG = 40
 _CELL_M = (0.004, 0.02)
 _CROWDED = 4.0
+_GAP_CELLS, _MOST_GAPS = 3, 100
+_STRAY = 0.06
+_AROUND = np.ones((3, 3, 3))
 _BELOW_M = 0.03
 _BODY_M = 0.15
 
@@ -78,8 +82,9 @@ def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
 
 def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, Numbers | None]:
     """The mean point and colour of each occupied cube; lonely points go where others crowd."""
+    points, colors = _without_strays(points, colors)
     low = points.min(axis=0)
-    edge = float(np.clip((points.max(axis=0) - low).max() / _CELLS_ALONG, *_CELL_M))
+    edge = _edge_m(points)
     key = ((points - low) / edge).astype(np.int64) @ np.array([1 << 40, 1 << 20, 1])
     _, cell, counts = np.unique(key, return_inverse=True, return_counts=True)
     keep = counts > (1 if counts.mean() > _CROWDED else 0)
@@ -88,3 +93,21 @@ def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, N
         return np.stack(means, axis=1), None
     shade = [np.bincount(cell, colors[:, channel])[keep] / (255.0 * counts[keep]) for channel in range(3)]
     return np.stack(means, axis=1), np.stack(shade, axis=1)
+
+
+def _without_strays(
+    points: Floats, colors: NDArray[np.uint8] | None
+) -> tuple[Floats, NDArray[np.uint8] | None]:
+    """Without the few points far from all others: a thing's outline holds some of what is behind it."""
+    edge = max(_GAP_CELLS * _edge_m(points), float(np.ptp(points, axis=0).max()) / _MOST_GAPS)
+    place = ((points - points.min(axis=0)) / edge).astype(np.int64)
+    full = np.zeros(place.max(axis=0) + 1, bool)
+    full[tuple(place.T)] = True
+    cluster = ndimage.label(full, _AROUND)[0][tuple(place.T)]
+    sizes = np.bincount(cluster)
+    keep = sizes[cluster] >= min(_STRAY * len(points), sizes.max())
+    return points[keep], None if colors is None else colors[keep]
+
+
+def _edge_m(points: Floats) -> float:
+    return float(np.clip(np.ptp(points, axis=0).max() / _CELLS_ALONG, *_CELL_M))

@@ -28,8 +28,11 @@ _GEOM = (
 _NODE = ("depth", "child", "aabb")
 _IMMOVABLE_KG = 1e9
 _SPARES = (4, 32)
+"""At least and at most so many are compiled to spare: one to every `_SPARE_OF` bodies in between."""
+
 _SPARE_OF = 8
 _SPARE_PARTS = (14, 14, 14, 28)
+"""Nine models out of ten have no more than 18 parts, three out of four 12."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,7 @@ def _set_frames(
         data.geom_xmat[geom] = (rotation @ rotation_matrix(model.geom_quat[geom].tolist())).ravel()
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def compiled_alone(model: Model) -> mujoco.MjModel | None:
     """A MuJoCo model of nothing but this one body, free; None if it has meshes, which no berth knows."""
     if any(part.mesh for part in model.parts):

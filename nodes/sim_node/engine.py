@@ -106,7 +106,8 @@ class Engine:
         """Give each of these bodies a berth at its pose; compile anew if there are not enough."""
         for name in poses:
             self._leave(name)
-        if all(self._moor(name, pose) for name, pose in poses.items()):
+        enough = len(poses) <= len(self._vacant)
+        if enough and all(self._moor(name, pose) for name, pose in poses.items()):
             self._renew()
         else:
             self._recompile(poses)
@@ -139,17 +140,11 @@ class Engine:
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
         self._compile(now)
+        self.data.time = data.time
         build.carry_joints(model, data, self.model, self.data, [joint.name for joint in self._ground.joints])
-        before = self._rows_in(index)
-        stays = np.append(index.qpos >= 0, False)[before] & (self.index.qpos >= 0)
-        stays &= ~np.isin(self.index.names, list(poses))
-        self.put(
-            {
-                name: now[name]
-                for name, row in self.index.row.items()
-                if not stays[row] and self.index.qpos[row] >= 0
-            }
-        )
+        before, names, free = self._rows_in(index), self.index.names, self.index.qpos >= 0
+        stays = free & np.append(index.qpos >= 0, False)[before] & ~np.isin(names, list(poses))
+        self.put({names[row]: now[names[row]] for row in np.flatnonzero(free & ~stays)})
         for field, width, address in (("qpos", 7, "qpos"), ("qvel", 6, "dof"), ("qacc_warmstart", 6, "dof")):
             to, of = getattr(self.index, address)[stays], getattr(index, address)[before[stays]]
             offsets = np.arange(width)
@@ -168,10 +163,8 @@ class Engine:
             if record.static and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
         build.set_memory(spec, len(self.records) + len(spares))
-        time = self.data.time if self.revision else 0.0
         self.model = build.compiled(spec, self._meanwhile)
         self.data = mujoco.MjData(self.model)
-        self.data.time = time
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]
         for berth in self._vacant:

@@ -63,6 +63,19 @@ def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
     assert (update.name, update.at) == ("cup1", pytest.approx((1.9, 1.0, 0.7)))
 
 
+def test_a_thing_that_comes_to_stand_in_anothers_place_keeps_its_name_and_so_does_the_other():
+    table = Table([seen("Cup", at(1, 1)), seen("Bottle", at(2, 1))])
+    table.looks(5)
+    table.things = [seen("Bottle", at(1, 1))]  # and nobody sees the cup
+    table.looks(2)
+    assert table.taken_for == ("bottle1",)
+    assert table.entities["bottle1"].pose == at(1, 1)
+    table.things = [seen("Bottle", at(1, 1)), seen("Cup", at(3, 1))]
+    table.looks(3)
+    assert table.taken_for == ("bottle1", "cup1")
+    assert table.entities["cup1"].pose == at(3, 1)
+
+
 def test_a_thing_that_was_carried_out_of_sight_for_a_moment_keeps_its_name():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)

@@ -120,3 +120,36 @@ def test_held_and_free_berths_are_told_apart():
     world.spawn([order("cup1", "cup", pose(0, 2, 1.5))])
     world.step(1.0)
     assert world.scene().bodies[2].pose.position_m[2] == pytest.approx(1.4, abs=0.003)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whatever_comes_and_goes_everybody_has_one_berth_and_nobody_else_is_seen(seed):
+    world, rng = World(), np.random.default_rng(seed)
+    for turn in range(80):
+        names = world.poses().names
+        at = pose(*rng.uniform(-2.0, 2.0, 2), float(rng.choice([0.0, 0.5])))
+        if not names or rng.random() < 0.5:
+            kind, fixed = str(rng.choice([*KINDS, "plant", "shelf"])), bool(rng.random() < 0.2)
+            world.spawn([order(f"{kind}{turn}", kind, at, fixed=fixed)])
+        elif rng.random() < 0.5:
+            world.delete([str(rng.choice(names))])
+        else:
+            world.move([hand(str(rng.choice(names)), at)])
+        world.step(0.02)
+        bodies = {body.name: body for body in world.scene().bodies}
+        berths = world._engine._berths
+        assert berths.keys() == bodies.keys()
+        everyone = [berth.body for berth in (*berths.values(), *world._engine._vacant)]
+        assert len(set(everyone)) == len(everyone)
+        visible = world.model.geom_group != 3
+        assert {name for name, seen in zip(world.body_names(), visible, strict=True) if seen and name} == set(
+            bodies
+        )
+        for name, body in bodies.items():
+            assert berths[name].static == (body.fixed or body.ghost)
+            solid = world.model.body_contype[berths[name].body]
+            assert bool(solid) != body.ghost
+    assert np.isfinite(world.data.qpos).all()
+    world.delete(list(world.poses().names))
+    world.step(0.2)
+    assert world.asleep

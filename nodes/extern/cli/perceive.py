@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import io
+import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 import numpy as np
+from rich.table import Table
 
 from nodes.extern.cli.show import console
 from nodes.extern.cli.tables import table
 from nodes.extern.cli.talking import write_atomically
 from schemas import errors
+from schemas.perception import Observation
+
+if TYPE_CHECKING:
+    from nodes.perception_node.sights import Sight
 
 
 @click.command()
@@ -32,7 +40,8 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     0 for background, 1 to n for the objects.
     """
     from nodes.perception_node.files.reading import read_frames
-    from nodes.perception_node.segmentation import segment
+    from nodes.perception_node.pipeline import one_by_one, shipped
+    from nodes.perception_node.sights import see
 
     frames = list(read_frames(files, intrinsics))
     if labels is not None and len(frames) != 1:
@@ -40,19 +49,30 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
     for file, cloud in frames:
-        found = segment(cloud)
-        rows = table("object", "points", "x", "y", "z", "size [m]")
-        for number in range(1, int(found.labels.max(initial=0)) + 1):
-            points = cloud.points_camera[found.labels == number]
-            x, y, z = np.median(points, axis=0)
-            size = " x ".join(f"{side:.2f}" for side in np.ptp(points, axis=0))
-            rows.add_row(str(number), str(len(points)), f"{x:.3f}", f"{y:.3f}", f"{z:.3f}", size)
-        planes = ", ".join(f"{plane.kind} ({plane.points} cells)" for plane in found.planes) or "none"
-        console().print(f"{file}: {rows.row_count} objects; planes: {planes}")
-        if rows.row_count:
-            console().print(rows)
+        sight = see(cloud)
+        told = one_by_one(sight, shipped())
+        known = cloud.map_from_camera is not None
+        frame = "map frame" if known else "frame: the largest plane is z = 0, the camera above its origin"
+        console().print(f"{file}: {len(told)} objects; {frame}")
+        if told:
+            console().print(_rows(sight, told))
         if labels is not None:
             buffer = io.BytesIO()
-            np.save(buffer, found.labels)
+            np.save(buffer, np.where(np.isin(sight.labels, list(sight.carriers)), 0, sight.labels))
             write_atomically(labels, buffer.getvalue())
             print(f"wrote {labels}")
+
+
+def _rows(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
+    """A row for each object: what it is taken for, and where the whole of it stands."""
+    rows = table("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
+    counts = {segment.label: segment.count for segment in sight.segments}
+    for label, seen in sorted(told.items()):
+        words = [str(label), "?", "", str(counts[label])]
+        if seen is not None:
+            words[1:3] = [seen.class_, f"{seen.probability:.2f}"]
+            words += [f"{value:.3f}" for value in seen.pose.position_m]
+            words += [f"{math.degrees(seen.pose.yaw_rad):.0f}°"]
+            words += [" x ".join(f"{side:.3f}" for side in seen.size_m)]
+        rows.add_row(*words)
+    return rows

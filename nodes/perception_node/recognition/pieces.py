@@ -14,7 +14,7 @@ from nodes.perception_node.things import Thing
 
 _NEAR_M = 0.015
 _DOUBTFUL = 0.6
-_ROUNDS = 4
+_ROUNDS = 6
 _MOST_PAIRS = 12
 _GAIN = 0.05
 _PIECE = 0.5

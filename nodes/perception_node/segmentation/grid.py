@@ -26,11 +26,10 @@ class Grid:
     """Cells of the working picture, (h, w), `step` pixels wide and high.
 
     `points`: (h, w, 3), camera frame [m], NaN where nothing was seen: of each cell the nearest surface.
-    `colors`: (h, w, 3), or None. `source`: the cloud's points (H, W, 3).
+    `source`: the cloud's points (H, W, 3).
     """
 
     points: Floats
-    colors: NDArray[np.uint8] | None
     source: Floats
     step: int
 
@@ -39,11 +38,10 @@ def grid_of(cloud: Cloud) -> Grid:
     """The working picture of an organised cloud."""
     source = cloud.points_camera
     step = max(1, round(source.shape[1] / WIDTH))
-    colors = None if cloud.colors is None else cloud.colors[::step, ::step]
     if step == 1:
         points = np.where(source[..., 2:] > 0, source, np.float32(np.nan))
-        return Grid(points, colors, source, step)
-    return Grid(_averaged(source, step), colors, source, step)
+        return Grid(points, source, step)
+    return Grid(_averaged(source, step), source, step)
 
 
 def _averaged(source: Floats, step: int) -> Floats:

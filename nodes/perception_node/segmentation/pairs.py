@@ -10,10 +10,10 @@ from nodes.perception_node.segmentation.statistics import Indices, Statistics
 
 NAMES = (
     *("log_small", "log_big", "ratio"),
-    *("touch", "step", "small_before", "big_before", "color_step"),
+    *("touch", "step", "small_before", "big_before"),
     *("wide", "bends", "bend", "concave", "deep", "convex", "like"),
     *("flat_small", "flat_big", "flat_both", "flatter", "long_both", "curved_small", "curved_big"),
-    *("facing", "off_big", "off_small", "turned_out", "color_apart"),
+    *("facing", "off_big", "off_small", "turned_out"),
     *("sight", "blocked", "open", "hidden_small", "hidden_big", "apart"),
     *("low_small", "tall_small", "low_big", "tall_big", "small_on_big", "big_on_small", "levels"),
     *("tops_apart", "bottoms_apart"),
@@ -55,7 +55,6 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     straight_big = np.maximum(np.linalg.norm(normal_big, axis=1), 1e-6)
     straight_small = np.maximum(np.linalg.norm(normal_small, axis=1), 1e-6)
     unit_big, unit_small = normal_big / straight_big[:, None], normal_small / straight_small[:, None]
-    color = (many[:, s.COLOR] / count_big[:, None]) - (few[:, s.COLOR] / count_small[:, None])
     low = np.minimum(of.low[big], of.low[small])
     high = np.maximum(of.high[big], of.high[small])
     sides = high[:, :2] - low[:, :2]
@@ -64,7 +63,7 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     columns = [
         *(np.log(count_small), np.log(count_big), count_small / count_big),
         *(border[:, s.TOUCH] / root, border[:, s.STEP] / touch),
-        *(border[:, s.BEFORE] / touch, back[:, s.BEFORE] / touch, border[:, s.COLOR_STEP] / touch),
+        *(border[:, s.BEFORE] / touch, back[:, s.BEFORE] / touch),
         *(border[:, s.WIDE] / root, border[:, s.BENDS] / np.maximum(border[:, s.WIDE], 1)),
         *(border[:, s.BEND] / bends, border[:, s.CONCAVE] / bends, border[:, s.DEEP] / bends),
         *(border[:, s.CONVEX] / bends, border[:, s.LIKE] / bends),
@@ -73,7 +72,6 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
         *(straight_small, straight_big, (unit_big * unit_small).sum(axis=1)),
         *((unit_big * apart).sum(axis=1), -(unit_small * apart).sum(axis=1)),
         ((normal_big - normal_small) * apart).sum(axis=1) / distance,
-        np.abs(color).sum(axis=1),
         *(border[:, s.SIGHT], border[:, s.BLOCKED] / sight, border[:, s.OPEN] / sight),
         *(few[:, s.HIDDEN] / root, many[:, s.HIDDEN] / np.sqrt(count_big), distance),
         *(_above_support(of, small), of.high[small, 2] - of.low[small, 2]),

@@ -17,7 +17,7 @@ _AROUND = 4  # the nearest neighbours on a grid
 
 
 def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
-    """An organised cloud of the points of one that is not, and for each point (N,) the pixel it falls on.
+    """The points of a cloud without order as an organised one, and for each (N,) the pixel it falls on.
 
     Points that fall on no pixel, and those that are not in front of the camera, have -1. Of several on one
     pixel the nearest is in the picture. Where the cloud was a picture once, its pixels are found again.
@@ -26,7 +26,7 @@ def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     pixel = np.full(len(points), -1, np.int64)
     index = np.flatnonzero(points[:, 2] > 0)  # NaN is not
     if not index.size:
-        return replace(cloud, points_camera=np.full((2, 2, 3), np.nan, np.float32), colors=None), pixel
+        return Cloud(np.full((2, 2, 3), np.nan, np.float32)), pixel
     depth = points[index, 2]
     rays = points[index, :2] / depth[:, None]
     low, high = np.percentile(rays[:: max(1, len(rays) // _LOOKED_AT)], (0.2, 99.8), axis=0)
@@ -45,11 +45,7 @@ def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     seen = depth <= nearest[target]
     picture = np.full((height, width, 3), np.nan, np.float32)
     picture.reshape(-1, 3)[target[seen]] = points[index[seen]]
-    colors = None
-    if cloud.colors is not None:
-        colors = np.zeros((height, width, 3), np.uint8)
-        colors.reshape(-1, 3)[target[seen]] = cloud.colors.reshape(-1, 3)[index[seen]]
-    return replace(cloud, points_camera=picture, colors=colors), pixel
+    return replace(cloud, points_camera=picture, colors=None), pixel
 
 
 def _pitch(rays: NDArray[np.float32]) -> float:

@@ -73,11 +73,11 @@ def taken_apart(cloud: Cloud) -> Parts:
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
     window = _window(where)
-    points, colors = grid.points[window], None if grid.colors is None else grid.colors[window]
+    points = grid.points[window]
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
-    known = statistics(of_patch[window], points, surface, colors, _upright(planes))
+    known = statistics(of_patch[window], points, surface, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 
 

@@ -13,14 +13,14 @@ Sums = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 # columns of `Statistics.inside`
-COUNT, POINT, SQUARES, NORMAL, COLOR, HIDDEN = 0, slice(1, 4), slice(4, 10), slice(10, 13), slice(13, 16), 16
-INSIDE = 17
+COUNT, POINT, SQUARES, NORMAL, HIDDEN = 0, slice(1, 4), slice(4, 10), slice(10, 13), 13
+INSIDE = 14
 _FIRST, _SECOND = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
 
 # columns of `Statistics.between`, for the ordered pair (a, b)
-TOUCH, STEP, BEFORE, COLOR_STEP, BENDS, BEND, CONCAVE, DEEP, CONVEX, LIKE, WIDE = range(11)
-SIGHT, BLOCKED, OPEN = range(11, 14)
-BETWEEN = 14
+TOUCH, STEP, BEFORE, BENDS, BEND, CONCAVE, DEEP, CONVEX, LIKE, WIDE = range(10)
+SIGHT, BLOCKED, OPEN = range(10, 13)
+BETWEEN = 13
 
 _STEP_M = 0.007
 _SAME_SURFACE_M = 0.02
@@ -70,9 +70,7 @@ class Statistics:
         return Statistics(*(getattr(self, field.name).copy() for field in fields(self)))
 
 
-def statistics(
-    labels: Labels, points: Floats, normals: Floats, colors: NDArray[np.uint8] | None, upright: Upright
-) -> Statistics:
+def statistics(labels: Labels, points: Floats, normals: Floats, upright: Upright) -> Statistics:
     """Of patches `labels` (h, w), numbered from 1 without gaps."""
     count = int(labels.max(initial=0))
     row, column = np.nonzero(labels)
@@ -83,15 +81,13 @@ def statistics(
     values = np.zeros((len(p), INSIDE))
     values[:, COUNT], values[:, POINT], values[:, NORMAL] = 1, p, n
     values[:, SQUARES] = p[:, _FIRST] * p[:, _SECOND]
-    if colors is not None:
-        values[:, COLOR] = colors[row, column] / np.float32(255)
     placed = p @ upright.axes.T
     inside, low, high = (
         ufunc.reduceat(of, starts, axis=0).astype(np.float64) if count else np.zeros((0, of.shape[1]))
         for ufunc, of in ((np.add, values), (np.minimum, placed), (np.maximum, placed))
     )
     between = np.zeros((count, count, BETWEEN))
-    _touching(between, labels, points, colors)
+    _touching(between, labels, points)
     _bending(between, labels, points, normals)
     _seen_between(between, labels, points, inside[:, POINT][:, 2])
     inside[:, HIDDEN] = _hidden(labels, points, count)
@@ -107,7 +103,7 @@ def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.gene
         between[..., column] += sums + sums.T
 
 
-def _touching(between: Sums, labels: Labels, points: Floats, colors: NDArray[np.uint8] | None) -> None:
+def _touching(between: Sums, labels: Labels, points: Floats) -> None:
     """Cells side by side."""
     count = between.shape[0]
     for shift in ((0, 1), (1, 0)):
@@ -116,11 +112,7 @@ def _touching(between: Sums, labels: Labels, points: Floats, colors: NDArray[np.
         a, b = a[where], b[where]
         z, far = (view[where] for view in shifted(points[..., 2], *shift))
         step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
-        off = 0.0 * z
-        if colors is not None:
-            c, d = (view[where].astype(np.float32) for view in shifted(colors, *shift))
-            off = np.abs(c - d).sum(axis=-1) / 255
-        _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step, COLOR_STEP: off})
+        _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step})
         for first, second, front in ((a, b, step & (z < far)), (b, a, step & (far < z))):
             key = (first - 1) * count + (second - 1)
             sums = np.bincount(key, weights=front, minlength=count * count)

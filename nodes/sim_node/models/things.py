@@ -27,6 +27,7 @@ from nodes.sim_node.models.parts import (
     ALONG_X,
     ALONG_Y,
     Colour,
+    Part,
     Parts,
     about,
     ball,
@@ -331,16 +332,37 @@ def shoes(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def umbrella(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Open: a canopy of stacked discs over a stick, standing on its crook in a foot."""
-    radius = min(x, y) / 2
-    low = 0.68 * z
-    return [
-        *turned([(radius, low), (0.75 * radius, 0.82 * z), (0.05 * radius, 0.97 * z)], colour, steps=7),
-        *seen(column(0.012, 0, z, DARK)),
-        *seen(pill(0.02, 0.14 * z, (0, 0, 0.12 * z), (0.4, 0.25, 0.12))),
-        column(0.25 * radius, 0, 0.03 * z, DARK),
-        *felt(column(0.5 * radius, low, 0.95 * z, colour)),
+    """Folded and lying down: a pleated cone to a tip at +x, a strap, and a crook to hold it by."""
+    middle, wood = z / 2, (0.42, 0.26, 0.13)
+    pleats = [
+        rod(
+            middle * (1.0 - 0.115 * i),
+            0.1 * x,
+            ((0.1 * i - 0.16) * x, 0, middle),
+            shade(colour, 0.8 + 0.3 * (i % 2)),
+            ALONG_X,
+        )
+        for i in range(6)
     ]
+    crook = [(-0.40 * x, 0.0), (-0.47 * x, 0.02 * y), (-0.49 * x, 0.25 * y), (-0.45 * x, 0.44 * y)]
+    return [
+        *seen(pleats),
+        *seen(rod(1.06 * middle, 0.02 * x, (-0.1 * x, 0, middle), DARK, ALONG_X)),
+        *seen(rod(0.008, 0.12 * x, (0.44 * x, 0, middle), STEEL, ALONG_X)),
+        *seen(rod(0.008, 0.22 * x, (-0.31 * x, 0, middle), STEEL, ALONG_X)),
+        *seen(_segment(start, end, middle, wood) for start, end in pairwise(crook)),
+        *felt(box((0.9 * x, 0.6 * z, z), (0, 0, middle), colour)),
+    ]
+
+
+def _segment(start: tuple[float, float], end: tuple[float, float], z: float, colour: Colour) -> Part:
+    """A piece of a bent rod at one height."""
+    across, along = end[1] - start[1], end[0] - start[0]
+    length = math.hypot(along, across)
+    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2, z)
+    return pill(
+        0.014, length + 0.028, middle, colour, product(about("z", math.atan2(across, along)), ALONG_X)
+    )
 
 
 def bag(x: float, y: float, z: float, colour: Colour) -> Parts:

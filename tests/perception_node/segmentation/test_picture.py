@@ -18,13 +18,11 @@ def test_the_pixels_of_a_shuffled_picture_are_found_again():
     row, column = np.nonzero(np.isfinite(points[..., 2]))
     order = np.random.default_rng(0).permutation(len(row))
     row, column = row[order], column[order]
-    colors = np.stack([row % 256, column % 256, row * 0], axis=-1).astype(np.uint8)
-    picture, pixel = as_picture(Cloud(points[row, column][None], colors[None]))
+    picture, pixel = as_picture(Cloud(points[row, column][None]))
     found_row, found_column = np.divmod(pixel, picture.points_camera.shape[1])
     assert len(np.unique(row - found_row)) == 1
     assert len(np.unique(column - found_column)) == 1
     np.testing.assert_array_equal(picture.points_camera[found_row, found_column], points[row, column])
-    np.testing.assert_array_equal(picture.colors[found_row, found_column], colors)
 
 
 def test_a_thinned_cloud_leaves_few_holes():
