@@ -108,14 +108,16 @@ class Coordinator:
 
     def _on_health(self, health: Health) -> None:
         if self._health.take(health) and health.node == "kb_node":
+            self._door.doubt()
             self._fetch_map()
 
     def _tick(self) -> None:
-        if not self._has_map:
+        if not self._has_map or self._door.doubted:
             self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
         self._answer_early()
+        self._turns.go_on()  # however busy the node is
         self._keep()
 
     def _keep(self) -> None:
