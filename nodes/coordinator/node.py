@@ -188,10 +188,13 @@ class Coordinator:
 
     def _answer_waiting(self) -> None:
         still = []
+        undecided = {"pending"}
+        if self._health.alive("sim_node"):
+            undecided.add("unknown")  # its scene is still to come
         for name, deadline, changed, future in self._waiting:
             entity = self._door.entities.get(name)
             state = self._keeping.body_state(entity) if entity is not None else None
-            if state is not None and state.status == "pending" and time.monotonic() < deadline:
+            if state is not None and state.status in undecided and time.monotonic() < deadline:
                 still.append((name, deadline, changed, future))
                 continue
             status = _spoken(state) if state is not None else "removed meanwhile"
