@@ -113,6 +113,14 @@ def world():
         thread.join()
 
 
+def seqs(path):
+    """The commits recorded so far; none while the file ends in the middle of a message."""
+    try:
+        return [commit.seq for commit in read_commits(path)]
+    except errors.BadFile:
+        return []
+
+
 def network(world):
     return bus.Network(connect=(world.endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
 
@@ -199,7 +207,7 @@ def test_commits_that_were_missed_are_recorded_too(world, tmp_path):
         world.await_commit(5)
         world.publish(commit(6))
         world.await_commit(6)
-        wait_for(lambda: [c.seq for c in read_commits(path)] == [1, 2, 3, 4, 5, 6])
+        wait_for(lambda: seqs(path) == [1, 2, 3, 4, 5, 6])
     assert positions(path, "lamp1") == [[3.0, 0.0, 0.0]]
 
 
@@ -238,7 +246,7 @@ def test_a_stopped_process_leaves_a_complete_file(world, tmp_path):
         process = subprocess.Popen(command, env=os.environ)
         try:
             world.await_commit(1)
-            wait_for(lambda: [c.seq for c in read_commits(path)] == [1])
+            wait_for(lambda: seqs(path) == [1])
             assert f"no live view: {serve} is taken" in world._said
             world.publish(commit(2))
             world.await_commit(2)
