@@ -123,6 +123,8 @@ class ABox(Equality):
             if self.is_same(s, o):
                 raise Clash(Edge(edge), Same(s, o))
             return
+        if self.is_mixed and self.is_literal(o):
+            self._meet(o)
         rules = self._step(edge).rules
         if rules is None or (rules.of_values and s not in self.equals and store.out.is_alone(edge)):
             return

@@ -115,7 +115,7 @@ class CompiledEngine:
         shapes = self._shapes
         rest: list[Triple] = []
         for run in shapes.runs(triples):
-            known = None if run.key is None else shapes.known.get(run.key, run)
+            known = None if self._abox.is_mixed or run.key is None else shapes.known.get(run.key, run)
             if isinstance(known, Written) and shapes.write(known, run):
                 added += run.triples
                 touched.update(known.touched_of(run.individuals))

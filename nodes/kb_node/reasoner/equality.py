@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from nodes.kb_node.reasoner.axioms import ANY, Key, Limit, NotCompilable, Role
 from nodes.kb_node.reasoner.individuals import Equals, Individuals
 from nodes.kb_node.reasoner.reasons import Claim, Clash, Edge, Member, Reason, Same, member
+from nodes.kb_node.reasoner.terms import is_literal
 
 
 class Equality(Individuals):
@@ -38,10 +39,20 @@ class Equality(Individuals):
         mine.links.append(self._remember(Reason(next(self._order), claims, link=(one, other))))
         for node in mine.members:
             self.equals[node] = mine
+        if self.is_literal(one) and None in (self.value(one), self.value(other)):
+            self._mix(one, other)
         self._widen(one, self.store.kind[one].mask | self.store.kind[other].mask)
         for node in newcomers:
             self.fresh += self.store.out.all(node)
             self.fresh += self.store.into.all(node)
+
+    def _mix(self, *literals: int) -> None:
+        """A literal without a known value is the same as another: so it is as all spellings of that one."""
+        self.is_mixed = True
+        values = {self.value(literal) for literal in literals} - {None}
+        for term, node in list(self.store.numbers.items()) if values else ():
+            if is_literal(term) and not self.store.is_bare(node) and self.value(node) in values:
+                self._meet(node)
 
     def _check_joinable(self, one: int, other: int, claims: tuple[Claim, ...]) -> None:
         terms = self.store.terms

@@ -49,6 +49,8 @@ class Individuals:
         self.rest_on_node: dict[int, list[Reason]] = {}
         self._order = count()
         self.spellings: dict[datatypes.Value, list[int]] = {}
+        self.is_mixed = False
+        """Whether a literal without a known value was ever the same as another: all spellings matter then."""
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
         for term in schema.nominals:

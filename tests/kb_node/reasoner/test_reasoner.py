@@ -1,4 +1,5 @@
 from functools import cache
+from itertools import permutations
 
 import pytest
 from hypothesis import HealthCheck, given, note, settings
@@ -140,6 +141,29 @@ def test_a_spelling_that_goes_while_another_comes():
     reasoner.apply(insert=[old])
     reasoner.apply(delete=[old], insert=[new])
     check_same(reasoner, [*asserted_in(BASE), new], BASE)
+
+
+def test_a_literal_of_an_unknown_datatype_that_is_a_number():
+    """It is as all spellings of that number are, whichever came first."""
+    facts = [
+        triple(text)
+        for text in (
+            ':i0 :data "1.0"^^xsd:float',
+            ':i3 :fundata "x"^^:unknown',
+            ':i3 :fundata "1.00"^^xsd:float',
+            ':i1 :data "1"^^xsd:float',
+        )
+    ]
+    for order in permutations(facts):
+        reasoner, asserted = Reasoner(asserted_in(BASE)), dict.fromkeys(asserted_in(BASE))
+        for fact in order:
+            reasoner.apply(insert=[fact])
+            asserted[fact] = None
+            check_same(reasoner, asserted, BASE)
+        for fact in order:
+            reasoner.apply(delete=[fact])
+            del asserted[fact]
+            check_same(reasoner, asserted, BASE)
 
 
 @sequences(200)
