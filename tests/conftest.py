@@ -83,9 +83,10 @@ class System:
         return connect(self.endpoint)
 
     def pid(self, node: str) -> int:
-        """The process of a node."""
+        """The process of a node, as soon as the coordinator has heard of it."""
         with self.client() as client:
-            return next(n.pid for n in client.status().nodes if n.node == node)
+            found = until(lambda: [n for n in client.status().nodes if n.node == node], f"a beat of {node}")
+            return int(found[0].pid)
 
     def stop(self) -> float:
         """Press Ctrl-C; how long the end took [s]."""

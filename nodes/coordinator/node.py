@@ -108,14 +108,16 @@ class Coordinator:
 
     def _on_health(self, health: Health) -> None:
         if self._health.take(health) and health.node == "kb_node":
+            self._door.doubt()
             self._fetch_map()
 
     def _tick(self) -> None:
-        if not self._has_map:
+        if not self._has_map or self._door.doubted:
             self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
         self._answer_early()
+        self._turns.go_on()  # however busy the node is
         self._keep()
 
     def _keep(self) -> None:
@@ -186,10 +188,13 @@ class Coordinator:
 
     def _answer_waiting(self) -> None:
         still = []
+        undecided = {"pending"}
+        if self._health.alive("sim_node"):
+            undecided.add("unknown")  # its scene is still to come
         for name, deadline, changed, future in self._waiting:
             entity = self._door.entities.get(name)
             state = self._keeping.body_state(entity) if entity is not None else None
-            if state is not None and state.status == "pending" and time.monotonic() < deadline:
+            if state is not None and state.status in undecided and time.monotonic() < deadline:
                 still.append((name, deadline, changed, future))
                 continue
             status = _spoken(state) if state is not None else "removed meanwhile"

@@ -36,7 +36,7 @@ CREATE UNIQUE INDEX commits_by_command ON commits (command_id);
 CREATE TABLE touches (name TEXT, seq INTEGER, PRIMARY KEY (name, seq)) STRICT, WITHOUT ROWID;
 CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 """
-_FORMAT = b"3"
+_FORMAT = b"4"
 _ANEW = "start anew with --fresh (it is kept)"
 _PAGE = 256
 _DENSE_FROM = 1 << 16

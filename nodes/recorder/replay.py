@@ -71,8 +71,9 @@ def require_recording(path: Path) -> None:
 
 
 def read_commits(path: Path) -> list[RecordedCommit]:
-    """All commits in a recording, by number; it may still be growing. Raises BadFile.
+    """All commits in a recording, by number. Raises BadFile.
 
+    It may still be growing, but can be read between two of its messages only: then BadFile is worth a retry.
     One that was both heard and recalled counts once.
     """
     require_recording(path)

@@ -29,7 +29,8 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
     together = np.concatenate(features, axis=1)
     mean = together.mean(axis=0)
     found = LinearDiscriminantAnalysis(solver="eigen", shrinkage=0.05, n_components=_AXES)
-    found.fit(together - mean, target)
+    several = np.bincount(target)[target] > 1  # one alone does not scatter
+    found.fit((together - mean)[several], target[several])
     axes = found.scalings_[:, :_AXES]
     centres = np.full((classes, _AXES), 1e3)
     for k in np.unique(target):

@@ -195,6 +195,18 @@ def test_a_missed_commit_is_noticed(door):
     assert not door.take(Commit(seq=3, stamp_ns=0, id="c", source="operator"))
 
 
+def test_another_knowledge_base_may_know_less(door, semantic_map):
+    before = semantic_map.snapshot()
+    add(door, name="chair1")
+    door.begin(before)
+    assert set(door.entities) == {"chair1"}
+    door.doubt()
+    assert not door.take(Commit(seq=1, stamp_ns=0, id="a", source="operator"))
+    door.begin(before)
+    assert (door.entities, door.seq) == ({}, 0)
+    assert door.take(Commit(seq=1, stamp_ns=0, id="a", source="operator"))
+
+
 def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     door.follow("chair1", Pose(position_m=(1.5, 1.0, 0.0)))

@@ -1,9 +1,11 @@
 """Messages to test with."""
 
+import numpy as np
+
 from ontology import vocabulary as v
 from schemas.commits import Commit, Departed, Star
 from schemas.entities import Entity, Pose, Provenance
-from schemas.scenes import Body, Poses, Scene
+from schemas.scenes import Body, Poses, Scene, Surface
 
 SINCE = Provenance(commit=1, stamp_ns=1, source="file")
 START_NS = 1_700_000_000_000_000_000
@@ -38,6 +40,16 @@ def body(name, at=None, **others):
         commit=1,
         shape_commit=1,
         **(about | others),
+    )
+
+
+def surface():
+    """One red triangle."""
+    return Surface(
+        points=np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype="<f4").tobytes(),
+        normals=np.tile(np.array([0, 0, 1], dtype="<f4"), 3).tobytes(),
+        colours=bytes([200, 0, 0] * 3),
+        triangles=np.arange(3, dtype="<u4").tobytes(),
     )
 
 

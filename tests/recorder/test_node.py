@@ -18,9 +18,20 @@ from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commits import Snapshot
 from schemas.health import Health
-from schemas.scenes import SceneQuery
+from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
 from tests.recorder.files import column, log, positions
-from tests.recorder.messages import START_NS, body, commit, entity, pose, poses, relation, scene, star
+from tests.recorder.messages import (
+    START_NS,
+    body,
+    commit,
+    entity,
+    pose,
+    poses,
+    relation,
+    scene,
+    star,
+    surface,
+)
 
 WAIT_S = 20.0
 
@@ -54,7 +65,10 @@ class World:
                 "star": (StarQuery, lambda query: tuple(map(star, query.names))),
             },
         )
-        self.node.serve(keys.SIM, {"snapshot": (SceneQuery, self._scene)})
+        self.asked = []
+        self.node.serve(
+            keys.SIM, {"snapshot": (SceneQuery, self._scene), "surfaces": (SurfaceQuery, self._surfaces)}
+        )
 
     def publish(self, *commits):
         for made in commits:
@@ -80,6 +94,10 @@ class World:
             raise errors.Refused("no simulator runs")
         return self.scene
 
+    def _surfaces(self, query):
+        self.asked.append(query.names)
+        return Surfaces(surfaces={name: surface() for name in query.names})
+
 
 @pytest.fixture
 def world():
@@ -93,6 +111,14 @@ def world():
         yield world
         world.node.stop()
         thread.join()
+
+
+def seqs(path):
+    """The commits recorded so far; none while the file ends in the middle of a message."""
+    try:
+        return [commit.seq for commit in read_commits(path)]
+    except errors.BadFile:
+        return []
 
 
 def network(world):
@@ -147,6 +173,18 @@ def test_poses_are_recorded_when_they_change(world, tmp_path):
     assert [x for x, _, _ in positions(path, "chair1")] == [0.0, 0.0, 0.5, 1.0]
 
 
+def test_bodies_are_drawn_as_they_look_each_kind_asked_for_once(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    world.scene = scene(body("chair1", model="chair"), body("chair2", model="chair"))
+    with recorder(world, path):
+        world.simulate({"chair1": pose(), "chair2": pose()})
+        wait_for(lambda: column(path, "/map/bodies/chair1", "Mesh3D:vertex_positions"))
+        world.scene = scene(body("chair1", model="chair"), version=2)
+        world.simulate({"chair1": pose()}, version=2)
+        wait_for(lambda: column(path, "/map/bodies/chair2", "Clear:is_recursive"))
+    assert world.asked == [("chair1",)]
+
+
 def test_new_bodies_are_drawn_and_gone_ones_erased(world, tmp_path):
     path = tmp_path / "a.rrd"
     with recorder(world, path):
@@ -169,7 +207,7 @@ def test_commits_that_were_missed_are_recorded_too(world, tmp_path):
         world.await_commit(5)
         world.publish(commit(6))
         world.await_commit(6)
-        wait_for(lambda: [c.seq for c in read_commits(path)] == [1, 2, 3, 4, 5, 6])
+        wait_for(lambda: seqs(path) == [1, 2, 3, 4, 5, 6])
     assert positions(path, "lamp1") == [[3.0, 0.0, 0.0]]
 
 
@@ -208,7 +246,7 @@ def test_a_stopped_process_leaves_a_complete_file(world, tmp_path):
         process = subprocess.Popen(command, env=os.environ)
         try:
             world.await_commit(1)
-            wait_for(lambda: [c.seq for c in read_commits(path)] == [1])
+            wait_for(lambda: seqs(path) == [1])
             assert f"no live view: {serve} is taken" in world._said
             world.publish(commit(2))
             world.await_commit(2)

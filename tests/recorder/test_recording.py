@@ -4,7 +4,6 @@ import subprocess
 import sys
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from nodes.recorder.figures import Figure
@@ -12,9 +11,8 @@ from nodes.recorder.recording import free_to_serve, open_recording
 from nodes.recorder.replay import read_commits, replay
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.scenes import Surface
 from tests.recorder.files import column, log, positions, timelines
-from tests.recorder.messages import START_NS, commit, entity, pose, relation
+from tests.recorder.messages import START_NS, commit, entity, pose, relation, surface
 
 CHAIR = Figure("chair1", "Chair", (0.4, 0.6, 1.0), "solid")
 
@@ -79,17 +77,10 @@ def test_a_figure_is_a_box_on_its_bottom_centre(tmp_path):
 
 def test_a_figure_whose_surface_is_known_is_drawn_with_it(tmp_path):
     path = tmp_path / "a.rrd"
-    triangle = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype="<f4")
-    surface = Surface(
-        points=triangle.tobytes(),
-        normals=np.tile(np.array([0, 0, 1], dtype="<f4"), 3).tobytes(),
-        colours=bytes([200, 0, 0] * 3),
-        triangles=np.arange(3, dtype="<u4").tobytes(),
-    )
     with open_recording(path, None) as recording:
         recording.at(1, START_NS, None)
-        recording.draw("chair1", replace(CHAIR, surface=surface), pose())
-        recording.draw("ghost1", replace(CHAIR, look="ghost", surface=surface), pose())
+        recording.draw("chair1", replace(CHAIR, surface=surface()), pose())
+        recording.draw("ghost1", replace(CHAIR, look="ghost", surface=surface()), pose())
     assert column(path, "/map/bodies/chair1", "Mesh3D:vertex_positions") == [[0.0, 0.0, 0.0]]  # the first
     assert len(column(path, "/map/bodies/chair1", "Boxes3D:half_sizes")) == 1
     assert column(path, "/map/bodies/ghost1", "Mesh3D:vertex_positions") == []

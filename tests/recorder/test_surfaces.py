@@ -1,8 +1,7 @@
 from nodes.recorder.surfaces import SurfaceShelf
-from schemas.scenes import Surface
-from tests.recorder.messages import body
+from tests.recorder.messages import body, surface
 
-SURFACE = Surface(points=b"", normals=b"", colours=b"", triangles=b"")
+SURFACE = surface()
 
 
 def test_each_model_at_each_size_is_asked_for_once():

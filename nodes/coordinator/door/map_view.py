@@ -15,6 +15,7 @@ class MapView:
         self.classes = ClassNames()
         self.entities: dict[str, Entity] = {}
         self.seq = 0
+        self.doubted = False
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -27,20 +28,22 @@ class MapView:
         known = sorted(self.entities.items())
         return tuple(e for _, e in known if class_name is None or class_name in e.types)
 
+    def doubt(self) -> None:
+        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
+        self.doubted = True
+
     def begin(self, snapshot: Snapshot) -> None:
-        """Take over a snapshot, unless it is older than what is known."""
-        if snapshot.seq >= self.seq:
+        """Take over a snapshot, unless it is older than what is known and not doubted."""
+        if snapshot.seq >= self.seq or self.doubted:
+            self.doubted = False
             self.seq = snapshot.seq
             self.entities = {entity.name: entity for entity in snapshot.entities}
 
     def take(self, commit: Commit) -> bool:
-        """Show a commit in `entities`. False when one before it was missed, so that a snapshot is needed."""
-        if commit.seq <= self.seq:
-            return True
-        if commit.seq != self.seq + 1:
-            return False
-        self.seq = commit.seq
-        for gone in commit.removed:
-            self.entities.pop(gone.name, None)
-        self.entities.update({entity.name: entity for entity in commit.changed})
-        return True
+        """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
+        if commit.seq == self.seq + 1:
+            self.seq = commit.seq
+            for gone in commit.removed:
+                self.entities.pop(gone.name, None)
+            self.entities.update({entity.name: entity for entity in commit.changed})
+        return commit.seq <= self.seq and not self.doubted

@@ -18,6 +18,7 @@ _ROUNDS = 6
 _MOST_PAIRS = 12
 _GAIN = 0.05
 _PIECE = 0.5
+_IDLE = 0.3
 
 Join = Callable[[Thing, Thing], Thing]
 
@@ -57,7 +58,8 @@ def put_together(
 def _gain(whole: Numbers, apart: Numbers, learnt: Learnt) -> float:
     """How much surer the whole (K,) is than the surer of two (2, K); a mere piece may even cost a little."""
     known, piece = _judged(np.vstack([whole, apart]), learnt)
-    return float(known[0] - known[1:].max()) + (_GAIN if piece[1:].max() > _PIECE else -_GAIN)
+    idle = piece[1:].max() > _PIECE or known[1:].min() < _IDLE
+    return float(known[0] - known[1:].max()) + (_GAIN if idle else -_GAIN)
 
 
 def _judged(chances: Numbers, learnt: Learnt) -> tuple[Numbers, Numbers]:

@@ -1,0 +1,46 @@
+from dataclasses import replace
+
+from nodes.perception_node.recognition.learnt import shipped
+from nodes.perception_node.recognition.pieces import put_together
+from nodes.perception_node.things import thing_of
+from tests.perception_node.scenes import shot
+from tests.perception_node.test_fusion import truly_cut
+
+SUPPORTS_M = [0.0, 0.7]
+
+
+def join(a, b):
+    return thing_of((*a.segments, *b.segments), SUPPORTS_M)
+
+
+def body(name):
+    """The segments of one body in both views."""
+    number = [b.name for b in shot().bodies].index(name) + 1
+    return [s for sight in truly_cut() for s in sight.segments if s.label == number]
+
+
+def test_what_is_recognised_stays_apart():
+    things = [thing_of(body("bottle"), SUPPORTS_M), thing_of(body("cereals"), SUPPORTS_M)]
+    parts, chances, members = put_together(things, shipped(), join)
+    assert (len(parts), members) == (2, [[0], [1]])
+    assert [shipped().classes[k] for k in chances.argmax(axis=1)] == ["Bottle", "Cereals"]
+
+
+def test_a_neck_finds_its_bottle():
+    height = 0.7 + 0.15
+    halves = [
+        thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS_M)
+        for upper in (False, True)
+    ]
+    parts, chances, members = put_together(halves, shipped(), join)
+    assert members == [[0, 1]]
+    assert shipped().classes[int(chances[0].argmax())] == "Bottle"
+    assert parts[0].box.size_m[2] > 0.25
+
+
+def _part(segment, rows):
+    return replace(segment, points=segment.points[rows], colors=segment.colors[rows])
+
+
+def test_nothing_is_nothing():
+    assert put_together([], shipped(), join)[2] == []
