@@ -21,5 +21,5 @@ def check(explanation, asserted):
 
 
 def _reached(some, goal):
-    closure = Closure(some)
+    closure = Closure(some, mentions=goal or ())  # the goal may spell a value as none of the facts does
     return closure.clash is not None if goal is None else closure.clash is None and closure.holds(goal)
