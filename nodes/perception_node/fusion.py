@@ -37,8 +37,11 @@ def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
             hits = _labels_of(probes, sight)
             shown[at, views == other] = max(1, len(hits))
             for label, count in zip(*np.unique(hits[hits > 0], return_counts=True), strict=True):
-                votes[at, row[other, int(label)]] = count
+                if (other, int(label)) in row:
+                    votes[at, row[other, int(label)]] = count
+    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
     same = (votes > _SAME_SHARE * shown) & (votes >= _FEWEST_SEEN)
+    same &= carrier == carrier[:, None]  # what is flat looks like its table to another camera
     return _groups(same | same.T, members)
 
 

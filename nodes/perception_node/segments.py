@@ -13,6 +13,10 @@ MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""
 
 
+_LEAST_M = 0.005
+"""What measures less is no thing, but one point seen again and again."""
+
+
 @dataclass(frozen=True)
 class Segment:
     """What one view shows of one thing.
@@ -58,6 +62,8 @@ def cut_out(
     for own in np.split(pixels, np.flatnonzero(np.diff(owner)) + 1) if len(pixels) else ():
         label = int(labels.ravel()[own[0]])
         thin = own[:: max(1, -(-len(own) // MOST_POINTS))]
+        if np.ptp(points_map.reshape(-1, 3)[thin], axis=0).max() < _LEAST_M:
+            continue
         found.append(
             Segment(
                 points=points_map.reshape(-1, 3)[thin],
