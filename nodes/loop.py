@@ -43,7 +43,6 @@ class Relay(NamedTuple):
 
 HEARTBEAT_S = 1.0
 _AGAIN_S = 0.05
-_SHORT_BYTES = 1 << 14
 
 
 class Node:
@@ -232,22 +231,20 @@ class Node:
     def _relay(
         self, request: bus.Request, prefix: str, verb: str, message: Any, kind: Any, timeout_s: float
     ) -> None:
-        """A short reply goes on from Zenoh's thread; to send a long one may block, to decode it may last."""
+        """Pass a reply on as it comes. Not from Zenoh's own thread: it holds locks when a peer is lost."""
         if not request.plain:
             future = self.ask_later(prefix, verb, message, kind, timeout_s=timeout_s)
             future.add_done_callback(lambda done: self._answer_later(request, done))
             return
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
+            self._events.put(lambda: pass_on(read))
+
+        def pass_on(read: Callable[[], bus.Encoded]) -> None:
             try:
-                reply = read()
+                request.reply(read())
             except errors.SemmapError as error:
                 request.refuse(error)
-                return
-            if len(reply.payload) <= _SHORT_BYTES:
-                request.reply(reply)
-            else:
-                self._events.put(lambda: request.reply(reply))
 
         bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
 
