@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -158,6 +159,16 @@ def test_kill_and_restart_any_one_node(flat, client, node):
 
     until(back, f"{node} is back and map and scene agree")
     assert {e.name: e.pose for e in client.list()} == before
+
+
+def test_while_the_knowledge_base_is_away_the_coordinator_says_so(flat, client):
+    os.kill(flat.pid("kb_node"), signal.SIGKILL)
+    for _ in range(20):
+        with contextlib.suppress(errors.NoAnswer):
+            client.history()  # is passed on to nobody
+        client.status()
+        time.sleep(0.05)
+    until(lambda: client.status().in_agreement, "map and scene agree again")
 
 
 def _nonsense(folder: Path) -> Path:
