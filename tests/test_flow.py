@@ -166,8 +166,8 @@ def test_while_the_knowledge_base_is_away_the_coordinator_says_so(flat, client):
     for _ in range(20):
         with contextlib.suppress(errors.NoAnswer):
             client.history()  # is passed on to nobody
-        client.status()
-        time.sleep(0.05)
+        with flat.client() as newcomer:
+            newcomer.status()
     until(lambda: client.status().in_agreement, "map and scene agree again")
 
 
