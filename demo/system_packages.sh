@@ -1,6 +1,6 @@
 #!/bin/sh
 # What Debian must bring for pictures by OpenGL and for Open3D: installed where we may, else the one line to run.
-# Without it pictures are ray-cast (slower, and the same otherwise), and PLY clouds cannot be read.
+# Without it pictures are ray-cast (slower, and the same otherwise), and benchmarks lack their baseline.
 packages="libegl1 libgl1 libgl1-mesa-dri libgomp1 libusb-1.0-0"
 there() {
     python3 -c 'import ctypes
@@ -14,4 +14,4 @@ if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
         exit 0
     fi
 fi
-echo "For pictures by OpenGL and PLY clouds (optional): sudo apt-get install $packages"
+echo "For pictures by OpenGL and the baseline of perception (optional): sudo apt-get install $packages"

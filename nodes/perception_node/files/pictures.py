@@ -7,18 +7,19 @@ from pathlib import Path
 import msgspec
 import numpy as np
 from msgspec import Struct
-from numpy.typing import NDArray
 from PIL import Image
 
-from nodes.perception_node.cloud import Cloud, Transform
+from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.projection import cloud_of
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
 
 
 class Lens(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pinhole camera [pixel]; `depth_scale` makes metres of a depth picture's numbers.
+    """A pinhole camera [pixel], the middle of the first pixel at 0.
 
+    `depth_scale` makes metres of a depth picture's numbers.
     `map_from_camera` is the (4, 4) pose of the camera row by row, where somebody knows it.
     """
 
@@ -60,18 +61,9 @@ def read_pictures(depth: Path, color: Path | None, lens: Lens) -> Cloud:
         if colors.shape[:2] != depth_m.shape:
             (h, w), (height, width) = colors.shape[:2], depth_m.shape
             raise ValueError(f"colour is {w} x {h} pixels, depth {width} x {height}")
-    intrinsics = np.array([[lens.fx, 0, lens.cx], [0, lens.fy, lens.cy], [0, 0, 1]], dtype=np.float64)
+    intrinsics = np.array([[lens.fx, 0, lens.cx + 0.5], [0, lens.fy, lens.cy + 0.5], [0, 0, 1]])
     pose = None if lens.map_from_camera is None else np.reshape(lens.map_from_camera, (4, 4))
-    return Cloud(back_project(depth_m, intrinsics), colors, pose, intrinsics)
-
-
-def back_project(depth_m: NDArray[np.float32], intrinsics: Transform) -> NDArray[np.float32]:
-    """(H, W, 3) points in the camera frame [m] of depth (H, W) [m]; NaN where it is not above 0."""
-    height, width = depth_m.shape
-    z = np.where(depth_m > 0, depth_m, np.float32(np.nan))
-    x = ((np.arange(width) - intrinsics[0, 2]) / intrinsics[0, 0]).astype(np.float32)
-    y = ((np.arange(height) - intrinsics[1, 2]) / intrinsics[1, 1]).astype(np.float32)
-    return np.stack([x[None, :] * z, y[:, None] * z, z], axis=-1)
+    return cloud_of(depth_m, colors, intrinsics, pose)
 
 
 def _opened(path: Path) -> Image.Image:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.files.pictures import back_project
+from nodes.perception_node.projection import cloud_of
 from nodes.sim_node.models.library import Model, assemble, build
 from nodes.sim_node.models.parts import ALONG_X, box, rod
 from nodes.sim_node.models.table import MODELS
@@ -61,7 +61,7 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     body = np.where(geom >= 0, scene.model.geom_bodyid[geom], 0)
     if rng.random() > _FAULTLESS:
         depth_m = kinect_noise(np.where(shadowed(depth_m), np.float32(0), depth_m), rng)
-    cloud = Cloud(back_project(depth_m, view.intrinsics), intrinsics=view.intrinsics)
+    cloud = cloud_of(depth_m, None, view.intrinsics)
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
 
 
