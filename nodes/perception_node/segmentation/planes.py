@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from nodes.perception_node.cloud import Transform
 from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
@@ -72,7 +73,8 @@ def find_planes(
         if count < max(_FEWEST_CELLS, share * everything):
             break
         free &= ~on
-        sides = _sides(points[on][:: max(1, count // _SAMPLE)], normal)
+        piece = _largest_piece(on)
+        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
         kind = _kind(normal, offset, map_from_camera, first=not planes)
         least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
         if kind is None or (planes and sides[1] < least):
@@ -80,6 +82,14 @@ def find_planes(
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)
     return tuple(planes), of_plane
+
+
+def _largest_piece(on: Mask) -> Mask:
+    """The largest connected part: tops of several things may be level with one another, and are no table."""
+    parts, count = ndimage.label(on)
+    if count < 2:
+        return on
+    return np.asarray(parts == 1 + np.bincount(parts.ravel())[1:].argmax())
 
 
 def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats, np.float32]:
