@@ -12,6 +12,7 @@ from nodes.perception_node.sights import Sight
 _PROBES = 300
 _SAME_SHARE = 0.5
 _FEWEST_SEEN = 12
+_LARGE_SHARE = 0.2
 
 Member = tuple[int, int]
 """The number of a sight, and that of a segment in its `segments`."""
@@ -25,9 +26,7 @@ def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
     """
     members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
     row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
-    votes = np.zeros((len(members), len(members)))
-    shown = np.ones((len(members), len(members)))
-    views = np.array([view for view, _ in members], dtype=int)
+    most, many = np.zeros((2, len(members), len(members)), bool)
     for at, (view, n) in enumerate(members):
         points = sights[view].segments[n].points
         probes = points[:: max(1, len(points) // _PROBES)]
@@ -35,12 +34,13 @@ def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
             if other == view:
                 continue
             hits = _labels_of(probes, sight)
-            shown[at, views == other] = max(1, len(hits))
             for label, count in zip(*np.unique(hits[hits > 0], return_counts=True), strict=True):
-                if (other, int(label)) in row:
-                    votes[at, row[other, int(label)]] = count
+                there = row.get((other, int(label)))
+                if there is not None and count >= _FEWEST_SEEN:
+                    most[at, there] = count > _SAME_SHARE * len(hits)
+                    many[at, there] = count > _LARGE_SHARE * len(probes)
     carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
-    same = (votes > _SAME_SHARE * shown) & (votes >= _FEWEST_SEEN)
+    same = (most & many) | (most & most.T)  # few points may lie where two things touch
     same &= carrier == carrier[:, None]  # what is flat looks like its table to another camera
     return _groups(same | same.T, members)
 

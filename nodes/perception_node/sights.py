@@ -13,6 +13,9 @@ from nodes.perception_node.segmentation import Plane, Segmentation, segment
 from nodes.perception_node.segments import Segment, cut_out, map_points
 
 
+_EVERY = 4
+
+
 @dataclass(frozen=True)
 class Sight:
     """A cloud in the map, with its segments.
@@ -71,5 +74,5 @@ def _heights(segmentation: Segmentation, points: Floats) -> tuple[float, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
-    heights = [points[..., 2][segmentation.plane_labels == n] for n in level]
+    heights = [points[::_EVERY, ::_EVERY, 2][segmentation.plane_labels[::_EVERY, ::_EVERY] == n] for n in level]
     return tuple(float(np.median(height)) for height in heights if len(height))

@@ -14,7 +14,8 @@ from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 
-_SAMPLE = 2000  # points that vote
+_SAMPLE = 2000  # points that a plane is fitted to
+_VOTERS = 500
 _FEWEST_CELLS = 50
 _LEAST_AREA_M2 = 1e-5
 _TRIALS = 120
@@ -110,7 +111,8 @@ def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats,
     length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
     normals /= length[:, None]
     offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=1))
-    votes = (np.abs(voters @ normals.T - offsets) < thickness[:, None]).sum(axis=0)
+    off = np.abs(normals @ voters[:_VOTERS].T - offsets[:, None])
+    votes = np.count_nonzero(off < thickness[:_VOTERS], axis=1)
     normal, offset = normals[votes.argmax()], offsets[votes.argmax()]
     for _ in range(2):
         on = voters[np.abs(voters @ normal - offset) < thickness]

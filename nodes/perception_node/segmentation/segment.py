@@ -77,7 +77,7 @@ def taken_apart(cloud: Cloud) -> Parts:
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
-    known = statistics(of_patch[window], points, surface, _upright(planes))
+    known = statistics(of_patch[window], points, surface, grid.shades[window], _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 
 

@@ -20,7 +20,7 @@ UPRIGHT = s.Upright(np.eye(3), np.zeros(1))
 
 
 def of(labels):
-    return s.statistics(labels, POINTS, NORMALS, UPRIGHT)
+    return s.statistics(labels, POINTS, NORMALS, np.full_like(POINTS, np.nan), UPRIGHT)
 
 
 def test_counts_bounds_and_borders():
