@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from nodes.perception_node.cloud import Floats
@@ -17,9 +16,6 @@ _ROOM_M = 2.2
 """A wall is higher or wider, as far as it is seen."""
 
 _NEAR_M = 0.03
-_LOW_M = 0.12
-_FEWEST = 60
-_OVER_M = 0.06
 _BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
@@ -41,25 +37,11 @@ def with_furniture(
         if plane.kind == "support" or (plane.kind == "wall" and _stands_free(points_map, planes == number))
     ]
     boxes = [_box(points_map[::_EVERY, ::_EVERY][planes[::_EVERY, ::_EVERY] == number]) for number in sides]
-    low_tops = [n for n in range(len(boxes)) if any(_lies_low_on(boxes[n], box) for box in boxes)]
-    for n in low_tops:
-        parts, _ = ndimage.label(planes == sides[n])
-        few = np.bincount(parts.ravel()) < _FEWEST
-        own = np.where(few[parts], 0, parts)
-        labels = np.where(own > 0, own + labels.max(initial=0), labels).astype(np.int32)
-    tops = [n for n in range(len(boxes)) if n not in low_tops]
     first = int(labels.max(initial=0)) + 1
-    body = [first + n for n in _touching([boxes[n] for n in tops])]
-    for n, own_label in zip(tops, body, strict=True):
-        labels[planes == sides[n]] = own_label
+    body = [first + n for n in _touching(boxes)]
+    for n, own_label in zip(sides, body, strict=True):
+        labels[planes == n] = own_label
     return labels, frozenset(body)
-
-
-def _lies_low_on(top: Corners, other: Corners) -> bool:
-    """Whether one level plane is so little above another that it is of low things that lie there."""
-    (low, high), (lowest, highest) = top, other
-    inside = (low[:2] > lowest[:2] - _OVER_M).all() and (high[:2] < highest[:2] + _OVER_M).all()
-    return bool(inside and 0.0 < (low + high - lowest - highest)[2] / 2 < _LOW_M)
 
 
 def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:

@@ -26,7 +26,7 @@ from schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40
-_FOUND = 6
+_FOUND = 2
 _CARRIER_M = 0.45
 _UNIT = np.ones(3)
 NOTHING = ""

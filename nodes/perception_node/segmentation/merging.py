@@ -23,12 +23,16 @@ def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
     may = candidates(of)
     score = np.zeros((count, count), np.float32)
     news = np.triu(may)
-    while news.any():
+    while count:
         a, b = np.nonzero(news)
-        score[a, b] = score[b, a] = judge(of, a, b)
+        if a.size:
+            score[a, b] = score[b, a] = judge(of, a, b)
+        pairs = _next(score)
+        if not pairs:
+            break
         news = np.zeros_like(may)
         grown = []
-        for keep, gone in _next(score):
+        for keep, gone in pairs:
             of.merge(keep, gone)
             may[keep] |= may[gone]
             may[:, keep] |= may[:, gone]

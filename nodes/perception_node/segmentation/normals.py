@@ -11,6 +11,7 @@ RADIUS = 2
 
 _GATE_M = 0.02  # deeper neighbours belong to something else
 _FEWEST = 6
+_SOME = 8  # every so many rows tell how far rays are from one another
 _REACH = np.arange(-RADIUS, RADIUS + 1, dtype=np.float32)
 _DOWN, _ACROSS = (offset.ravel() for offset in np.meshgrid(_REACH, _REACH, indexing="ij"))
 _ONE = np.ones_like(_DOWN)
@@ -56,6 +57,6 @@ def normals(points: Floats, where: Mask) -> Floats:
 
 def _pitch(rays: Floats, axis: int) -> np.float32:
     """From one cell's ray to the next: (h, w) along `axis`."""
-    steps = np.diff(rays, axis=axis)
+    steps = np.diff(rays[::_SOME] if axis else rays[:, ::_SOME], axis=axis)
     steps = steps[np.isfinite(steps) & (steps != 0)]
     return np.median(steps) if steps.size else np.float32(1)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Literal
 
 import numpy as np
@@ -28,6 +30,9 @@ _LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or o
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
+_OVER = 0.3  # so much of it is over what is seen of the other, which it may hide itself
+_SMALLER = 0.7  # else it is a shelf above a shelf
+_TALLEST_M = 0.5
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,33 @@ def find_planes(
             continue
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)
-    return tuple(planes), of_plane
+    if map_from_camera is None:
+        return tuple(planes), of_plane
+    kept = [n for n in range(1, len(planes) + 1) if n not in _tops_of_things(planes, of_plane, points, map_from_camera)]
+    number = np.zeros(len(planes) + 1, np.int32)
+    number[kept] = np.arange(1, len(kept) + 1)
+    return tuple(planes[n - 1] for n in kept), number[of_plane]
+
+
+def _tops_of_things(
+    planes: Sequence[Plane], of_plane: Labels, points: Floats, map_from_camera: Transform
+) -> set[int]:
+    """Numbers of the supports that lie on a larger one: they are the tops of what stands there."""
+    pose = map_from_camera.astype(np.float32)
+    boxes = {}
+    for number, plane in enumerate(planes, 1):
+        if plane.kind == "support":
+            own = points[of_plane == number][:: max(1, plane.points // _SAMPLE)]
+            boxes[number] = np.percentile(own @ pose[:3, :3].T + pose[:3, 3], (1, 99), axis=0)
+    found = set()
+    for top, other in permutations(boxes, 2):
+        (low, high), (lowest, highest) = boxes[top], boxes[other]
+        shared = np.clip(np.minimum(high, highest) - np.maximum(low, lowest), 0, None)[:2].prod()
+        over = shared > _OVER * (high - low)[:2].prod()
+        smaller = np.prod(planes[top - 1].sides_m) < _SMALLER * np.prod(planes[other - 1].sides_m)
+        if over and smaller and 0 < (low + high - lowest - highest)[2] / 2 < _TALLEST_M:
+            found.add(top)
+    return found
 
 
 def _largest_piece(on: Mask) -> Mask:

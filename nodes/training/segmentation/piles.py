@@ -30,6 +30,7 @@ _KINDS = tuple(
 _SCREENED = 0.2  # of the piles
 _FAULTLESS = 0.2  # of the piles are seen without the faults of a Kinect
 _PLAIN = 0.4  # of the things are mere boxes and cylinders: packets and tins
+_PLACED = 0.5  # of the piles are seen by a camera that knows where it is
 _COLOURLESS = 0.2  # of the piles are seen without colours
 _ALIKE = 0.25  # of the piles are of things of one colour
 _REPAINTED = 0.5  # of the other things have a colour of their own, not the library's
@@ -67,7 +68,8 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     body = np.where(geom >= 0, scene.model.geom_bodyid[geom], 0)
     if rng.random() > _FAULTLESS:
         depth_m = kinect_noise(np.where(shadowed(depth_m), np.float32(0), depth_m), rng)
-    cloud = cloud_of(depth_m, _photographed(rgb, rng), view.intrinsics)
+    pose = view.map_from_camera if rng.random() < _PLACED else None
+    cloud = cloud_of(depth_m, _photographed(rgb, rng), view.intrinsics, pose)
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
 
 
