@@ -23,7 +23,8 @@ class Sight:
     `map_from_camera`: (4, 4); where nobody knows it, the largest plane is taken for the map's floor.
     `points`: (H, W, 3), map frame [m]. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on
     which others may stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of
-    horizontal planes.
+    horizontal planes. `same`: (N, N) how likely segments n + 1 and m + 1 are one all the same, 0 where nobody
+    knows.
     """
 
     cloud: Cloud
@@ -33,6 +34,7 @@ class Sight:
     carriers: frozenset[int]
     planes: NDArray[np.int32]
     supports_m: tuple[float, ...]
+    same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
 
 
@@ -45,7 +47,7 @@ def see(cloud: Cloud) -> Sight:
     if cloud.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
         labels, carriers = with_furniture(segmentation, points)
     heights = _heights(segmentation, points)
-    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights)
+    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
     return labelled(bare, labels, carriers)
 
 
