@@ -22,7 +22,7 @@ from schemas.entities import Pose
 _BODY = ("mass", "inertia", "contype", "conaffinity", "sameframe")
 _DOF = ("M0", "invweight0", "length", "damping")
 _GEOM = (
-    *("type", "dataid", "matid", "group", "contype", "conaffinity", "condim", "friction"),
+    *("type", "dataid", "matid", "group", "contype", "conaffinity", "condim", "friction", "solimp"),
     *("size", "aabb", "rbound", "pos", "quat", "sameframe", "rgba"),
 )
 _NODE = ("depth", "child", "aabb")

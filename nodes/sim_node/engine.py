@@ -16,7 +16,7 @@ from nodes.sim_node.rest import RestWatch
 from nodes.sim_node.stage import Stage
 from schemas.entities import Pose
 
-_STEPS_A_LOOK = 10
+_STEPS_A_LOOK = 25
 
 
 class Engine:
