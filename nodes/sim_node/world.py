@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from nodes.sim_node import build, groundwork
-from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from nodes.sim_node.bodies import BodyRecord, Floats, Ints, pose_of
 from nodes.sim_node.engine import Engine
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import Model, ModelError
@@ -177,9 +177,13 @@ class World:
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""
+        return self.names_of(self.model.geom_bodyid)
+
+    def names_of(self, numbers: Ints) -> list[str]:
+        """For each of these bodies of `model` the name of the body that it is, or is a part of, or ""."""
         names = np.full(self.model.nbody, "", dtype=object)
         names[self._engine.index.body] = self._engine.index.names
-        return names[self.model.body_rootid[self.model.geom_bodyid]].tolist()  # type: ignore[no-any-return]
+        return names[self.model.body_rootid[numbers]].tolist()  # type: ignore[no-any-return]
 
     # how it is done
 
