@@ -45,7 +45,8 @@ class World:
     ) -> None:
         """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile.
 
-        `meanwhile` is called again and again while something takes its time.
+        `meanwhile` is called again and again while a model is compiled. It may let time pass (`step`), and
+        ask for `poses` and a `snapshot`: newcomers are not yet there.
         """
         ground = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
         self._engine = Engine(ground, meanwhile)
@@ -149,7 +150,7 @@ class World:
             names=engine.index.names,
             poses=tuple(engine.poses().ravel().tolist()),
             resting=tuple(engine.resting.tolist()),
-            commits=tuple(record.commit for record in engine.records.values()),
+            commits=tuple(record.commit for record in engine.index.records),
         )
 
     def scene(self) -> Scene:
