@@ -72,6 +72,8 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
         raise ModelError(f"the model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
     try:
         parts, density = _mesh_parts(path) if path.suffix in MESHES else _mjcf_parts(path)
+        if all(part.role is Role.SEEN for part in parts):
+            raise ModelError("it holds nothing that has a shape and collides")
         if size_m is not None:
             parts = _stretched(parts, size_m)
         extents = _extents(parts)
@@ -89,9 +91,7 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
 
 
 def _extents(parts: list[Part]) -> Vec3:
-    """What parts measure together [m]. Raises ModelError if there are none that one could touch."""
-    if all(part.role is Role.SEEN for part in parts):
-        raise ModelError("it holds nothing that has a shape and collides")
+    """What parts measure together [m]."""
     low, high = bounds(parts)
     return _vec3(high - low)
 
@@ -157,7 +157,7 @@ def _mjcf_parts(path: Path) -> tuple[list[Part], float]:
                 role,
             )
         )
-    if model.nbody == 1:  # geoms without a body have no mass
+    if model.nbody == 1 or not parts:  # geoms without a body have no mass
         return parts, DENSITY
     mass_kg = float(model.body_mass[1:].sum())
     if mass_kg <= 0.0:

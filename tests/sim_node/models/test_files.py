@@ -106,6 +106,12 @@ def test_a_bad_file_is_told(folder, name, why):
     assert "\n" not in str(told.value)
 
 
+@pytest.mark.parametrize("name", ["broken.stl", "empty.xml", "flat.obj", "light.xml"])
+def test_no_size_makes_a_bad_file_good(folder, name):
+    with pytest.raises(ModelError, match=f"{name} cannot be used: (it|a body)"):
+        Models(folder)(name, (1.0, 1.0, 1.0))
+
+
 def test_bodies_from_files_stand_beside_others(folder):
     world = World(models=Models(folder))
     spawned = world.spawn(
