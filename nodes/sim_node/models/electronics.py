@@ -36,6 +36,8 @@ from nodes.sim_node.models.parts import (
     seen,
 )
 
+_DIGIT: Colour = (0.3, 0.95, 0.7)
+
 
 def television(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A flat screen on two feet."""
@@ -70,15 +72,27 @@ def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def computer(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A tower with a drive, a button and vents."""
+    """A tower: a disc drive, a card reader, a lit button, two sockets, vents in front and at a side."""
+    face = x / 2 - 0.003
     return [
         box((x - 0.006, y, z), (-0.003, 0, z / 2), colour),
-        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.88 * z), LIGHT, deep=0.006),
-        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.77 * z), LIGHT, deep=0.006),
-        *seen(rod(0.08 * y, 0.008, (x / 2 - 0.003, 0, 0.64 * z), (0.3, 0.7, 0.95), ALONG_X)),
+        *front(x / 2 - 0.003, 0.94 * y, 0.97 * z, (0, z / 2), shade(colour, 1.35), deep=0.003),
+        *front(x / 2 - 0.001, 0.8 * y, 0.09 * z, (0, 0.88 * z), LIGHT, deep=0.004),
+        *front(x / 2, 0.7 * y, 0.008 * z, (0, 0.885 * z), DARK, deep=0.004),
+        *front(x / 2, 0.12 * y, 0.018 * z, (0.28 * y, 0.855 * z), DARK, deep=0.004),
+        *front(x / 2 - 0.001, 0.8 * y, 0.06 * z, (0, 0.78 * z), GREY, deep=0.004),
+        *seen(rod(0.11 * y, 0.004, (face, 0, 0.66 * z), STEEL, ALONG_X)),
+        *seen(rod(0.07 * y, 0.006, (face, 0, 0.66 * z), (0.3, 0.7, 0.95), ALONG_X)),
         *seen(
-            box((0.006, 0.7 * y, 0.015 * z), (x / 2 - 0.003, 0, (0.1 + 0.05 * i) * z), BLACK)
+            box((0.004, 0.10 * y, 0.02 * z), (face + 0.001, 0.2 * y * s, 0.56 * z), BLACK) for s in (-1, 1)
+        ),
+        *seen(
+            box((0.004, 0.7 * y, 0.015 * z), (face + 0.001, 0, (0.08 + 0.06 * i) * z), BLACK)
             for i in range(7)
+        ),
+        *seen(
+            box((0.03 * x, 0.002, 0.22 * z), ((-0.15 + 0.08 * i) * x, -y / 2 + 0.0009, 0.6 * z), BLACK)
+            for i in range(4)
         ),
     ]
 
@@ -130,12 +144,30 @@ def radio(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def recorder(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A flat player with a slot and a display."""
+    """A flat player: a cassette's flap, a display with digits, keys and a knob, on four feet."""
+    foot, face = 0.12 * z, 0.02 * x
+    edge = (x - face) / 2
+    feet = [
+        rod(0.04 * y, foot, (0.38 * x * sx, 0.4 * y * sy, foot / 2), BLACK)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    ]
     return [
-        box((0.98 * x, y, z), (-0.01 * x, 0, z / 2), colour),
-        *front(x / 2, 0.4 * y, 0.16 * z, (-0.2 * y, 0.6 * z), BLACK, deep=0.02 * x),
-        *front(x / 2, 0.22 * y, 0.3 * z, (0.2 * y, 0.6 * z), (0.2, 0.8, 0.6), deep=0.02 * x),
-        *seen(rod(0.12 * z, 0.03 * x, (x / 2 - 0.01 * x, 0.4 * y, 0.4 * z), STEEL, ALONG_X)),
+        *seen(feet),
+        *felt(slab(0.98 * x, y, 0, foot, colour)),
+        box((0.98 * x, y, z - foot), (-0.01 * x, 0, (z + foot) / 2), colour),
+        *front(x / 2 - 0.0045, 0.98 * y, 0.86 * (z - foot), (0, (z + foot) / 2), STEEL, deep=face),
+        *front(x / 2 - 0.003, 0.46 * y, 0.34 * z, (-0.22 * y, 0.70 * z), BLACK, deep=face),
+        *front(x / 2 - 0.001, 0.40 * y, 0.05 * z, (-0.22 * y, 0.60 * z), GREY, deep=face),
+        *front(x / 2 - 0.003, 0.28 * y, 0.30 * z, (0.18 * y, 0.70 * z), BLACK, deep=face),
+        *seen(
+            box((face, 0.025 * y, 0.2 * z), (edge, (0.10 + 0.05 * i + 0.03 * (i > 1)) * y, 0.7 * z), _DIGIT)
+            for i in range(4)
+        ),
+        *seen(
+            box((face, 0.05 * y, 0.1 * z), (edge, (-0.40 + 0.075 * i) * y, 0.34 * z), DARK) for i in range(5)
+        ),
+        *seen(rod(0.22 * z, 0.03 * x, (x / 2 - 0.015 * x, 0.41 * y, 0.52 * z), DARK, ALONG_X)),
     ]
 
 

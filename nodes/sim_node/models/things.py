@@ -277,16 +277,16 @@ def toothbrush(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def towel(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Folded layers with a stripe."""
-    layers = [
-        slab(x, y * (1 - 0.02 * i), z * i / 3, z * (i + 0.9) / 3, shade(colour, 1 - 0.1 * (i % 2)))
-        for i in range(3)
+    """Terry, folded twice: its round folds at the front, stripes across."""
+    radius, folds = 0.245 * z, []
+    for i in range(2):
+        width, tint, middle = (1 - 0.015 * i) * y, shade(colour, 1 - 0.12 * i), radius * (2 * i + 1)
+        folds.append(box((x - radius, width, 2 * radius), (-radius / 2, 0, middle), tint))
+        folds.append(rod(radius, width, (x / 2 - radius, 0, middle), tint, ALONG_Y))
+    stripes = [
+        box((0.05 * x, 0.986 * y, 0.004), (at * x, 0, z - 0.002), PAPER) for at in (-0.28, -0.18, 0.12)
     ]
-    return [
-        *seen(layers),
-        *seen(box((0.12 * x, 0.96 * y, 0.004), (0.3 * x, 0, 0.965 * z), WHITE)),
-        *felt(slab(x, y, 0, 0.96 * z, colour)),
-    ]
+    return [*seen([*folds, *stripes]), *felt(slab(x, y, 0, 0.96 * z, colour))]
 
 
 def clothes(x: float, y: float, z: float, colour: Colour) -> Parts:
