@@ -32,8 +32,8 @@ def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
 class Shown(NamedTuple):
     """What other cameras take segments for.
 
-    `most`, `many`: (M, M) whether most of the points of one that another camera sees, and a large share of all
-    its points, are of another segment there.
+    `most`, `many`: (M, M) whether most of the points of one that another camera sees, and a large share of
+    all its points, are of another segment there.
     """
 
     members: list[Member]
@@ -42,8 +42,10 @@ class Shown(NamedTuple):
 
 
 def shown_by_others(sights: Sequence[Sight]) -> Shown:
-    """Look the points of each segment up in the other pictures: where another camera sees them too, its label
-    says what it took them for. Clouds without intrinsics or pose see nothing of what others do.
+    """Look the points of each segment up in the other pictures.
+
+    Where another camera sees them too, its label says what it took them for. Clouds without intrinsics or
+    pose see nothing of what others do.
     """
     members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
     row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}

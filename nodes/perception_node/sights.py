@@ -12,8 +12,7 @@ from nodes.perception_node.furniture import with_furniture
 from nodes.perception_node.segmentation import Plane, Segmentation, segment
 from nodes.perception_node.segments import Segment, cut_out, map_points
 
-
-_EVERY = 4
+_EVERY = 4  # pixels are enough to tell how high a plane is
 
 
 @dataclass(frozen=True)
@@ -76,5 +75,6 @@ def _heights(segmentation: Segmentation, points: Floats) -> tuple[float, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
-    heights = [points[::_EVERY, ::_EVERY, 2][segmentation.plane_labels[::_EVERY, ::_EVERY] == n] for n in level]
+    z, planes = (of[::_EVERY, ::_EVERY] for of in (points[..., 2], segmentation.plane_labels))
+    heights = [z[planes == n] for n in level]
     return tuple(float(np.median(height)) for height in heights if len(height))

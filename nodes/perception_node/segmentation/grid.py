@@ -18,6 +18,7 @@ Mask = NDArray[np.bool_]
 WIDTH = 320
 """About how many cells there are across. The pixels of a cell are averaged, which halves a Kinect's noise."""
 
+_BRIGHTEST = np.float32(3 * 255)
 _DARK = 60.0  # colours of what is darker are mostly noise
 _SAME_SURFACE = 0.015  # of the distance: pixels of one cell that lie deeper belong to what is behind
 _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -86,7 +87,7 @@ def shades_of(colors: NDArray[Any]) -> Floats:
     red, green, blue = np.moveaxis(colors.astype(np.float32), -1, 0)
     total = red + green + blue
     light = total + np.float32(_DARK)
-    return np.stack([total / np.float32(765), (red - green) / light, (red + green - 2 * blue) / light], axis=-1)
+    return np.stack([total / _BRIGHTEST, (red - green) / light, (total - 3 * blue) / light], axis=-1)
 
 
 def spread(grid: Grid, labels: Labels) -> Labels:

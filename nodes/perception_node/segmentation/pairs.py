@@ -23,6 +23,7 @@ NAMES = (
 """The columns of `features`, in order. `small` and `big` are the two patches, by their cells."""
 
 _SUPPORT_M = 0.02
+_UNKNOWN = -1.0  # lower than any that is known, so that a tree can ask for it
 
 
 def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool_]:
@@ -98,7 +99,8 @@ def _colours(few: s.Sums, many: s.Sums, border: s.Sums) -> list[s.Sums]:
     ]
     bends = np.where(border[:, s.BENDS] > 0, border[:, s.BENDS], np.nan)
     there = [border[:, column] / bends for column in (s.BRIGHTER, s.COLOURED)]
-    return [np.nan_to_num(of, nan=-1.0) for of in (turned[:, 0], np.hypot(*turned[:, 1:].T), *there, *mottled)]
+    known = (turned[:, 0], np.hypot(turned[:, 1], turned[:, 2]), *there, *mottled)
+    return [np.nan_to_num(column, nan=_UNKNOWN) for column in known]
 
 
 def _shape(sums: s.Sums) -> tuple[s.Sums, s.Sums, s.Sums]:

@@ -89,7 +89,8 @@ def find_planes(
         of_plane[on] = len(planes)
     if map_from_camera is None:
         return tuple(planes), of_plane
-    kept = [n for n in range(1, len(planes) + 1) if n not in _tops_of_things(planes, of_plane, points, map_from_camera)]
+    tops = _tops_of_things(planes, of_plane, points, map_from_camera)
+    kept = [n for n in range(1, len(planes) + 1) if n not in tops]
     number = np.zeros(len(planes) + 1, np.int32)
     number[kept] = np.arange(1, len(kept) + 1)
     return tuple(planes[n - 1] for n in kept), number[of_plane]

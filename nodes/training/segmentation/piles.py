@@ -130,11 +130,9 @@ def _plain(size_m: Vec3, paint: Paint, rng: np.random.Generator) -> Model:
             for along, tint in ((-x / 4, lower), (x / 4, colour))
         ]
     elif round_:
-        halves = [rod(x / 2, z / 2, (0.0, 0.0, up), tint) for up, tint in ((z / 4, lower), (0.75 * z, colour))]
+        halves = [rod(x / 2, z / 2, (0.0, 0.0, up), tint) for up, tint in _halved(z, lower, colour)]
     else:
-        halves = [
-            box((x, y, z / 2), (0.0, 0.0, up), tint) for up, tint in ((z / 4, lower), (0.75 * z, colour))
-        ]
+        halves = [box((x, y, z / 2), (0.0, 0.0, up), tint) for up, tint in _halved(z, lower, colour)]
     return assemble("plain", halves, 0.5)
 
 
@@ -150,3 +148,8 @@ def _view(rng: np.random.Generator) -> View:
     )
     target = np.array([*rng.uniform(-0.1, 0.1, 2), 0.05])
     return look_at(target + distance * away, target, *_SIZE, _FOVY_RAD)
+
+
+def _halved(height_m: float, lower: Colour, upper: Colour) -> tuple[tuple[float, Colour], ...]:
+    """The middles of both halves, and their colours."""
+    return ((height_m / 4, lower), (3 * height_m / 4, upper))
