@@ -63,15 +63,38 @@ class Node:
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
         self._beat_due = 0.0
 
-    def serve(self, prefix: str, handlers: Handlers, *, puts: bool = False) -> None:
-        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too."""
+    def serve(
+        self,
+        prefix: str,
+        handlers: Handlers,
+        *,
+        puts: bool = False,
+        leave: Callable[[str], bool] = lambda verb: False,
+    ) -> None:
+        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too.
+
+        A query of which `leave(verb)` holds is left to another node; it is called on a thread of Zenoh's.
+        """
 
         def receive(request: bus.Request) -> None:
             self._events.put(lambda: self._handle(request, handlers))
 
-        bus.serve(self.session, prefix, receive)
+        def receive_query(request: bus.Request) -> None:
+            if not leave(request.verb):
+                receive(request)
+
+        bus.serve(self.session, prefix, receive_query)
         if puts:
             bus.serve_puts(self.session, prefix, receive)
+
+    def serve_one(self, prefix: str, verb: str, kind: Any, function: Callable[[Any], Any]) -> None:
+        """Answer queries on `prefix/verb` whose other verbs another node serves."""
+
+        def receive(request: bus.Request) -> None:
+            if request.verb == verb:  # and not one to all verbs
+                self._events.put(lambda: self._handle(request, {verb: (kind, function)}))
+
+        bus.serve(self.session, prefix, receive, verb=verb)
 
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
         """Call `handle(message)` for each publication."""

@@ -80,6 +80,8 @@ class KnowledgeBase:
             if name.startswith("on_")
         }
         node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        for verb in keys.OF_THE_MAP:
+            node.serve_one(keys.CMD, verb, BRIDGE[verb][0], functions[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.ready(self._summary())
 

@@ -14,7 +14,7 @@ from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, LoadDocument, SnapshotQuery, StarQuery
-from schemas.commands import Check, Export, Get, Infer, List
+from schemas.commands import Check, Export, Get, Infer, List, Sparql
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -156,6 +156,14 @@ def test_questions_are_answered(session):
 def load(number, content, **fields):
     fields = {"replace": False, "skip_unknown": False, **fields}
     return LoadDocument(id=number, source="file", content=content.encode(), filename="f.ttl", **fields)
+
+
+def test_look_ups_are_answered_without_anybody_between(session):
+    commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
+    query = Sparql(query="SELECT ?class { :looked_up a ?class }")
+    result = bus.ask(session, keys.CMD, "sparql", query, BRIDGE["sparql"][1])
+    assert result.rows == ((v.dm("Chair"),),)
+    assert result.seq == commit.seq
 
 
 def test_documents_are_loaded_whole_or_not_at_all(session):
