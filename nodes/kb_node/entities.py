@@ -59,7 +59,7 @@ def read_entity(
     said = about(iri)
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
-    _require_name(iri, kind.class_name)
+    require_name(iri, kind.class_name)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     return Entity(
         name=v.local_name(iri),
@@ -110,7 +110,8 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     )
 
 
-def _require_name(iri: Term, class_name: str) -> None:
+def require_name(iri: Term, class_name: str) -> None:
+    """Raises BadRequest for an entity without an IRI (http, https, urn or file) that ends in a name."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):

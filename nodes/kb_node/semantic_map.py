@@ -10,14 +10,14 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node import alike, bodies, entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity
+from schemas.entities import ClassInfo, Entity, Provenance
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
@@ -47,6 +47,7 @@ class SemanticMap:
         self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
+        self._patterns = alike.Patterns()
         self._replaced: dict[str, Entity | None] | None = None
         """While commits are made together: the entities that were there before, None for new names."""
         self.seq = 0
@@ -138,7 +139,9 @@ class SemanticMap:
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
         with _uncollected():
-            return self._apply(self._signed(transaction, retracted, inserted), self._journal.append)
+            commit = self._signed(transaction, retracted, inserted)
+            begun = bodies.early(commit)
+            return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -230,7 +233,7 @@ class SemanticMap:
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
         groups = transaction.require, transaction.retract, transaction.insert
-        known = set(filter(self.reasoner.mentions, {s for triples in groups for s, _, _ in triples}))
+        known = self.reasoner.mentioned({s for triples in groups for s, _, _ in triples})
         held: set[Triple] = set()
         many: set[Term] = set()
         for subject in known:
@@ -310,7 +313,7 @@ class SemanticMap:
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), concerned, set())
+            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes = before
@@ -320,11 +323,11 @@ class SemanticMap:
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
-        known = set(filter(self.reasoner.mentions, subjects))
+        known = self.reasoner.mentioned(subjects)
         owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change.touched, subjects - known)
+            commit = self._with_effects(commit, owners, change, subjects - known)
             make_durable(commit)
         except BaseException:
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
@@ -347,7 +350,7 @@ class SemanticMap:
         self._show(commit.changed)
         return commit
 
-    def _with_effects(self, commit: Commit, owners: Set[Term], touched: Set[Term], new: Set[Term]) -> Commit:
+    def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
         """`commit` with the entities that it changed and those that it removed.
 
         `owners` are those to whose stars its triples belong, before it or after it. Of `new` ones it says
@@ -355,17 +358,22 @@ class SemanticMap:
         """
         changed: dict[str, Entity] = {}
         removed: list[Departed] = []
-        provenance, about = commit.provenance, entities.about(self.reasoner, commit.inserted, new)
+        provenance = commit.provenance
+        at_sight, seen = self._read_at_sight(change, provenance)
+        others = (owners | change.touched) - seen
+        about = entities.about(self.reasoner, commit.inserted, others & new)
         types, spatial = self.reasoner.types, self.classes.spatial
         concerned = (
             iri
-            for iri in owners | touched
+            for iri in others
             if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
         )
-        for iri in sorted(concerned):
+        for iri in sorted({*at_sight, *concerned}):
             known = None if iri in new else self._known(iri)
             self._progress()
-            entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
+            entity = at_sight.get(iri) or entities.read_entity(
+                self.reasoner, self.classes, iri, provenance, about
+            )
             if entity is None:
                 removed += [Departed(name=known.name, types=known.types)] if known is not None else []
                 continue
@@ -382,6 +390,19 @@ class SemanticMap:
             changed=tuple(e for name, e in changed.items() if e != self._entities.get(name)),
             removed=tuple(removed),
         )
+
+    def _read_at_sight(self, change: Change, provenance: Provenance) -> tuple[dict[Term, Entity], set[Term]]:
+        """The new entities whose stars are of known shapes, and the individuals of these stars."""
+        read: dict[Term, Entity] = {}
+        seen: set[Term] = set()
+        for star in change.alike:
+            individuals = star.run.individuals
+            if change.others.isdisjoint(individuals):
+                entity = self._patterns.read(star, self.reasoner, self.classes, provenance)
+                if entity is not None:
+                    read[next(iter(individuals))] = entity
+                    seen.update(individuals)
+        return read, seen
 
     def _read_again(self, known: Entity) -> Entity | None:
         """An entity as this code reads it, changed when it was."""
