@@ -42,6 +42,7 @@ class Relay(NamedTuple):
 
 
 HEARTBEAT_S = 1.0
+ERROR_SHOWN_S = 3600.0
 _AGAIN_S = 0.05
 
 
@@ -60,6 +61,7 @@ class Node:
         self._state: Literal["starting", "ready"] = "starting"
         self._detail = ""
         self._last_error = ""
+        self._error_shown_until = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
         self._beat_due = 0.0
 
@@ -173,7 +175,7 @@ class Node:
             stamp_ns=time.time_ns(),
             state=self._state,
             detail=self._detail,
-            last_error=self._last_error,
+            last_error=self._last_error if now < self._error_shown_until else "",
         )
         self._health.put(codec.encode(health))
 
@@ -192,9 +194,10 @@ class Node:
         self._detail = detail
 
     def report(self, text: str) -> None:
-        """Log an error and show it in the heartbeat."""
+        """Log an error and show it in the heartbeat, with the time of the day, for an hour."""
         log.error("%s", text)
-        self._last_error, self._beat_due = text, 0.0
+        self._last_error, self._beat_due = f"{time.strftime('%H:%M:%S')} {text}", 0.0
+        self._error_shown_until = time.monotonic() + ERROR_SHOWN_S
 
     def stop(self) -> None:
         """End `run` after the event in hand."""

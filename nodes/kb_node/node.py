@@ -223,8 +223,10 @@ class KnowledgeBase:
         """Commits of the past."""
         return self._aside.submit(self._past.history, query)
 
-    def on_last_seen(self, query: LastSeen) -> Future[Sighting]:
-        """Where an entity was last."""
+    def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
+        """Where an entity was last; where it is, if it is there."""
+        if (entity := self.map.find(query.name)) is not None:
+            return past.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
     def on_undo(self, command: Undo) -> Commit:

@@ -65,6 +65,10 @@ class SemanticMap:
             return self._entities[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self._entities)}")
 
+    def find(self, name: str) -> Entity | None:
+        """The entity of that name, if there is one."""
+        return self._entities.get(name)
+
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:

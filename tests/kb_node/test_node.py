@@ -14,7 +14,7 @@ from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, LoadDocument, SnapshotQuery, StarQuery
-from schemas.commands import Check, Export, Get, Infer, List, Sparql
+from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -149,6 +149,8 @@ def test_questions_are_answered(session):
     assert set(star.own) == set(chair("q", preferred="queen"))
     assert "q type Seat" in ask(session, "infer", Infer(name="q")).text
     assert ask(session, "check", Check()).consistent
+    there = ask(session, "last-seen", LastSeen(name="q"))
+    assert (there.pose, there.removed) == (ask(session, "get", Get(name="q")).pose, None)
     document = ask(session, "export", Export(format="turtle", inferred=True))
     assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf_files.parse(document.content, "export")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 import time
 from concurrent.futures import Future
@@ -115,6 +116,9 @@ def test_the_heartbeat_shows_state_and_the_last_error(network):
     with pytest.raises(errors.InternalError):
         bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
     until(lambda: beats and "oops" in beats[-1].last_error, "the error is in the heartbeat")
+    assert re.match(r"\d\d:\d\d:\d\d check: ", beats[-1].last_error)
+    node._error_shown_until = 0.0
+    until(lambda: not beats[-1].last_error, "the error is no longer told")
     assert beats[-1].state == "starting"
     node._events.put(lambda: node.ready("so many entities"))
     until(lambda: beats[-1].state == "ready", "the heartbeat says ready")
