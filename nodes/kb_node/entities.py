@@ -31,6 +31,8 @@ About = Callable[[Term], Objects]
 
 def about(reasoner: Reasoner, triples: Iterable[Triple], new: Set[Term]) -> About:
     """What is asserted of each subject; of `new` ones, `triples` hold all there is."""
+    if not new:
+        return reasoner.about
     at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
     for s, p, o in triples:
         said = at_hand.get(s)
