@@ -10,14 +10,15 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import alike, bodies, entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node import bodies, effects, entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity, Provenance
+from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
@@ -47,7 +48,7 @@ class SemanticMap:
         self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
-        self._patterns = alike.Patterns()
+        self._patterns = Patterns()
         self._replaced: dict[str, Entity | None] | None = None
         """While commits are made together: the entities that were there before, None for new names."""
         self.seq = 0
@@ -355,58 +356,8 @@ class SemanticMap:
         return commit
 
     def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
-        """`commit` with the entities that it changed and those that it removed.
-
-        `owners` are those to whose stars its triples belong, before it or after it. Of `new` ones it says
-        all there is.
-        """
-        changed: dict[str, Entity] = {}
-        removed: list[Departed] = []
-        provenance = commit.provenance
-        at_sight, seen = self._read_at_sight(change, provenance)
-        others = (owners | change.touched) - seen
-        about = entities.about(self.reasoner, commit.inserted, others & new)
-        types, spatial = self.reasoner.types, self.classes.spatial
-        concerned = (
-            iri
-            for iri in others
-            if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
-        )
-        for iri in sorted({*at_sight, *concerned}):
-            known = None if iri in new else self._known(iri)
-            self._progress()
-            entity = at_sight.get(iri) or entities.read_entity(
-                self.reasoner, self.classes, iri, provenance, about
-            )
-            if entity is None:
-                removed += [Departed(name=known.name, types=known.types)] if known is not None else []
-                continue
-            if known is not None:
-                entity = entities.inherit(entity, known, concerned=iri in owners)
-            if (other := changed.setdefault(entity.name, entity)) is not entity:
-                raise _taken(other)
-        gone = {departed.name for departed in removed}
-        for name, entity in changed.items():
-            if name not in gone and (holder := self._entities.get(name, entity)).iri != entity.iri:
-                raise _taken(holder)
-        return structs.replace(
-            commit,
-            changed=tuple(e for name, e in changed.items() if e != self._entities.get(name)),
-            removed=tuple(removed),
-        )
-
-    def _read_at_sight(self, change: Change, provenance: Provenance) -> tuple[dict[Term, Entity], set[Term]]:
-        """The new entities whose stars are of known shapes, and the individuals of these stars."""
-        read: dict[Term, Entity] = {}
-        seen: set[Term] = set()
-        for star in change.alike:
-            individuals = star.run.individuals
-            if change.others.isdisjoint(individuals):
-                entity = self._patterns.read(star, self.reasoner, self.classes, provenance)
-                if entity is not None:
-                    read[next(iter(individuals))] = entity
-                    seen.update(individuals)
-        return read, seen
+        reading = effects.Reading(self.reasoner, self.classes, self._patterns, self._progress)
+        return effects.of(commit, change, self._entities, reading, owners=owners, new=new)
 
     def _read_again(self, known: Entity) -> Entity | None:
         """An entity as this code reads it, changed when it was."""
@@ -425,8 +376,7 @@ class SemanticMap:
 
     def _known(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
-        entity = self._entities.get(v.local_name(iri))
-        return entity if entity is not None and v.iri(entity.iri) == iri else None
+        return effects.known(self._entities, iri)
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
@@ -442,7 +392,3 @@ def _uncollected() -> Iterator[None]:
     finally:
         if was_on:
             gc.enable()
-
-
-def _taken(holder: Entity) -> errors.NameTaken:
-    return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")
