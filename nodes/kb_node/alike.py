@@ -18,7 +18,6 @@ from ontology import vocabulary as v
 from schemas.entities import REACH_M, Entity, Pose, Provenance
 from schemas.explanations import Term
 
-_NODES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
 Places = tuple[int, ...]
 """Which of a run's other objects."""
 
