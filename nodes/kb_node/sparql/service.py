@@ -91,8 +91,9 @@ class _Worker:
         )
         for connection in theirs:
             connection.close()
-        for target in (self._write, self._read):
-            threading.Thread(target=target, name="sparql", daemon=True).start()
+        self._writer = threading.Thread(target=self._write, name="sparql", daemon=True)
+        self._writer.start()
+        threading.Thread(target=self._read, name="sparql", daemon=True).start()
 
     def send(self, message: Any, connection: Connection | None = None) -> None:
         """Queue a message."""
@@ -150,10 +151,11 @@ class _Worker:
         self._outbox.put(None)
         self._process.kill()
         self._process.wait()
-        self._connection.close()
         for _, future in left:
             future.set_exception(_ended())
         self._lanes.close(_ended())
+        self._writer.join()
+        self._connection.close()
 
     def _answer(self, message: Answered) -> None:
         with self._lock:
