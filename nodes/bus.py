@@ -246,9 +246,14 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
     return Request(verb, payload, parameters, send, plain=not as_json)
 
 
-def serve(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
-    """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them."""
-    session.declare_queryable(f"{prefix}/*", lambda query: receive(_request_of_query(prefix, query)))
+def serve(
+    session: zenoh.Session, prefix: str, receive: Callable[[Request], None], *, verb: str = "*"
+) -> None:
+    """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them.
+
+    One that is not answered counts as not having come here: another who serves the key may answer it.
+    """
+    session.declare_queryable(f"{prefix}/{verb}", lambda query: receive(_request_of_query(prefix, query)))
 
 
 def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:

@@ -42,6 +42,7 @@ class Relay(NamedTuple):
 
 
 HEARTBEAT_S = 1.0
+ERROR_SHOWN_S = 3600.0
 _AGAIN_S = 0.05
 
 
@@ -60,18 +61,42 @@ class Node:
         self._state: Literal["starting", "ready"] = "starting"
         self._detail = ""
         self._last_error = ""
+        self._error_shown_until = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
         self._beat_due = 0.0
 
-    def serve(self, prefix: str, handlers: Handlers, *, puts: bool = False) -> None:
-        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too."""
+    def serve(
+        self,
+        prefix: str,
+        handlers: Handlers,
+        *,
+        puts: bool = False,
+        leave: Callable[[str], bool] = lambda verb: False,
+    ) -> None:
+        """Answer queries on `prefix/<verb>`, and with `puts` execute puts too.
+
+        A query of which `leave(verb)` holds is left to another node; it is called on a thread of Zenoh's.
+        """
 
         def receive(request: bus.Request) -> None:
             self._events.put(lambda: self._handle(request, handlers))
 
-        bus.serve(self.session, prefix, receive)
+        def receive_query(request: bus.Request) -> None:
+            if not leave(request.verb):
+                receive(request)
+
+        bus.serve(self.session, prefix, receive_query)
         if puts:
             bus.serve_puts(self.session, prefix, receive)
+
+    def serve_one(self, prefix: str, verb: str, kind: Any, function: Callable[[Any], Any]) -> None:
+        """Answer queries on `prefix/verb` whose other verbs another node serves."""
+
+        def receive(request: bus.Request) -> None:
+            if request.verb == verb:  # and not one to all verbs
+                self._events.put(lambda: self._handle(request, {verb: (kind, function)}))
+
+        bus.serve(self.session, prefix, receive, verb=verb)
 
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
         """Call `handle(message)` for each publication."""
@@ -150,7 +175,7 @@ class Node:
             stamp_ns=time.time_ns(),
             state=self._state,
             detail=self._detail,
-            last_error=self._last_error,
+            last_error=self._last_error if now < self._error_shown_until else "",
         )
         self._health.put(codec.encode(health))
 
@@ -169,9 +194,10 @@ class Node:
         self._detail = detail
 
     def report(self, text: str) -> None:
-        """Log an error and show it in the heartbeat."""
+        """Log an error and show it in the heartbeat, with the time of the day, for an hour."""
         log.error("%s", text)
-        self._last_error, self._beat_due = text, 0.0
+        self._last_error, self._beat_due = f"{time.strftime('%H:%M:%S')} {text}", 0.0
+        self._error_shown_until = time.monotonic() + ERROR_SHOWN_S
 
     def stop(self) -> None:
         """End `run` after the event in hand."""

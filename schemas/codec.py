@@ -19,6 +19,8 @@ DENSE_FROM: Final = 64 << 20
 """Bytes; Zenoh carries messages of up to 256 MB, and a map of a million triples is more."""
 LARGEST: Final = 4 << 30
 """Bytes that a message may unfold to."""
+DENSITY: Final = 1
+"""How hard zlib tries: not very."""
 _DENSE: Final = b"x"
 """How zlib's format begins, and no MessagePack map."""
 _encoder = msgspec.msgpack.Encoder()
@@ -34,7 +36,7 @@ def encode(message: Any, *, dense_from: int = DENSE_FROM) -> bytes:
         payload = _encoder.encode(message)
     except UnicodeEncodeError as error:
         raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
-    return payload if len(payload) < dense_from else zlib.compress(payload, 1)
+    return payload if len(payload) < dense_from else zlib.compress(payload, DENSITY)
 
 
 def encode_json(message: Any) -> bytes:

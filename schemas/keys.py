@@ -21,6 +21,9 @@ CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
 
+OF_THE_MAP = frozenset({"sparql"})
+"""Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
+
 PERCEPTION = f"{ROOT}/perception"
 
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")

@@ -6,6 +6,7 @@ Their JSON Schema is `schemas/scene.schema.json`; `python -m schemas.scene_files
 from __future__ import annotations
 
 import json
+import re
 
 import msgspec
 from msgspec import Struct, field
@@ -64,6 +65,10 @@ def pose_of(
     )
 
 
+_BOM = b"\xef\xbb\xbf"
+_NO_JSON = re.compile(rb"[\[:,]\s*-?(?:NaN|Infinity)\b")
+
+
 class SceneFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What stands in a scene."""
 
@@ -74,9 +79,11 @@ class SceneFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 def read(content: bytes, filename: str) -> tuple[Described, ...]:
     """The entities of a scene file. Raises BadFile naming the field at fault."""
     try:
-        return codec.decode(content, SceneFile).entities
+        return codec.decode(content.removeprefix(_BOM), SceneFile).entities
     except BadRequest as error:
         reason = error.text.removeprefix("malformed message: ")
+        if _NO_JSON.search(content):
+            reason += "; JSON has no NaN and no Infinity"
         raise BadFile(f"{filename or 'the file'} is no scene: {reason}") from None
 
 

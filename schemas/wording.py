@@ -17,6 +17,11 @@ _MISSING = re.compile(r"Object missing required field `(.*)`")
 _NUMBERS = (inspect.FloatType, inspect.IntType)
 
 
+def entities(count: int) -> str:
+    """`1 entity`, `2 entities`."""
+    return "1 entity" if count == 1 else f"{count} entities"
+
+
 def sentence(error: Exception, kind: Any) -> str:
     """Why something is no message of type `kind`: `at: the 1st must be a number from -10000 to 10000`."""
     if isinstance(error, ValidationError):

@@ -26,6 +26,10 @@ class HealthView:
         """Was the node heard of lately?"""
         return node in self._last and time.monotonic() - self._last[node][1] < SILENT_AFTER_S
 
+    def ready(self, node: str) -> bool:
+        """Is the node alive, and past its start? Any thread may ask."""
+        return self.alive(node) and self._last[node][0].state == "ready"
+
     def nodes(self) -> tuple[NodeStatus, ...]:
         """One row a node, by name."""
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))

@@ -47,7 +47,8 @@ def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
         explanation = semantic_map.reasoner.explain((subject, predicate, value))
         if explanation is not None:
             return explanation
-    raise errors.Refused(f"it does not hold that {question.name} {question.predicate} {question.value}")
+    relation = "is of class" if predicate == v.RDF_TYPE else question.predicate
+    raise errors.Refused(f"it does not hold that {question.name} {relation} {question.value}")
 
 
 class Picture(NamedTuple):

@@ -31,6 +31,8 @@ About = Callable[[Term], Objects]
 
 def about(reasoner: Reasoner, triples: Iterable[Triple], new: Set[Term]) -> About:
     """What is asserted of each subject; of `new` ones, `triples` hold all there is."""
+    if not new:
+        return reasoner.about
     at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
     for s, p, o in triples:
         said = at_hand.get(s)
@@ -59,7 +61,7 @@ def read_entity(
     said = about(iri)
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
-    _require_name(iri, kind.class_name)
+    require_name(iri, kind.class_name)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     return Entity(
         name=v.local_name(iri),
@@ -110,7 +112,8 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     )
 
 
-def _require_name(iri: Term, class_name: str) -> None:
+def require_name(iri: Term, class_name: str) -> None:
+    """Raises BadRequest for an entity without an IRI (http, https, urn or file) that ends in a name."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):

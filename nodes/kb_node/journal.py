@@ -18,6 +18,7 @@ from typing import Any
 
 from msgspec import Struct
 
+from nodes.kb_node import bodies
 from schemas import codec, errors
 from schemas.commits import Commit
 from schemas.entities import Entity
@@ -131,15 +132,19 @@ class Journal:
             raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_ANEW}")
         return bytes(row[0])
 
-    def append(self, commit: Commit, tbox: bytes | None = None) -> None:
+    def append(
+        self, commit: Commit, tbox: bytes | None = None, *, begun: bodies.EarlyBody | None = None
+    ) -> None:
         """Make `commit` durable, with the TBox (N-Triples) that holds from now on if it is another.
+
+        `begun` is its body, if that was begun before.
 
         Raises NotWritten when the disk does not take it.
         """
         if self._digest is None:
             with self._reading():
                 self._digest = self._digest_of(self.last)
-        body = codec.encode(commit, dense_from=_DENSE_FROM)
+        body = codec.encode(commit, dense_from=_DENSE_FROM) if begun is None else begun.finish(commit)
         digest = _chain(self._digest, body)
         with self._writing(f"commit {commit.seq}"):
             self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))

@@ -80,6 +80,8 @@ class KnowledgeBase:
             if name.startswith("on_")
         }
         node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        for verb in keys.OF_THE_MAP:
+            node.serve_one(keys.CMD, verb, BRIDGE[verb][0], functions[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.ready(self._summary())
 
@@ -221,8 +223,10 @@ class KnowledgeBase:
         """Commits of the past."""
         return self._aside.submit(self._past.history, query)
 
-    def on_last_seen(self, query: LastSeen) -> Future[Sighting]:
-        """Where an entity was last."""
+    def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
+        """Where an entity was last; where it is, if it is there."""
+        if (entity := self.map.find(query.name)) is not None:
+            return past.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
     def on_undo(self, command: Undo) -> Commit:

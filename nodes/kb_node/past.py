@@ -96,9 +96,9 @@ class Past:
             commit = self._journal.commit(seq)
             entity = _entities_after(commit).get(name)
             if entity is not None:
-                return _sighting(entity, removed)
+                return sighting(entity, removed)
             removed = commit.provenance
-        return _sighting(self._said_by_the_first_tbox()[name], removed)
+        return sighting(self._said_by_the_first_tbox()[name], removed)
 
     def _require_known(self, name: str) -> None:
         if name not in self._said_by_the_first_tbox() and not self._journal.touching(name):
@@ -153,7 +153,8 @@ def _entities_after(commit: Commit) -> dict[str, Entity]:
     return {entity.name: entity for entity in commit.changed}
 
 
-def _sighting(entity: Entity, removed: Provenance | None) -> Sighting:
+def sighting(entity: Entity, removed: Provenance | None) -> Sighting:
+    """Where an entity was, and what removed it."""
     return Sighting(name=entity.name, pose=entity.pose, provenance=entity.pose_provenance, removed=removed)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 from nodes.kb_node import seed
@@ -9,9 +12,13 @@ from nodes.kb_node.journal import FILENAME, InUse, Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
 
+_TOLD_EVERY_S = 2.0
 
-def repair(data: Path) -> str:
+
+def repair(data: Path, tell: Callable[[str], None] = lambda text: None) -> str:
     """Make the journal of folder `data` sound again, up to its last good commit; say what was done.
+
+    Of long work `tell` is told how far it is.
 
     The damaged one is moved to `data/kept/<time>/`. Raises BadFile when there is none, Refused when it is in
     use or holds nothing to go on from.
@@ -29,35 +36,52 @@ def repair(data: Path) -> str:
             f"{error.text.partition('; ')[0]}; start anew with --fresh (it is kept)"
         ) from None
     try:
-        if _is_sound(damaged):
+        if _is_sound(damaged, _counting("checked", tell)):
             return f"nothing is damaged: the map goes on from commit {damaged.last}"
-        good, reason = _copy(damaged, new)
+        good, reason = _copy(damaged, new, tell)
     finally:
         damaged.close()
     kept = seed.put_in_place(new, path)
     return f"the map goes on from commit {good} ({reason}); the damaged file is kept in {kept}"
 
 
-def _is_sound(journal: Journal) -> bool:
+def _counting(done: str, tell: Callable[[str], None]) -> Callable[[], None]:
+    """A function to call after each commit; now and then it tells how many there were."""
+    numbers, due_s = count(1), time.monotonic() + _TOLD_EVERY_S
+
+    def progress() -> None:
+        nonlocal due_s
+        number = next(numbers)
+        if time.monotonic() >= due_s:
+            due_s = time.monotonic() + _TOLD_EVERY_S
+            tell(f"{number:,} commits {done}")
+
+    return progress
+
+
+def _is_sound(journal: Journal, progress: Callable[[], None]) -> bool:
     try:
-        journal.verify()
+        journal.verify(progress)
     except errors.Refused:
         return False
     return journal.is_whole()
 
 
-def _copy(damaged: Journal, new: Path) -> tuple[int, str]:
+def _copy(damaged: Journal, new: Path, tell: Callable[[str], None]) -> tuple[int, str]:
     """A sound journal at `new` with the good commits: the last one's number, and what the next one lacked."""
     seed.remove(new)
     journal = Journal.create(new, damaged.tbox(0))
     good, reason = 0, "all of them are good"
+    progress = _counting("saved", tell)
     try:
         try:
             for commit in damaged.commits():
                 journal.append(commit, damaged.tbox(commit.seq) if commit.tbox else None)
                 good = commit.seq
+                progress()
         except errors.Refused as error:
             reason = error.text.partition("; ")[0].removeprefix(f"{damaged.path}: ")
+        tell(f"the map is rebuilt from {good:,} commits")
         SemanticMap(journal).checkpoint()
     finally:
         journal.close()

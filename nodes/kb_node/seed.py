@@ -13,7 +13,7 @@ from nodes.kb_node.journal import FILENAME, InUse, Journal
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
-from schemas import errors
+from schemas import errors, wording
 from schemas.commits import Transaction
 from schemas.explanations import Triple
 
@@ -63,7 +63,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
-    return "; note: ".join((f"{size} entities from {source}", *notes))
+    return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
 
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:

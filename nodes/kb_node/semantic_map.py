@@ -10,13 +10,14 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node import bodies, effects, entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commits import Commit, Departed, Snapshot, Star, Transaction
+from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
 
@@ -47,6 +48,7 @@ class SemanticMap:
         self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
+        self._patterns = Patterns()
         self._replaced: dict[str, Entity | None] | None = None
         """While commits are made together: the entities that were there before, None for new names."""
         self.seq = 0
@@ -63,6 +65,10 @@ class SemanticMap:
         if name in self._entities:
             return self._entities[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self._entities)}")
+
+    def find(self, name: str) -> Entity | None:
+        """The entity of that name, if there is one."""
+        return self._entities.get(name)
 
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
         """The entities, or those of a class by inference, in the order of their names."""
@@ -138,7 +144,9 @@ class SemanticMap:
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
         with _uncollected():
-            return self._apply(self._signed(transaction, retracted, inserted), self._journal.append)
+            commit = self._signed(transaction, retracted, inserted)
+            begun = bodies.early(commit)
+            return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -230,7 +238,7 @@ class SemanticMap:
     def _held(self, transaction: Transaction) -> set[Triple]:
         """Those of the transaction's triples that are asserted already."""
         groups = transaction.require, transaction.retract, transaction.insert
-        known = set(filter(self.reasoner.mentions, {s for triples in groups for s, _, _ in triples}))
+        known = self.reasoner.mentioned({s for triples in groups for s, _, _ in triples})
         held: set[Triple] = set()
         many: set[Term] = set()
         for subject in known:
@@ -310,7 +318,7 @@ class SemanticMap:
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), concerned, set())
+            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes = before
@@ -320,11 +328,11 @@ class SemanticMap:
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
-        known = set(filter(self.reasoner.mentions, subjects))
+        known = self.reasoner.mentioned(subjects)
         owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change.touched, subjects - known)
+            commit = self._with_effects(commit, owners, change, subjects - known)
             make_durable(commit)
         except BaseException:
             self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
@@ -347,41 +355,9 @@ class SemanticMap:
         self._show(commit.changed)
         return commit
 
-    def _with_effects(self, commit: Commit, owners: Set[Term], touched: Set[Term], new: Set[Term]) -> Commit:
-        """`commit` with the entities that it changed and those that it removed.
-
-        `owners` are those to whose stars its triples belong, before it or after it. Of `new` ones it says
-        all there is.
-        """
-        changed: dict[str, Entity] = {}
-        removed: list[Departed] = []
-        provenance, about = commit.provenance, entities.about(self.reasoner, commit.inserted, new)
-        types, spatial = self.reasoner.types, self.classes.spatial
-        concerned = (
-            iri
-            for iri in owners | touched
-            if not types(iri).isdisjoint(spatial) or (iri not in new and self._known(iri))
-        )
-        for iri in sorted(concerned):
-            known = None if iri in new else self._known(iri)
-            self._progress()
-            entity = entities.read_entity(self.reasoner, self.classes, iri, provenance, about)
-            if entity is None:
-                removed += [Departed(name=known.name, types=known.types)] if known is not None else []
-                continue
-            if known is not None:
-                entity = entities.inherit(entity, known, concerned=iri in owners)
-            if (other := changed.setdefault(entity.name, entity)) is not entity:
-                raise _taken(other)
-        gone = {departed.name for departed in removed}
-        for name, entity in changed.items():
-            if name not in gone and (holder := self._entities.get(name, entity)).iri != entity.iri:
-                raise _taken(holder)
-        return structs.replace(
-            commit,
-            changed=tuple(e for name, e in changed.items() if e != self._entities.get(name)),
-            removed=tuple(removed),
-        )
+    def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
+        reading = effects.Reading(self.reasoner, self.classes, self._patterns, self._progress)
+        return effects.of(commit, change, self._entities, reading, owners=owners, new=new)
 
     def _read_again(self, known: Entity) -> Entity | None:
         """An entity as this code reads it, changed when it was."""
@@ -400,8 +376,7 @@ class SemanticMap:
 
     def _known(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
-        entity = self._entities.get(v.local_name(iri))
-        return entity if entity is not None and v.iri(entity.iri) == iri else None
+        return effects.known(self._entities, iri)
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
@@ -417,7 +392,3 @@ def _uncollected() -> Iterator[None]:
     finally:
         if was_on:
             gc.enable()
-
-
-def _taken(holder: Entity) -> errors.NameTaken:
-    return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")

@@ -106,3 +106,18 @@ def test_every_huric_map_of_the_corpus_can_be_read():
     paths = sorted((data_folder() / "huric").rglob("*.hrc"))
     assert paths
     assert all(huric.read(path.read_bytes(), path.name) for path in paths)
+
+
+def test_a_byte_order_mark_is_no_part_of_a_scene():
+    (chair,) = scene_files.read(b"\xef\xbb\xbf" + as_bytes(SCENE), "scene.json")
+    assert chair.name == "chair9"
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
+def test_numbers_that_json_does_not_have_are_named(number):
+    content = as_bytes(SCENE).replace(b"1.5", number.encode())
+    with pytest.raises(BadFile, match=r"scene.json is no scene: .*; JSON has no NaN and no Infinity"):
+        scene_files.read(content, "scene.json")
+    with pytest.raises(BadFile) as error:
+        scene_files.read(as_bytes({"entities": [{"class": number}], "x": 1}), "scene.json")
+    assert "Infinity" not in error.value.text

@@ -14,7 +14,7 @@ from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, LoadDocument, SnapshotQuery, StarQuery
-from schemas.commands import Check, Export, Get, Infer, List
+from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -149,6 +149,8 @@ def test_questions_are_answered(session):
     assert set(star.own) == set(chair("q", preferred="queen"))
     assert "q type Seat" in ask(session, "infer", Infer(name="q")).text
     assert ask(session, "check", Check()).consistent
+    there = ask(session, "last-seen", LastSeen(name="q"))
+    assert (there.pose, there.removed) == (ask(session, "get", Get(name="q")).pose, None)
     document = ask(session, "export", Export(format="turtle", inferred=True))
     assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf_files.parse(document.content, "export")
 
@@ -156,6 +158,14 @@ def test_questions_are_answered(session):
 def load(number, content, **fields):
     fields = {"replace": False, "skip_unknown": False, **fields}
     return LoadDocument(id=number, source="file", content=content.encode(), filename="f.ttl", **fields)
+
+
+def test_look_ups_are_answered_without_anybody_between(session):
+    commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
+    query = Sparql(query="SELECT ?class { :looked_up a ?class }")
+    result = bus.ask(session, keys.CMD, "sparql", query, BRIDGE["sparql"][1])
+    assert result.rows == ((v.dm("Chair"),),)
+    assert result.seq == commit.seq
 
 
 def test_documents_are_loaded_whole_or_not_at_all(session):

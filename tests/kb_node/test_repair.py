@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from nodes.kb_node import repair as repair_module
 from nodes.kb_node.journal import FILENAME, Journal
 from nodes.kb_node.repair import repair
 from nodes.kb_node.semantic_map import SemanticMap
@@ -59,6 +60,18 @@ def test_it_goes_on_from_the_last_good_commit(data, broken):
     assert (seq, mended) == (broken - 1, commits[: broken - 1])
     assert {e.name for e in snapshot.entities} == {e.name for c in mended for e in c.changed}
     assert repair(data) == f"nothing is damaged: the map goes on from commit {broken - 1}"
+
+
+def test_it_tells_how_far_it_is(data, monkeypatch):
+    monkeypatch.setattr(repair_module, "_TOLD_EVERY_S", 0.0)
+    flip(data / FILENAME, "commits", 5)
+    told = []
+    repair(data, told.append)
+    checked, saved = (
+        [f"{n} commits checked" for n in range(1, 5)],
+        [f"{n} commits saved" for n in range(1, 5)],
+    )
+    assert told == [*checked, *saved, "the map is rebuilt from 4 commits"]
 
 
 def test_a_repaired_map_takes_commits_again(data):

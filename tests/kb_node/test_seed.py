@@ -44,7 +44,7 @@ def contents(folder):
 
 
 def test_a_map_is_begun_from_two_files(data, files):
-    assert seed(data, *files) == "1 entities from my abox.ttl"
+    assert seed(data, *files) == "1 entity from my abox.ttl"
     names, triples = read(data)
     assert names == ["chair1"]
     assert (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.TBOX_ONTOLOGY) in triples

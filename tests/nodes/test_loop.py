@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 import time
 from concurrent.futures import Future
@@ -65,6 +66,44 @@ def test_an_unknown_verb_is_told_with_those_that_are_there(network):
         bus.ask(client, PREFIX, "fly", commands.Get(name="x"), commands.Done)
 
 
+def test_a_verb_is_left_to_the_node_that_serves_it():
+    """Two nodes and one prefix: `get` is the first one's, unless it is away; the rest is the other's."""
+    endpoint = free_endpoint()
+    first = bus.Network(mode="peer", listen=("tcp/127.0.0.1:0",), connect=(endpoint,))
+    other = bus.Network(mode="peer", listen=(endpoint,), connect=())
+    away = threading.Event()
+
+    def done(text):
+        return commands.Get, lambda _: commands.Done(text=text)
+
+    def get(client, verb):
+        return bus.ask(client, PREFIX, verb, commands.Get(name="x"), commands.Done).text
+
+    with bus.open_session(other) as there, bus.open_session(first) as here:
+        nodes = Node("first", here), Node("other", there)
+        nodes[0].serve_one(PREFIX, "get", *done("first"))
+        handlers = {"get": done("other"), "list": done("other")}
+        nodes[1].serve(PREFIX, handlers, leave=lambda verb: verb == "get" and not away.is_set())
+        threads = [threading.Thread(target=node.run) for node in nodes]
+        for thread in threads:
+            thread.start()
+        try:
+            with bus.open_session(bus.Network(connect=(endpoint,))) as client:
+                assert [get(client, "get") for _ in range(20)] == ["first"] * 20
+                assert get(client, "list") == "other"
+                with pytest.raises(errors.UnknownVerb, match="there are: get, list"):
+                    bus.ask(client, PREFIX, "*", commands.Get(name="x"), commands.Done)
+                away.set()
+                nodes[0].stop()
+                threads[0].join(timeout=5)
+                here.close()
+                assert get(client, "get") == "other"
+        finally:
+            for node, thread in zip(nodes, threads, strict=True):
+                node.stop()
+                thread.join(timeout=5)
+
+
 def test_a_reply_may_come_later(network):
     _, client = network
     assert bus.ask(client, PREFIX, "infer", commands.Infer(), commands.Done).text == "late"
@@ -77,6 +116,9 @@ def test_the_heartbeat_shows_state_and_the_last_error(network):
     with pytest.raises(errors.InternalError):
         bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
     until(lambda: beats and "oops" in beats[-1].last_error, "the error is in the heartbeat")
+    assert re.match(r"\d\d:\d\d:\d\d check: ", beats[-1].last_error)
+    node._error_shown_until = 0.0
+    until(lambda: not beats[-1].last_error, "the error is no longer told")
     assert beats[-1].state == "starting"
     node._events.put(lambda: node.ready("so many entities"))
     until(lambda: beats[-1].state == "ready", "the heartbeat says ready")

@@ -14,7 +14,7 @@ from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.talking import Question, Talk
-from schemas import errors, scene_files
+from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
 from schemas.commands import Changed, Classes, Load
 from schemas.commits import Commit, Transaction
@@ -133,7 +133,7 @@ def _loaded(
     skipped: tuple[str, ...],
     notes: tuple[str, ...],
 ) -> Changed:
-    text = f"loaded {len(names)} entities from {command.filename or 'the file'}"
+    text = f"loaded {wording.entities(len(names))} from {command.filename or 'the file'}"
     if commit is None:
         text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
     if skipped:

@@ -113,7 +113,10 @@ def repair(data: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
     from nodes.kb_node.repair import repair as repair_journal
 
-    click.echo(repair_journal((data or default_data()).resolve()))
+    def tell(text: str) -> None:
+        click.echo(f"semmap: {text}", err=True)
+
+    click.echo(repair_journal((data or default_data()).resolve(), tell))
 
 
 @click.command()

@@ -1,5 +1,7 @@
 """An incremental, explaining OWL 2 RL reasoner in plain Python."""
 
-from nodes.kb_node.reasoner.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.reasoner.change import Change
+from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.shapes import Alike, Run
 
-__all__ = ["Change", "Inconsistent", "Reasoner"]
+__all__ = ["Alike", "Change", "Inconsistent", "Reasoner", "Run"]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from nodes.kb_node.reasoner.abox import ABox
 from nodes.kb_node.reasoner.axioms import NotCompilable
+from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.facts import Facts
 from nodes.kb_node.reasoner.proof import Prover
@@ -13,7 +14,7 @@ from nodes.kb_node.reasoner.reasons import Clash
 from nodes.kb_node.reasoner.retraction import Retraction
 from nodes.kb_node.reasoner.schema import Schema
 from nodes.kb_node.reasoner.schema_support import SchemaSupport
-from nodes.kb_node.reasoner.shapes import Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.shapes import Alike, Contradiction, Shapes, Written
 from nodes.kb_node.reasoner.shortcuts import depart, exchange
 from nodes.kb_node.reasoner.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.support import Support
@@ -53,6 +54,7 @@ class CompiledEngine:
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
+        self._of_the_schema = frozenset(s for s, _, _ in closure.facts)
         self._abox = ABox(self._schema)
         self._shapes = Shapes(self._abox)
         self._view = View(self._abox)
@@ -68,8 +70,8 @@ class CompiledEngine:
         """The closure of the schema."""
         return self._schema.closure
 
-    def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> frozenset[Term]:
-        """Delete and insert triples; the individuals that this touched.
+    def apply(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> Change:
+        """Delete and insert triples.
 
         Raises:
             Refused: it would contradict the rest; nothing has changed.
@@ -80,16 +82,17 @@ class CompiledEngine:
             gone = exchange(abox, delete, insert) if insert else depart(abox, delete)
             if gone is not None:
                 self._size += len(insert) - len(delete)
-                return frozenset(gone)
+                return Change(frozenset(gone))
             if any(map(is_schema, delete)):
                 raise NotCompilable("less of the schema")
         added: list[Triple] = []
         removed: list[Triple] = []
         touched: set[Term] = set()
+        alike: list[Alike] = []
         retraction = Retraction(abox) if delete else None
         try:
             if retraction is None:
-                self._insert_runs(insert, added, touched)
+                self._insert_runs(insert, added, touched, alike)
             else:
                 removed = retraction.delete(delete)
                 touched.update([s for s, _, _ in removed])
@@ -108,9 +111,11 @@ class CompiledEngine:
         if retraction is not None:
             retraction.release()
         self._size += len(added) - len(removed)
-        return frozenset(touched)
+        return Change(frozenset(touched), alike)
 
-    def _insert_runs(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
+    def _insert_runs(
+        self, triples: Sequence[Triple], added: list[Triple], touched: set[Term], alike: list[Alike]
+    ) -> None:
         """Insert triples: run by run as far as what follows is known, and the others together."""
         shapes = self._shapes
         rest: list[Triple] = []
@@ -118,7 +123,7 @@ class CompiledEngine:
             known = None if self._abox.is_mixed or run.key is None else shapes.known.get(run.key, run)
             if isinstance(known, Written) and shapes.write(known, run):
                 added += run.triples
-                touched.update(known.touched_of(run.individuals))
+                alike.append(Alike(known, run))
             elif known is run:
                 self._insert(run.triples, added, touched)
                 shapes.learn(run)
@@ -183,9 +188,9 @@ class CompiledEngine:
                 objects.setdefault(triple[1], []).append(triple[2])
         return objects
 
-    def mentions(self, term: Term) -> bool:
-        """Whether a triple has a term as its subject or object."""
-        return term in self._abox.store.numbers or bool(self._schema.closure.match(term))
+    def mentioned(self, terms: Set[Term]) -> set[Term]:
+        """Those that a triple has as its subject or object."""
+        return (self._abox.store.numbers.keys() & terms) | (self._of_the_schema & terms)
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted.

@@ -5,7 +5,7 @@ Exact for all rules; a change costs as much as the map is large.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 
 from nodes.kb_node.reasoner.closure import Closure
 from nodes.kb_node.reasoner.proof import Prover
@@ -38,10 +38,9 @@ class GeneralEngine:
             objects.setdefault(p, []).append(o)
         return objects
 
-    def mentions(self, term: Term) -> bool:
-        """Whether a triple has a term as its subject or object."""
-        patterns = ((term, None, None), (None, None, term))
-        return any(True for s, p, o in patterns for _ in self.asserted(s, p, o))
+    def mentioned(self, terms: Set[Term]) -> set[Term]:
+        """Those that a triple has as its subject or object."""
+        return {term for s, _, o in self.asserted(None, None, None) for term in (s, o) if term in terms}
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Set
 
 from nodes.kb_node.reasoner.axioms import NotCompilable
+from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.facts import Facts
 from nodes.kb_node.reasoner.general import GeneralEngine
@@ -21,12 +21,6 @@ class Inconsistent(Exception):
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
         self.explanation = explanation
-
-
-class Change(NamedTuple):
-    """What a transaction did: the individuals whose asserted triples or inferred named classes changed."""
-
-    touched: frozenset[Term]
 
 
 class Reasoner:
@@ -69,7 +63,7 @@ class Reasoner:
         engine = self._engine
         if isinstance(engine, CompiledEngine):
             try:
-                return Change(engine.apply(delete, insert))
+                return engine.apply(delete, insert)
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
             except NotCompilable:
@@ -99,9 +93,9 @@ class Reasoner:
         """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
         return self._engine.about(subject)
 
-    def mentions(self, term: Term) -> bool:
-        """Whether a triple may have a term as its subject or object: what is not mentioned is new."""
-        return self._engine.mentions(term)
+    def mentioned(self, terms: Set[Term]) -> set[Term]:
+        """Those that a triple may have as its subject or object: what is not mentioned is new."""
+        return self._engine.mentioned(terms)
 
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None

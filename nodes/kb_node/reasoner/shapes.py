@@ -8,6 +8,7 @@ known shape is written down as it will stand, without looking at any rule.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import count
 from typing import NamedTuple
 
@@ -40,8 +41,9 @@ class Run(NamedTuple):
     """The other objects, triple by triple."""
 
 
-class Written(NamedTuple):
-    """What a run of a known shape leaves."""
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
+class Written:
+    """What a run of a known shape leaves. One object is one shape."""
 
     layout: Layout
     constants: tuple[Term, ...]
@@ -53,6 +55,13 @@ class Written(NamedTuple):
         """What is touched of a run's individuals."""
         names = tuple(individuals)
         return [names[place] for place in self.touched]
+
+
+class Alike(NamedTuple):
+    """A run and its shape. Runs of one shape have their triples in one order, and their objects by kind."""
+
+    shape: Written
+    run: Run
 
 
 class Contradiction(NamedTuple):

@@ -1,11 +1,11 @@
-"""What the knowledge base's node and its SPARQL process say to each other, in MessagePack."""
+"""What the knowledge base's node, its SPARQL process and the readers say to each other, in MessagePack."""
 
 from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.sparql.dataset import Delta
-from schemas.commands import Renew, Sparql, Watch
+from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
 from schemas.sparql import RowsChanged
@@ -32,10 +32,16 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class Asked(Struct, frozen=True, kw_only=True, tag=True):
-    """A command, to be answered under its number."""
+    """A command about a standing query, to be answered under its number."""
 
     number: int
-    command: Sparql | Watch | Renew
+    command: Watch | Renew
+
+
+class Hire(Struct, frozen=True, kw_only=True, tag=True):
+    """A lane has no reader and needs one."""
+
+    lane: int
 
 
 class Answered(Struct, frozen=True, kw_only=True, tag=True):
@@ -46,6 +52,13 @@ class Answered(Struct, frozen=True, kw_only=True, tag=True):
     error: ErrorMessage | None = None
 
 
+class Left(Struct, frozen=True, kw_only=True, tag=True):
+    """A lane's reader is no more: it died of a signal, or (0) went because its triples were too old."""
+
+    lane: int
+    signal: int
+
+
 class News(Struct, frozen=True, kw_only=True, tag=True):
     """Rows of a standing query have changed; with `ended` there will be no more."""
 
@@ -54,8 +67,30 @@ class News(Struct, frozen=True, kw_only=True, tag=True):
     ended: bool = False
 
 
-ToWorker = Load | Committed | Asked
-FromWorker = Answered | News
+class Question(Struct, frozen=True, kw_only=True):
+    """A query, to be answered by a reader as of commit `seq` or later, on the lane that it came on."""
+
+    number: int
+    seq: int
+    query: str
+    inferred: bool
+    limit: int
+    timeout_s: float
+
+
+class Outcome(Struct, frozen=True, kw_only=True):
+    """What came of it: a `SparqlResult`, encoded, or the error; or the reader is too `old` and goes."""
+
+    number: int
+    result: Raw = NOTHING
+    error: ErrorMessage | None = None
+    old: bool = False
+
+
+ToWorker = Load | Committed | Asked | Hire
+FromWorker = Answered | Left | News
 
 to_worker = msgpack.Decoder(ToWorker)
 from_worker = msgpack.Decoder(FromWorker)
+questions = msgpack.Decoder(Question)
+outcomes = msgpack.Decoder(Outcome)

@@ -1,7 +1,7 @@
 """SPARQL as the knowledge base's node sees it: commits go in, futures and news come out.
 
-The process is started by the first question and follows from then on. Two threads mind its pipe, so that the
-node's own never waits for it.
+The process is started by the first question and follows from then on. Threads mind its pipe and the lanes of
+its readers, so that the node's own never waits for it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from typing import Any
 from msgspec import msgpack
 
 from nodes.kb_node.sparql.dataset import Delta
-from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Load, News, from_worker
+from nodes.kb_node.sparql.lanes import Lanes
+from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, News, from_worker
 from schemas import codec, errors
 from schemas.bridge import BRIDGE
 from schemas.commands import Renew, Sparql, Watch
@@ -47,7 +48,7 @@ class SparqlService:
         elif not isinstance(command, Renew) and command.inferred and not self._infers:
             self._infers = True
             self._load(self._worker, seq)
-        return self._worker.ask(command)
+        return self._worker.ask(command, seq)
 
     def follow(self, commit: Commit) -> None:
         """Every commit, in order."""
@@ -75,34 +76,41 @@ class _Worker:
     def __init__(self, publish: Callable[[News], None]) -> None:
         self._publish = publish
         self._numbers = count()
-        self._outbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._outbox: queue.SimpleQueue[tuple[Connection, Any] | None] = queue.SimpleQueue()
         self._waiting: dict[int, tuple[str, Future[Any]]] = {}
         self._lock = threading.Lock()
         self.is_alive = True
         self._connection, there = Pipe()
-        module = "nodes.kb_node.sparql.worker"
+        self._lanes = Lanes(self.send)
+        theirs = [there, *self._lanes.others]
+        fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", module, str(there.fileno())],
-            pass_fds=[there.fileno()],
+            [sys.executable, "-m", "nodes.kb_node.sparql.worker", *map(str, fds)],
+            pass_fds=fds,
             stdin=subprocess.DEVNULL,
         )
-        there.close()
-        for target in (self._write, self._read):
-            threading.Thread(target=target, args=(self._connection,), name="sparql", daemon=True).start()
+        for connection in theirs:
+            connection.close()
+        self._writer = threading.Thread(target=self._write, name="sparql", daemon=True)
+        self._writer.start()
+        threading.Thread(target=self._read, name="sparql", daemon=True).start()
 
-    def send(self, message: Any) -> None:
+    def send(self, message: Any, connection: Connection | None = None) -> None:
         """Queue a message."""
         if self.is_alive:
-            self._outbox.put(message)
+            self._outbox.put((connection or self._connection, message))
 
-    def ask(self, command: Sparql | Watch | Renew) -> Future[Any]:
-        """Queue a command."""
-        number, future = next(self._numbers), Future[Any]()
+    def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
+        """The reply, as of commit `seq` or later."""
         with self._lock:
             if self.is_alive:
+                if isinstance(command, Sparql):
+                    return self._lanes.ask(command, seq)
+                number, future = next(self._numbers), Future[Any]()
                 self._waiting[number] = (str(command.__struct_config__.tag), future)
-                self._outbox.put(Asked(number=number, command=command))
+                self.send(Asked(number=number, command=command))
                 return future
+        future = Future()
         future.set_exception(_ended())
         return future
 
@@ -111,27 +119,30 @@ class _Worker:
         self._process.terminate()
         self._process.wait()
 
-    def _write(self, connection: Connection) -> None:
+    def _write(self) -> None:
         try:
-            while (message := self._outbox.get()) is not None:
+            while (item := self._outbox.get()) is not None:
+                connection, message = item
                 connection.send_bytes(msgpack.encode(message))
         except OSError:
             pass  # `_read` sees the end, too
 
-    def _read(self, connection: Connection) -> None:
+    def _read(self) -> None:
         try:
             while True:
-                message = from_worker.decode(connection.recv_bytes())
-                if isinstance(message, News):
-                    self._publish(message)
-                else:
-                    self._answer(message)
+                match from_worker.decode(self._connection.recv_bytes()):
+                    case News() as news:
+                        self._publish(news)
+                    case Left() as left:
+                        self._lanes.leave(left)
+                    case answered:
+                        self._answer(answered)
         except (EOFError, OSError):
             pass
         finally:
-            self._bury(connection)
+            self._bury()
 
-    def _bury(self, connection: Connection) -> None:
+    def _bury(self) -> None:
         """Nobody waits for it any more."""
         with self._lock:
             self.is_alive = False
@@ -140,9 +151,11 @@ class _Worker:
         self._outbox.put(None)
         self._process.kill()
         self._process.wait()
-        connection.close()
         for _, future in left:
             future.set_exception(_ended())
+        self._lanes.close(_ended())
+        self._writer.join()
+        self._connection.close()
 
     def _answer(self, message: Answered) -> None:
         with self._lock:

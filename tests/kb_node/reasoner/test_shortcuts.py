@@ -20,7 +20,7 @@ def same_as_fresh(reasoner, turtle):
 
 def test_a_thing_goes_with_all_that_was_said_of_it(reasoner):
     assert depart(reasoner._engine._abox, triples(STAR)) == {triple(":a a :C")[0], triple(":a1 a :C")[0]}
-    assert not reasoner.mentions(triple(":a1 a :C")[0])
+    assert not reasoner.mentioned({triple(":a1 a :C")[0]})
     assert not list(reasoner.inferred(triple(":a a :C")[0]))
 
 
@@ -91,5 +91,5 @@ def test_what_is_no_number_is_refused_beside_another_value(text):
     for insert in (facts, facts[::-1]):
         with pytest.raises(Inconsistent):
             reasoner.apply(insert=insert)
-        assert not reasoner.mentions(facts[0][0])
+        assert not reasoner.mentioned({facts[0][0]})
     reasoner.apply(insert=facts[1:])

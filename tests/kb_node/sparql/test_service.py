@@ -179,7 +179,7 @@ def test_an_answer_that_is_too_long_is_refused(at_home):
     at_home.commit(chair("c"))
     doubled = "".join(f"BIND(CONCAT(?s{n}, ?s{n}) AS ?s{n + 1}) " for n in range(24))
     with pytest.raises(errors.Refused, match=f"longer than {readers.ANSWER_BYTES >> 20} MB"):
-        at_home.ask(f'SELECT ?s24 {{ BIND("abcd" AS ?s0) {doubled} }}')
+        at_home.ask(f'SELECT ?s24 {{ BIND("abcd" AS ?s0) {doubled} }}', timeout=60.0)
     assert at_home.ask(CHAIRS).rows
 
 

@@ -1,0 +1,102 @@
+"""What a change of the triples does to the entities."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Set
+from typing import NamedTuple
+
+from msgspec import structs
+
+from nodes.kb_node import entities
+from nodes.kb_node.alike import Patterns
+from nodes.kb_node.classes import ClassTable
+from nodes.kb_node.reasoner import Change, Reasoner
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Commit, Departed
+from schemas.entities import Entity, Provenance
+from schemas.explanations import Term
+
+
+class Reading(NamedTuple):
+    """What entities are read with: the triples as they are after the change, classes, known patterns."""
+
+    reasoner: Reasoner
+    classes: ClassTable
+    patterns: Patterns
+    progress: Callable[[], None]
+    """Called before each entity."""
+
+
+def of(
+    commit: Commit,
+    change: Change,
+    before: Mapping[str, Entity],
+    reading: Reading,
+    *,
+    owners: Set[Term],
+    new: Set[Term],
+) -> Commit:
+    """`commit` with the entities that it changed and those that it removed.
+
+    `before` are the entities by their names. `owners` are those to whose stars the commit's triples belong,
+    before it or after it. Of `new` individuals it says all there is. Raises BadRequest for a star that makes
+    no sense, NameTaken.
+    """
+    changed: dict[str, Entity] = {}
+    removed: list[Departed] = []
+    reasoner, classes, _, progress = reading
+    at_sight, seen = _read_at_sight(change, reading, commit.provenance)
+    others = (owners | change.touched) - seen
+    about = entities.about(reasoner, commit.inserted, others & new)
+    concerned = (
+        iri
+        for iri in others
+        if not reasoner.types(iri).isdisjoint(classes.spatial) or (iri not in new and known(before, iri))
+    )
+    for iri in sorted({*at_sight, *concerned}):
+        progress()
+        was = None if iri in new else known(before, iri)
+        entity = at_sight.get(iri) or entities.read_entity(reasoner, classes, iri, commit.provenance, about)
+        if entity is None:
+            removed += [Departed(name=was.name, types=was.types)] if was is not None else []
+            continue
+        if was is not None:
+            entity = entities.inherit(entity, was, concerned=iri in owners)
+        if (other := changed.setdefault(entity.name, entity)) is not entity:
+            raise _taken(other)
+    gone = {departed.name for departed in removed}
+    for name, entity in changed.items():
+        if name not in gone and (holder := before.get(name, entity)).iri != entity.iri:
+            raise _taken(holder)
+    return structs.replace(
+        commit,
+        changed=tuple(e for name, e in changed.items() if e != before.get(name)),
+        removed=tuple(removed),
+    )
+
+
+def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
+    """The entity with this IRI."""
+    entity = by_name.get(v.local_name(iri))
+    return entity if entity is not None and v.iri(entity.iri) == iri else None
+
+
+def _read_at_sight(
+    change: Change, reading: Reading, provenance: Provenance
+) -> tuple[dict[Term, Entity], set[Term]]:
+    """The new entities whose stars are of known shapes, and the individuals of these stars."""
+    read: dict[Term, Entity] = {}
+    seen: set[Term] = set()
+    for star in change.alike:
+        individuals = star.run.individuals
+        if change.others.isdisjoint(individuals):
+            entity = reading.patterns.read(star, reading.reasoner, reading.classes, provenance)
+            if entity is not None:
+                read[next(iter(individuals))] = entity
+                seen.update(individuals)
+    return read, seen
+
+
+def _taken(holder: Entity) -> errors.NameTaken:
+    return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")

@@ -1,0 +1,25 @@
+"""What a transaction did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from nodes.kb_node.reasoner.shapes import Alike
+from schemas.explanations import Term
+
+
+class Change(NamedTuple):
+    """The individuals whose asserted triples or inferred named classes changed.
+
+    Those who came in runs of known shapes are in `alike`; they are among the `others` only if triples
+    beside their run changed them, too.
+    """
+
+    others: frozenset[Term]
+    alike: Sequence[Alike] = ()
+
+    @property
+    def touched(self) -> frozenset[Term]:
+        """All of them."""
+        return self.others.union(*(shape.touched_of(run.individuals) for shape, run in self.alike))

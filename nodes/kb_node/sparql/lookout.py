@@ -1,0 +1,224 @@
+"""The standing queries: who watches what, and the looks that commits make necessary.
+
+They have one reader to themselves, which goes through the commits that may touch them one by one. When it
+falls too far behind, or has died, what is left to do is done in one step.
+"""
+
+from __future__ import annotations
+
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import count
+from multiprocessing.connection import Connection, Pipe
+from typing import Any, Final
+
+from msgspec import Raw, msgpack
+
+from nodes.kb_node.sparql import text
+from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, outcomes
+from nodes.kb_node.sparql.readers import Reader, cause_of_death
+from nodes.kb_node.sparql.standing import Standing
+from schemas import errors
+from schemas.commands import Done, Renew, Watch
+from schemas.sparql import RowsChanged, SparqlResult, Watching
+
+STANDING: Final = 64
+"""How many standing queries there may be."""
+ROWS: Final = 10_000
+TIMEOUT_S: Final = 2.0
+
+_results = msgpack.Decoder(SparqlResult)
+
+
+@dataclass
+class Look:
+    """A look at the rows of a standing query after commit `seq`; those after `since` are known."""
+
+    standing: Standing
+    since: int
+    seq: int
+    number: int | None = None
+    """The command that waits for its first rows."""
+
+
+class Lookout:
+    """Keeps the standing queries, and tells their news in the order of the commits."""
+
+    def __init__(self, send: Callable[[FromWorker], None], hire: Callable[[Connection], Reader]) -> None:
+        """`hire(lane)` is a reader that answers there."""
+        self._send = send
+        self._hire = hire
+        self._seq = 0
+        self._numbers = count()
+        self._standing: dict[str, Standing] = {}
+        self._looks: deque[Look] = deque()
+        self._looking: Look | None = None
+        self._reader: Reader | None = None
+        self._reader_is_old = False
+        self._lane: Connection | None = None
+
+    @property
+    def connections(self) -> Iterator[Connection]:
+        """Readable when a look is done."""
+        if self._lane is not None and self._looking is not None:
+            yield self._lane
+
+    @property
+    def patience_s(self) -> float | None:
+        """How long nothing needs to be done without being told."""
+        ends = [standing.ends for standing in self._standing.values()]
+        return max(0.0, min(ends) - time.monotonic()) if ends else None
+
+    # What comes in
+
+    def handle(self, number: int, command: Watch | Renew, seq: int) -> None:
+        """A command, at commit `seq`. Raises UnknownName, NameTaken, Refused, and as `text` does."""
+        self._seq = seq
+        if isinstance(command, Watch):
+            text.require_select(command.query)
+            self._looks.append(Look(self._admit(command), since=seq, seq=seq, number=number))
+            return
+        if command.watch not in self._standing:
+            raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
+        standing = self._standing[command.watch]
+        if command.end:
+            self._drop(standing)
+        standing.ends = time.monotonic() + standing.lease_s
+        said = "has ended" if command.end else f"goes on for {standing.lease_s:g} s"
+        self._send(Answered(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
+
+    def follow(self, delta: Delta) -> None:
+        """A commit."""
+        self._seq = delta.seq
+        for standing in self._standing.values():
+            if standing.is_touched(delta):
+                self._looks.append(Look(standing, since=delta.seq - 1, seq=delta.seq))
+
+    def look_at_all(self, seq: int) -> None:
+        """All triples are others after commit `seq`."""
+        self._seq = seq
+        self._looks.extend(Look(s, since=seq - 1, seq=seq) for s in self._standing.values())
+
+    def renew_reader(self) -> None:
+        """The one that there is cannot follow any more."""
+        self._reader_is_old = True
+
+    def done(self, connection: Connection) -> None:
+        """The reader has answered, or died."""
+        if connection is self._lane:
+            self._finish()
+
+    def go_on(self) -> None:
+        """Begin the next look; let leases end."""
+        for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
+            self._drop(standing)
+        if self._looking is None and self._reader_is_old:
+            self.end()
+        if self._looking is None and self._looks:
+            self._begin()
+
+    def end(self) -> None:
+        """Part with the reader."""
+        if self._reader is not None and self._lane is not None:
+            self._reader.end()
+            self._lane.close()
+        self._reader = self._lane = None
+        self._reader_is_old = False
+
+    # Standing queries
+
+    def _admit(self, command: Watch) -> Standing:
+        name = command.watch or f"q{uuid.uuid4().hex[:12]}"
+        if name in self._standing:
+            raise errors.NameTaken(f"there is a standing query '{name}' already")
+        if len(self._standing) >= STANDING:
+            raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
+        self._standing[name] = Standing.of(command, name, time.monotonic())
+        return self._standing[name]
+
+    def _drop(self, standing: Standing, error: errors.SemmapError | None = None) -> None:
+        """It is over; with an error, its followers are told why."""
+        self._standing.pop(standing.watch, None)
+        self._looks = deque(look for look in self._looks if look.standing is not standing)
+        last = error and RowsChanged(watch=standing.watch, seq=self._seq, since=self._seq, error=error.text)
+        self._send(News(watch=standing.watch, rows=last or None, ended=True))
+
+    # Looks
+
+    def _begin(self) -> None:
+        if self._lane is None:
+            self._lane, there = Pipe()
+            self._reader = self._hire(there)
+            there.close()
+            self._looks = deque(_in_one_step(self._looks, self._seq))
+        look = self._looking = self._looks.popleft()
+        question = Question(
+            number=next(self._numbers),
+            seq=look.seq,
+            query=look.standing.query,
+            inferred=look.standing.inferred,
+            limit=ROWS,
+            timeout_s=TIMEOUT_S,
+        )
+        with suppress(OSError):  # if the reader is dead, `_result` tells
+            self._lane.send_bytes(msgpack.encode(question))
+
+    def _finish(self) -> None:
+        look, self._looking = self._looking, None
+        assert look is not None
+        try:
+            result = self._result()
+        except errors.SemmapError as error:
+            if look.number is not None:
+                self._send(Answered(number=look.number, error=errors.to_message(error)))
+            if look.standing.watch in self._standing:
+                self._drop(look.standing, error)
+            return
+        news = look.standing.take(result.rows, look.since, look.seq)
+        if look.number is not None:
+            self._send(Answered(number=look.number, reply=_encoded(_watching(look.standing, result))))
+        elif news is not None and look.standing.watch in self._standing:
+            self._send(News(watch=news.watch, rows=news))
+
+    def _result(self) -> SparqlResult:
+        """What the reader found. Raises the query's error, also that the reader died of it."""
+        assert self._lane is not None
+        assert self._reader is not None
+        try:
+            outcome = outcomes.decode(self._lane.recv_bytes())
+        except (EOFError, OSError):
+            number = self._reader.bury()
+            self._lane.close()
+            self._reader = self._lane = None
+            raise cause_of_death(number, TIMEOUT_S) from None
+        if outcome.error is not None:
+            raise errors.from_message(outcome.error)
+        return _results.decode(outcome.result)
+
+
+def _encoded(message: Any) -> Raw:
+    return Raw(msgpack.encode(message))
+
+
+def _in_one_step(looks: deque[Look], seq: int) -> Iterator[Look]:
+    """One look a standing query, at the present, instead of several at the past."""
+    last: dict[str, Look] = {}
+    for look in looks:
+        earlier = last.setdefault(look.standing.watch, look)
+        earlier.seq = seq
+    yield from last.values()
+
+
+def _watching(standing: Standing, result: SparqlResult) -> Watching:
+    return Watching(
+        watch=standing.watch,
+        variables=result.variables,
+        rows=result.rows,
+        seq=result.seq,
+        lease_s=standing.lease_s,
+    )

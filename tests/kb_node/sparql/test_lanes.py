@@ -1,0 +1,110 @@
+"""The node's ends of the lanes, with this test in the place of readers and of the process that forks them."""
+
+import signal
+
+import pytest
+from msgspec import Raw, msgpack
+
+from nodes.kb_node.sparql.lanes import LANES, Lanes
+from nodes.kb_node.sparql.protocol import Hire, Left, Outcome, questions
+from schemas import errors
+from schemas.commands import Sparql
+from schemas.sparql import SparqlResult
+
+WAIT_S = 30.0
+
+
+class Readers:
+    """What is sent to the process, and the readers' ends."""
+
+    def __init__(self):
+        self.sent = []
+        self.lanes = Lanes(self._send)
+
+    def _send(self, message, connection):
+        if connection is None:
+            self.sent.append(message)
+        else:
+            connection.send_bytes(msgpack.encode(message))
+
+    def ask(self, query):
+        return self.lanes.ask(Sparql(query=query, timeout=1.5), 7)
+
+    def take(self, lane):
+        assert self.lanes.others[lane].poll(WAIT_S)
+        return questions.decode(self.lanes.others[lane].recv_bytes())
+
+    def answer(self, lane, question, **outcome):
+        result = Raw(msgpack.encode(SparqlResult(kind="ask", seq=7, verdict=True)))
+        message = Outcome(number=question.number, **({"result": result} | outcome))
+        self.lanes.others[lane].send_bytes(msgpack.encode(message))
+
+
+@pytest.fixture
+def readers():
+    made = Readers()
+    yield made
+    for connection in made.lanes.others:
+        connection.close()
+
+
+def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
+    first = readers.ask("a")
+    second = readers.ask("b")
+    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    readers.answer(1, readers.take(1))
+    assert second.result(WAIT_S).verdict
+    third = readers.ask("c")
+    assert readers.take(1).query == "c"
+    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    assert not first.done()
+    assert not third.done()
+
+
+def test_what_finds_no_lane_waits_for_the_next(readers):
+    futures = [readers.ask(str(number)) for number in range(LANES + 1)]
+    taken = [readers.take(lane) for lane in range(LANES)]
+    assert not readers.lanes.others[2].poll(0)
+    readers.answer(2, taken[2])
+    assert futures[2].result(WAIT_S).verdict
+    assert readers.take(2).query == str(LANES)
+
+
+def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
+    future = readers.ask("endless")
+    late = readers.take(0)
+    readers.lanes.leave(Left(lane=0, signal=signal.SIGALRM))
+    with pytest.raises(errors.Refused, match=r"cancelled after 1.5 s"):
+        future.result(WAIT_S)
+    following = readers.ask("next")
+    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
+    readers.answer(0, late)  # nobody waits for it
+    readers.answer(0, readers.take(0))
+    assert following.result(WAIT_S).verdict
+
+
+def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
+    future = readers.ask("unread")
+    readers.lanes.leave(Left(lane=0, signal=0))
+    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
+    given_back = readers.take(0)
+    readers.answer(0, given_back, old=True)
+    readers.lanes.leave(Left(lane=0, signal=0))
+    again = readers.take(0)
+    assert again == given_back
+    readers.answer(0, again)
+    assert future.result(WAIT_S).verdict
+
+
+def test_a_long_question_is_sent_by_another_thread_and_in_one_piece(readers):
+    future = readers.ask("x" * 100_000)
+    readers.answer(0, readers.take(0))
+    assert future.result(WAIT_S).verdict
+
+
+def test_in_the_end_nobody_waits(readers):
+    futures = [readers.ask("x") for _ in range(LANES + 2)]
+    readers.lanes.close(errors.Refused("over"))
+    for future in futures:
+        with pytest.raises(errors.Refused, match="over"):
+            future.result(WAIT_S)

@@ -1,0 +1,130 @@
+"""The SPARQL process's core in this process, with readers of its own, and lanes that this test asks on."""
+
+from multiprocessing.connection import Pipe, wait
+
+import pytest
+from msgspec import msgpack
+
+from nodes.kb_node.sparql import worker
+from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
+from ontology import vocabulary as v
+from schemas.sparql import SparqlResult
+from tests.kb_node import home
+
+WAIT_S = 60.0
+SEATS = "SELECT ?c { ?c a dm:Seat }"
+CHAIRS = "SELECT ?c { ?c a dm:Chair }"
+
+
+class Process:
+    """A worker, the other ends of its lanes, and what it has sent."""
+
+    def __init__(self, *, infers):
+        self.sent = []
+        self.lanes, theirs = zip(*(Pipe() for _ in range(2)), strict=True)
+        self.worker = worker.Worker(self.sent.append, theirs)
+        self.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=infers))
+        self.seq = 0
+
+    def commit(self):
+        """One more chair."""
+        self.seq += 1
+        chair = (v.entity_iri(f"c{self.seq}"), v.RDF_TYPE, v.dm("Chair"))
+        self.worker.take(Committed(delta=Delta(seq=self.seq, inserted=(chair,))))
+
+    def ask(self, lane, query, *, seq=None, inferred=False):
+        question = Question(
+            number=1,
+            seq=self.seq if seq is None else seq,
+            query=query,
+            inferred=inferred,
+            limit=100,
+            timeout_s=10.0,
+        )
+        self.lanes[lane].send_bytes(msgpack.encode(question))
+
+    def hire(self, lane):
+        self.worker.take(Hire(lane=lane))
+
+    def hear(self, lane):
+        assert self.lanes[lane].poll(WAIT_S)
+        return outcomes.decode(self.lanes[lane].recv_bytes())
+
+    def rows(self, lane):
+        return len(msgpack.decode(self.hear(lane).result, type=SparqlResult).rows)
+
+    def bury_one(self):
+        """Notice the end of a reader."""
+        self.worker.done(wait(list(self.worker.connections), WAIT_S)[0])
+        return self.sent.pop()
+
+
+@pytest.fixture
+def process(monkeypatch):
+    monkeypatch.setattr(worker, "BACKLOG", 10)
+    made = Process(infers=False)
+    yield made
+    made.worker.end()
+
+
+@pytest.fixture
+def inferring(monkeypatch):
+    monkeypatch.setattr(worker, "BACKLOG", 30)
+    made = Process(infers=True)
+    yield made
+    made.worker.end()
+
+
+def test_a_reader_is_up_to_date_when_it_is_asked(process):
+    process.commit()
+    process.hire(0)
+    for number in range(1, 6):
+        process.ask(0, CHAIRS)
+        assert process.rows(0) == number
+        process.commit()
+
+
+def test_a_question_that_came_before_its_commit_waits_for_it(process):
+    process.hire(0)
+    process.ask(0, CHAIRS, seq=2)
+    process.commit()
+    assert not process.lanes[0].poll(0.05)
+    process.commit()
+    assert process.rows(0) == 2
+
+
+def test_what_follows_is_read_on_too(inferring):
+    inferring.hire(0)
+    for number in range(1, 4):
+        inferring.commit()
+        inferring.ask(0, SEATS, inferred=True)
+        assert inferring.rows(0) == number
+
+
+def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
+    process.hire(0)
+    for _ in range(11):
+        process.commit()
+    assert process.bury_one() == Left(lane=0, signal=0)
+    process.ask(0, CHAIRS)
+    process.hire(0)
+    assert process.rows(0) == 11
+
+
+def test_one_that_has_taken_the_question_gives_it_back(process):
+    process.hire(0)
+    process.ask(0, SEATS, inferred=True)  # which its triples cannot answer
+    assert not process.lanes[0].poll(0.05)
+    process.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=True))
+    assert process.hear(0).old
+    assert process.bury_one() == Left(lane=0, signal=0)
+
+
+def test_lanes_have_readers_of_their_own(process):
+    process.commit()
+    process.hire(0)
+    process.hire(1)
+    process.ask(1, CHAIRS)
+    assert process.rows(1) == 1
+    assert not process.lanes[0].poll(0)

@@ -1,0 +1,31 @@
+import zlib
+
+from nodes.kb_node import bodies
+from ontology import vocabulary as v
+from schemas import codec
+from schemas.commits import Commit, Departed
+from tests.kb_node.home import chair, transaction
+
+
+def commit(*triples, **fields):
+    return Commit(seq=7, stamp_ns=1, id="x", source="file", inserted=triples, **fields)
+
+
+def test_a_body_that_was_begun_is_the_whole(semantic_map):
+    changed = semantic_map.commit(transaction("a", chair())).changed
+    triples = [(v.entity_iri(f"c{i}"), v.RDF_TYPE, v.dm("Chair")) for i in range(2000)]
+    begun = bodies.early(commit(*triples))
+    whole = commit(*triples, changed=changed * 300, removed=(Departed(name="b", types=("Chair",)),))
+    body = begun.finish(whole)
+    assert zlib.decompress(body) == codec.encode(whole)
+    assert codec.decode(body, Commit) == whole
+    assert len(body) < len(codec.encode(whole)) / 10
+
+
+def test_one_without_effects(semantic_map):
+    whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
+    assert zlib.decompress(bodies.early(whole).finish(whole)) == codec.encode(whole)
+
+
+def test_a_small_commit_is_written_at_once():
+    assert bodies.early(commit(*chair())) is None
