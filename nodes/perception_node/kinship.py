@@ -53,6 +53,12 @@ class Votes:
     weights: Mapping[str, float] = field(default_factory=dict)
     looks: float = 0.0
 
+    @staticmethod
+    def remembered(class_name: str, probability: float) -> Votes:
+        """What is left of very many looks that said the same, with this mean probability."""
+        looks = 1.0 / (1.0 - _FORGET)
+        return Votes({class_name: probability * looks}, looks)
+
     def cast(self, class_name: str, probability: float) -> Votes:
         """One more look."""
         weights = {name: weight * _FORGET for name, weight in self.weights.items()}

@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
+from nodes.perception_node.association import renamed
 from nodes.perception_node.telling import DISPLACED, MISSING
+from nodes.perception_node.tracks import Tracks
 from schemas.commands import Add, Remove, Update
 from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
 
@@ -133,6 +135,41 @@ def test_a_name_is_not_given_twice():
     table.looks(20)
     table.things = [seen("Cup", at(1, 1))]
     assert [command.name for command in table.looks(20)] == ["cup2"]
+
+
+def test_a_new_process_takes_perceptions_own_from_the_map_and_goes_on():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    table.looks(5)
+    names = table.taken_for
+    table.tracks = Tracks()
+    assert table.look() == ()
+    assert table.taken_for == names
+    table.things[0] = moved(table.things[0], at(1.5, 2))
+    assert [command.name for command in table.looks(20)] == [names[0]]
+    table.tracks = Tracks()
+    del table.things[1]
+    assert [command.names for command in table.looks(20)] == [(names[1],)]
+
+
+def test_a_new_process_does_not_forget_at_its_first_looks_what_a_thing_was_taken_for():
+    table = Table([seen("Tableware", at(1, 1), SIZES["Cup"])])
+    table.looks(20)
+    table.tracks = Tracks()
+    table.things = [seen("Cup", at(1, 1))]
+    assert table.looks(CONFIG.confirm_looks) == []
+
+
+def test_a_name_that_was_given_before_is_exchanged():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    adds = table.looks(CONFIG.confirm_looks)
+    tracks, add = renamed(table.tracks, adds[0], table.entities)
+    assert (add.name, add.reason) == ("cup3", "cup3 was seen")
+    assert add.at == adds[0].at
+    assert tracks.known == {
+        "cup3": table.tracks.known["cup1"],
+        **{name: table.tracks.known[name] for name in ("cup2", "book1")},
+    }
+    assert tracks.names == {"cup1", "cup2", "cup3", "book1"}
 
 
 def test_something_else_in_its_place_is_something_else():

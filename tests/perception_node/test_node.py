@@ -18,14 +18,15 @@ from nodes.perception_node.node import Perception
 from nodes.perception_node.pipeline import Look
 from schemas import codec, errors, keys
 from schemas.bridge import SnapshotQuery
-from schemas.commands import Add, Changed, Classes
+from schemas.commands import Add, Changed, Classes, LastSeen, Sighting
 from schemas.commits import Commit, Snapshot
-from schemas.entities import ClassInfo
+from schemas.entities import ClassInfo, Provenance
 from schemas.perception import Observations
 from tests.conftest import free_endpoint, until
 from tests.perception_node.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
 
+SAID = Provenance(commit=1, stamp_ns=1, source="perception")
 CUP = seen("Cup", at(3.0, 4.0, 5.9))
 CLASSES = tuple(
     ClassInfo(
@@ -63,6 +64,7 @@ class World:
         self.clouds = []
         self.health = None
         self.refusal = None
+        self.names_of_old = set()
         self._seq = 1
         self._stamp_ns = 0
         self._commits = bus.publisher(session, keys.COMMIT)
@@ -74,6 +76,7 @@ class World:
             {
                 "snapshot": (SnapshotQuery, lambda _: Snapshot(seq=1, entities=())),
                 "classes": (Classes, lambda _: CLASSES),
+                "last-seen": (LastSeen, self._last_seen),
             },
         )
         self.node.serve(keys.CMD, {"add": (Add, self._add)})
@@ -113,6 +116,11 @@ class World:
         commit = Commit(seq=self._seq, stamp_ns=1, id=str(self._seq), source="perception", changed=(made,))
         self._commits.put(codec.encode(commit))
         return Changed(commit=self._seq, text="added", names=(command.name,))
+
+    def _last_seen(self, query):
+        if query.name not in self.names_of_old:
+            raise errors.UnknownName(f"there is no '{query.name}'")
+        return Sighting(name=query.name, pose=None, provenance=SAID, removed=SAID)
 
     def _hear(self, _, health):
         if health.node == "perception_node":
@@ -164,6 +172,13 @@ def test_what_is_seen_becomes_an_entity_once_and_is_published_with_its_name(worl
     assert set(np.frombuffer(world.clouds[0].labels, "<u2")) == {1}
     assert len(world.clouds[0].positions) == 12 * len(np.frombuffer(world.clouds[0].labels, "<u2"))
     until(lambda: world.health.detail.startswith("1 cameras, 1 things seen"), "it says what it sees")
+
+
+def test_a_name_that_something_had_before_this_process_began_is_not_given_again(world):
+    world.names_of_old = {"cup1", "cup2"}
+    world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity, "the map has it")
+    (add,) = world.told
+    assert (add.name, add.reason, world.seen[-1].observations[0].entity) == ("cup3", "cup3 was seen", "cup3")
 
 
 def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):

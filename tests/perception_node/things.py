@@ -60,9 +60,10 @@ def entity(
     size_m: Size | None = None,
     *,
     source: Source = "operator",
+    confidence: float | None = None,
     **more,
 ) -> Entity:
-    said = Provenance(commit=1, stamp_ns=1, source=source)
+    said = Provenance(commit=1, stamp_ns=1, source=source, confidence=confidence)
     return Entity(
         name=name,
         class_=class_,
@@ -122,7 +123,14 @@ class Table:
                 assert command.name not in self.entities
                 assert command.at is not None
                 pose = Pose(position_m=command.at, orientation_wxyz=command.orientation)
-                made = entity(command.name, command.class_, pose, command.size, source="perception")
+                made = entity(
+                    command.name,
+                    command.class_,
+                    pose,
+                    command.size,
+                    source="perception",
+                    confidence=command.confidence,
+                )
                 self.entities[command.name] = structs.replace(made, preferred_reference=command.ref)
             case Remove():
                 for name in command.names:
