@@ -65,7 +65,7 @@ def associate(
     }
     tentative = _tentative(tracks.tentative, matching, observations, config)
     told = [news(entities[name], track, kinship, config) for name, track in known.items()]
-    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, config))
+    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, kinship, config))
     added = proposals(proposed, {*tracks.names, *entities}, kinship)
     names = {j: name for name, j in matching.known.items()}
     return Association(

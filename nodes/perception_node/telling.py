@@ -33,9 +33,11 @@ def subject_of(command: Command) -> str:
     raise TypeError(f"perception does not say {type(command).__name__}")
 
 
-def is_sure(track: Track, config: TrackingConfig) -> bool:
+def is_sure(track: Track, kinship: Kinship, config: TrackingConfig) -> bool:
     """Whether a thing was seen at rest often enough to become an entity."""
-    return track.looks >= config.confirm_looks and not track.unseen
+    clear = track.whole and track.votes.share(track.votes.belief(kinship), kinship) >= config.clear
+    enough = config.clear_looks if clear else config.confirm_looks
+    return track.looks >= enough and not track.unseen
 
 
 def proposals(tracks: Iterable[Track], taken: Set[str], kinship: Kinship) -> dict[str, Add]:

@@ -32,6 +32,21 @@ def test_a_new_thing_becomes_an_entity_after_enough_looks_and_only_once():
     assert table.taken_for == ("cup1",)
 
 
+@pytest.mark.parametrize(
+    ("thing", "looks"),
+    [
+        (seen("Cup", at(1, 1), p=0.9), 2),
+        (seen("Cup", at(1, 1), p=0.7), 3),
+        (seen("Cup", at(1, 1), p=0.9, whole=False), 3),
+    ],
+    ids=["clear", "of doubtful class", "cut by the picture's edge"],
+)
+def test_what_is_clear_is_an_entity_sooner(thing, looks):
+    table = Table([thing], config=replace(CONFIG, clear_looks=2, clear=0.8))
+    assert table.looks(looks - 1) == []
+    assert len(table.look()) == 1
+
+
 def test_what_flashes_up_or_moves_about_is_no_entity():
     table = Table()
     for step in range(20):

@@ -17,7 +17,9 @@ from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
 from schemas.perception import Observation
 
-CONFIG = TrackingConfig(confirm_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6)
+CONFIG = TrackingConfig(
+    confirm_looks=3, clear_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6
+)
 SIZES: dict[str, Size] = {
     "Cup": (0.08, 0.08, 0.1),
     "Bottle": (0.07, 0.07, 0.28),
