@@ -7,7 +7,6 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes.loop import Node, open_node
-from nodes.recorder.blueprint import bounds_of
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.graph import graph_of
 from nodes.recorder.map_state import MapState, missed
@@ -195,7 +194,7 @@ class Recorder:
         self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
         if not self._arranged and self._map.entities:
             self._arranged = True
-            self._recording.arrange(bounds_of(self._stage.poses))
+            self._recording.arrange(self._stage.poses)
         self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
 
     def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
