@@ -8,6 +8,20 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud, Transform
 
 
+def fits(intrinsics: Transform, width: int, height: int) -> bool:
+    """Whether intrinsics (3, 3) may be those of a picture of this size, and not of one twice as large.
+
+    Its angle of view is below 157 degrees, and the optical axis meets its middle half.
+    """
+    focal, middle, size = intrinsics[[0, 1], [0, 1]], intrinsics[:2, 2], np.array([width, height])
+    return bool(
+        np.isfinite(intrinsics).all()
+        and (focal > 0.1 * size).all()
+        and (np.abs(middle - size / 2.0) <= size / 4.0).all()
+        and (intrinsics[2] == [0, 0, 1]).all()
+    )
+
+
 def cloud_of(
     depth_m: NDArray[np.float32],
     rgb: NDArray[np.uint8] | None,
