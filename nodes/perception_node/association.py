@@ -108,7 +108,7 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     return Candidate(
         track,
         target._replace(
-            size_m=track.size_m if track.looks else entity.size_m,
+            size_m=track.size_m if track.sized else entity.size_m,
             class_=entity.class_ if target.class_ == ANYTHING else target.class_,
             whole=track.whole or not own,
             usual_m=usual_m,

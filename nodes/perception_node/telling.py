@@ -67,11 +67,11 @@ def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig)
     own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
     if track.is_gone(config):
         return _gone(entity, track, own, config)
-    if track.unseen or track.odd or track.looks < config.rest_looks:
+    if not track.rests(config.rest_looks):
         return None
     changes: dict[str, Any] = {}
     if has_moved(entity, track, config):
-        if track.looks < (config.rest_looks if track.left else config.nudge_looks):
+        if not track.left and track.looks < config.nudge_looks:
             return None
         pose = rounded(track.pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}

@@ -187,6 +187,58 @@ def test_a_name_that_was_given_before_is_exchanged():
     assert tracks.names == {"cup1", "cup2", "cup3", "book1"}
 
 
+SIDE_BY_SIDE = (0.35, 0.08, 0.1)
+"""The box of two cups at a distance of 0.27 m."""
+
+
+def test_two_things_that_are_seen_as_one_stay_what_they_are_however_long():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.27, 1))])
+    table.looks(5)
+    apart = table.things
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    assert table.looks(3 * CONFIG.odd_looks) == []
+    table.things = apart
+    assert table.looks(20) == []
+
+
+def test_what_came_to_stand_beside_another_is_told_once_it_was_seen_apart_from_it():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(3, 1))])
+    table.looks(5)
+    table.things[1] = moved(table.things[1], at(1.27, 1))
+    assert table.look() == ()
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    (update,) = table.looks(20)
+    assert (update.name, update.at) == ("cup2", pytest.approx((1.27, 1.0, 0.7)))
+
+
+def test_one_look_at_it_with_its_neighbour_does_not_change_its_size():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(20)
+    table.things = [seen("Cup", at(2, 1), (0.08, 0.1, 0.1))]
+    table.look()
+    assert table.tracks.known["cup1"].size_m == pytest.approx(SIZES["Cup"], abs=0.002)
+
+
+def test_what_comes_to_stand_where_another_has_left_is_the_one_that_it_is_most_like():
+    """The one that left that place is like it too, but less."""
+    table = Table([seen("Object", at(1, 1), (0.08, 0.09, 0.12)), seen("Cup", at(2, 1))])
+    table.looks(5)
+    object_, cup = table.things
+    table.things = [cup]
+    table.look()
+    table.things = [moved(cup, at(1, 1))]
+    assert [command.name for command in table.looks(2)] == ["cup1"]
+    table.things = [moved(cup, at(1, 1)), moved(object_, at(2, 1))]
+    assert [command.name for command in table.looks(2)] == ["object1"]
+
+
+def test_a_big_thing_whose_box_holds_small_ones_is_new():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.2, 1.1))])
+    table.looks(5)
+    table.things.append(seen("Object", at(1.1, 1, 0.0), (1.0, 0.8, 0.8)))
+    assert [command.name for command in table.looks(20)] == ["object1"]
+
+
 def test_something_else_in_its_place_is_something_else():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)

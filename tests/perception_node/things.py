@@ -110,12 +110,7 @@ class Table:
     def _sight(self, pose: Pose, size_m: Size) -> Sight:
         if self.hidden:
             return "hidden"
-        filling = (
-            math.dist(pose.position_m, thing.pose.position_m) < max(size_m[:2]) / 2
-            and all(own > 0.5 * wanted for own, wanted in zip(thing.size_m, size_m, strict=True))
-            for thing in self.things
-        )
-        return "filled" if any(filling) else "open"
+        return "filled" if any(_fills(thing, pose, size_m) for thing in self.things) else "open"
 
     def _obey(self, command: Command) -> None:
         assert command.source == "perception"
@@ -155,3 +150,13 @@ class Table:
             preferred_reference=command.ref or old.preferred_reference,
             conflict=conflict,
         )
+
+
+def _fills(thing: Observation, pose: Pose, size_m: Size) -> bool:
+    """Whether a thing that is not turned is where another would stand, and not much smaller."""
+    (x, y, z), (u, v, w) = thing.pose.position_m, pose.position_m
+    there = math.dist((x, y, z), (u, v, w)) < max(size_m[:2]) / 2
+    inside = abs(x - u) < thing.size_m[0] / 2 and abs(y - v) < thing.size_m[1] / 2 and z == w
+    return (there or inside) and all(
+        own > 0.5 * wanted for own, wanted in zip(thing.size_m, size_m, strict=True)
+    )
