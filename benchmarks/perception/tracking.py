@@ -55,9 +55,7 @@ def measure(moves: int, learnt: Learnt) -> list[Row]:
     kinship = Kinship(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
-    runs = [
-        identity(lambda clouds: look(clouds, learnt), kinship, moves=moves, seed=seed) for seed in _SEEDS
-    ]
+    runs = [identity(lambda clouds: look(clouds, learnt), kinship, moves=moves, seed=seed) for seed in _SEEDS]
     shares = [run.kept / run.moves for run in runs]
     what = f"identity kept over {moves} moves, 20 objects"
     return [
