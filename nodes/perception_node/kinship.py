@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from schemas.entities import Size
+from schemas.entities import ClassInfo, Size
 
 ANYTHING = "Object"
 """The class of what is like nothing known."""
@@ -44,6 +44,13 @@ class Kinship:
     def depth(self, class_name: str) -> int:
         """How special a class is."""
         return len(self.ancestors.get(class_name, ()))
+
+
+def kinship_of(classes: Iterable[ClassInfo], usual_m: Mapping[str, Size]) -> Kinship:
+    """The hierarchy and the labels of the TBox's classes, with what is known of their sizes."""
+    rows = list(classes)
+    labels = {row.name: row.labels.get("en") or row.labels.get("") or "" for row in rows}
+    return Kinship({row.name: frozenset(row.ancestors) for row in rows}, labels, usual_m)
 
 
 @dataclass(frozen=True)

@@ -17,12 +17,12 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.loop import Node, open_node
+from nodes.map_view import MapView
 from nodes.perception_node.association import associate, renamed
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.eye import Eye
-from nodes.perception_node.kinship import Kinship
-from nodes.perception_node.map_view import MapView, kinship_of
+from nodes.perception_node.kinship import Kinship, kinship_of
 from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of

@@ -95,7 +95,8 @@ class Recorder:
         after = snapshot.seq - 1 if first else self._map.seq
         lost = missed(after, snapshot.seq, self._early)
         anew = snapshot.seq < self._map.seq
-        self._map.begin(snapshot, stars)
+        self._map.begin(snapshot)
+        self._map.relate(stars)
         for commit in sorted(self._early, key=lambda commit: commit.seq):
             self._map.take(commit)
         self._early.clear()
