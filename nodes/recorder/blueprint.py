@@ -15,7 +15,7 @@ _LOG_COLUMNS = rrb.TextLogColumns(
     timeline_columns=[rrb.encodings.TimelineColumn("time", visible=False)], text_log_columns=["body"]
 )
 _GRID = (255, 255, 255, 30)
-_LEAST_EXTENT_M = 2.5
+_LEAST_EXTENT_M = 1.5
 _MOST_PICTURES = 3
 
 
