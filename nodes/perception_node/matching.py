@@ -22,7 +22,11 @@ K = TypeVar("K", str, int)
 Cost = Callable[[Target, Observation, Kinship], float]
 
 _PROHIBITIVE = 1e6
-_COVERED, _FILLED, _LIKE = 0.6, 0.2, 0.15
+_COVERED = 0.6
+"""A thing of which this share is in a segment's box may be a part of the segment."""
+_FILLED = 0.2
+"""Its parts fill this share of a segment's box: that of a table holds what lies on it, but not much of it."""
+_LIKE = 0.15
 
 
 class Candidate(NamedTuple):
@@ -63,35 +67,34 @@ def match(
         return {list(of)[a]: free[b] for a, b in found}
 
     there = {name: c for name, c in known.items() if not c.track.unseen}
-    every = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
-    seen = pairs(there, every, cost_in_place)
+    single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
+    seen = pairs(there, single, cost_in_place)
     places = {name: _look_at(c.target, looks) for name, c in known.items() if name not in seen}
+    rest = single.difference(seen.values())
     parts = {
-        name: {j for j in every.difference(seen.values()) if _may_be_of(c.target, observations[j])}
+        name: {j for j in rest if _may_be_of(c.target, observations[j])}
         for name, c in known.items()
         if places.get(name) != "open"
     }
     gone = {name for name in places if known[name].track.is_gone(config)}
-    standing = {name for name in parts.keys() - gone if not known[name].track.unseen}
-    left = every.difference(seen.values(), *(parts[name] for name in standing))
-    strangers = {
+    standing = [name for name in parts if name in there and name not in gone]
+    left = rest.difference(*(parts[name] for name in standing))
+    relatives = {
         j
-        for j in every.difference(seen.values(), left)
-        if not any(
-            j in parts[name] and kinship.related(known[name].target.class_, observations[j].class_)
-            for name in standing
-        )
+        for name in standing
+        for j in parts[name]
+        if kinship.related(known[name].target.class_, observations[j].class_)
     }
     vanished = {
         name: known[name]
         for name, sight in places.items()
-        if sight == "open" or name in gone or known[name].track.unseen
+        if sight == "open" or name in gone or name not in there
     }
-    found = pairs(vanished, left | strangers, cost_anywhere)
+    found = pairs(vanished, rest - relatives, cost_anywhere)
     again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
     unseen = places.keys() - found.keys()
     for name in unseen:
-        others = {*found.values(), *(seen.values() if known[name].track.unseen else ())}
+        others = {*found.values(), *(seen.values() if name not in there else ())}
         if any(_may_be_of(known[name].target, observations[j]) for j in others):
             places[name] = "open"  # to itself: another has come to stand there
     return Matching(
