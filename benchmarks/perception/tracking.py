@@ -55,7 +55,11 @@ def measure(moves: int, learnt: Learnt) -> list[Row]:
     kinship = Kinship(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
-    runs = [identity(lambda clouds: look(clouds, learnt), kinship, moves=moves, seed=seed) for seed in _SEEDS]
+    stage = Stage()  # one for all: with a second OpenGL context the first one's end harms it
+    runs = [
+        identity(lambda clouds: look(clouds, learnt), kinship, stage, moves=moves, seed=seed)
+        for seed in _SEEDS
+    ]
     shares = [run.kept / run.moves for run in runs]
     what = f"identity kept over {moves} moves, 20 objects"
     return [
@@ -114,13 +118,14 @@ class ObedientMap:
 def identity(
     perceive: Callable[[Sequence[Cloud]], Look],
     kinship: Kinship,
+    stage: Stage,
     *,
     moves: int = 100,
     things: int = 20,
     seed: int,
 ) -> Kept:
     """Move things about and see who keeps their names."""
-    rng, stage, config = np.random.default_rng(seed), Stage(), TrackingConfig()
+    rng, config = np.random.default_rng(seed), TrackingConfig()
     cells = [(column, row) for column in range(_COLUMNS) for row in range(_ROWS)]
     rng.shuffle(cells)
     items = [_item(n, cell, rng) for n, cell in enumerate(cells[:things])]
