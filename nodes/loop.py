@@ -177,16 +177,21 @@ class Node:
         """End `run` after the event in hand."""
         self._events.put(self._stop)
 
+    def tick(self) -> None:
+        """Do what the clock says is due, the heartbeat too. Work that takes seconds calls this meanwhile."""
+        now = time.monotonic()
+        while self._timers and self._timers[0][0] <= now:
+            self._guard(heapq.heappop(self._timers)[-1])
+        self.beat()
+
     def run(self) -> None:
         """Handle events until stopped."""
         while not self._stopping:
-            now = time.monotonic()
-            while self._timers and self._timers[0][0] <= now:
-                self._guard(heapq.heappop(self._timers)[-1])
+            self.tick()
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
-            self.beat()
+                self.beat()
             due_s = min(self._beat_due, self._timers[0][0] if self._timers else math.inf)
             wait_s = max(0.0, due_s - time.monotonic())
             try:

@@ -20,7 +20,7 @@ from schemas import errors, keys
 from schemas.bridge import SnapshotQuery
 from schemas.commits import Snapshot
 from schemas.entities import Pose
-from schemas.scenes import BodyOrder, Spawn, Spawned
+from schemas.scenes import BodyOrder, Scene, SceneQuery, Spawn, Spawned
 from tests.conftest import free_endpoint, running, until
 
 NODES = ("coordinator", "kb_node", "sim_node", "recorder")
@@ -84,6 +84,27 @@ def test_4_drag_an_object_and_see_the_abox_follow(client):
     x, y, z = until(followed, "the map follows the hand").position_m
     assert (x, y, z) == pytest.approx((2.0, 2.4, 0.0), abs=0.06)
     assert client.get("box_to_drag").pose_provenance.source == "scene"
+
+
+def test_time_stands_still_goes_on_by_steps_and_bodies_go_back_to_the_map(client):
+    def scene():
+        return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+
+    client.add("Box", "still_box", at=(2.0, 1.8, 0.0), size=(0.2, 0.2, 0.2), wait=True)
+    client.pause(off=False)
+    try:
+        client.move("still_box", (2.0, 1.8, 0.8))
+        before = scene().sim_time_s
+        client.step(0.25)
+        assert scene().sim_time_s == pytest.approx(before + 0.25)
+        (height,) = (body.pose.position_m[2] for body in scene().bodies if body.name == "still_box")
+        assert 0.3 < height < 0.7  # it falls
+        client.reset()
+        (height,) = (body.pose.position_m[2] for body in scene().bodies if body.name == "still_box")
+        assert height == pytest.approx(0.0, abs=0.01)
+    finally:
+        client.pause(off=True)
+    client.remove("still_box")
 
 
 def test_5_enumerate_the_instances_from_outside(flat):

@@ -43,14 +43,18 @@ Step = tuple[str, Any, Any, Callable[[Any], None]]
 
 
 def batches(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
-    """The orders in batches that the simulator can make between two heartbeats, what is wide first.
+    """The orders in batches, what is wide first, so that a large map appears bit by bit.
 
-    Within a batch the simulator itself sees to it that supports come before what stands on them.
+    Each doubles what is there: for each the simulator compiles everything anew. Within a batch it sees to it
+    itself that supports come before what stands on them.
     """
     if len(orders) > BATCH:
         orders = sorted(orders, key=lambda order: -_area_m2(order))
-    for start in range(0, len(orders), BATCH):
-        yield tuple(orders[start : start + BATCH])
+    start = 0
+    while start < len(orders):
+        end = start + max(BATCH, start)
+        yield tuple(orders[start:end])
+        start = end
 
 
 def _area_m2(order: BodyOrder) -> float:

@@ -270,6 +270,21 @@ class Client:
         moved: commands.Moved = self.send(command)
         return moved
 
+    def pause(self, *, off: bool | None = None) -> commands.Done:
+        """Stop simulated time; with `off` let it run again; without `off`, a second time does so, too."""
+        done: commands.Done = self.send(commands.Pause(off=off))
+        return done
+
+    def step(self, seconds: float = 0.1) -> commands.Done:
+        """Let paused time go on for so long, 60 s at most."""
+        done: commands.Done = self.send(codec.convert({"seconds": _plain(seconds)}, commands.StepOnce))
+        return done
+
+    def reset(self) -> commands.Done:
+        """Put every body back where the map says it stands."""
+        done: commands.Done = self.send(commands.Reset())
+        return done
+
     def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
         """A picture of the scene as PNG, from one of the world's cameras or from above."""
         command = commands.TakePicture(camera=camera, width=width, height=height)

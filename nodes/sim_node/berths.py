@@ -22,7 +22,7 @@ from schemas.entities import Pose
 _BODY = ("mass", "inertia", "contype", "conaffinity", "sameframe")
 _DOF = ("M0", "invweight0", "length", "damping")
 _GEOM = (
-    *("type", "dataid", "matid", "group", "contype", "conaffinity", "condim", "friction"),
+    *("type", "dataid", "matid", "group", "contype", "conaffinity", "condim", "friction", "solimp"),
     *("size", "aabb", "rbound", "pos", "quat", "sameframe", "rgba"),
 )
 _NODE = ("depth", "child", "aabb")
@@ -107,14 +107,18 @@ def moor(
 
 
 def clear(model: mujoco.MjModel, data: mujoco.MjData, berth: Berth) -> None:
-    """Nobody is here: nothing to see, nothing to touch, and nothing that moves."""
+    """Nobody is here: nothing to see, nothing to touch, nothing that moves, and no name."""
     body = berth.body
+    model.name_bodyadr[body] = (
+        model.nnames - 1
+    )  # where the last name ends; names themselves cannot be written
     geoms = slice(berth.geom, berth.geom + berth.geoms)
     model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
     model.geom_group[geoms] = build.FELT_GROUP
     model.body_contype[body] = model.body_conaffinity[body] = 0
     data.xfrc_applied[body] = 0.0
     if not berth.static:
+        model.name_jntadr[model.body_jntadr[body]] = model.nnames - 1
         dofs = slice(int(model.body_dofadr[body]), int(model.body_dofadr[body]) + 6)
         model.dof_M0[dofs] = _IMMOVABLE_KG
         data.qvel[dofs] = data.qacc_warmstart[dofs] = 0.0

@@ -62,13 +62,14 @@ class BodyRecord:
 
 @dataclass(frozen=True)
 class BodyIndex:
-    """Where each body is in the arrays of one compiled model; N bodies in the order of `names`.
+    """Where each body is in the arrays of one compiled model; N bodies in the order of `names` and `records`.
 
     `qpos` and `dof` (N,) are the addresses of the free joint, -1 for a static body; `tree` (N,) is the
     kinematic tree, -1 if static.
     """
 
     names: tuple[str, ...]
+    records: tuple[BodyRecord, ...] = field(repr=False)
     row: dict[str, int]
     body: Ints
     qpos: Ints
@@ -85,6 +86,7 @@ class BodyIndex:
         joint = np.where(static, -1, model.body_jntadr[body]) if names else np.empty(0, np.int64)
         return BodyIndex(
             names=names,
+            records=tuple(records.values()),
             row={name: row for row, name in enumerate(names)},
             body=body,
             qpos=_at(model.jnt_qposadr, joint),

@@ -16,7 +16,7 @@ from nodes.sim_node.rest import RestWatch
 from nodes.sim_node.stage import Stage
 from schemas.entities import Pose
 
-_STEPS_A_LOOK = 10
+_STEPS_A_LOOK = 25
 
 
 class Engine:
@@ -27,7 +27,7 @@ class Engine:
     """
 
     def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
-        """A world of nothing but its ground yet; `meanwhile` is called while it compiles."""
+        """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`."""
         groundwork.prepare(ground)
         self._meanwhile = meanwhile
         self._ground = ground
@@ -134,12 +134,12 @@ class Engine:
         return True
 
     def _recompile(self, poses: Mapping[str, Pose]) -> None:
-        """Compile everything anew, these bodies at new poses and the others in the state they had."""
+        """Compile everything anew, these bodies at new poses, the others in the state they have by then."""
         model, data, index = self.model, self.data, self.index
-        slept = sleep.drowsy(data, index.tree)
         now = {name: pose_of(row) for name, row in zip(index.names, self.poses(), strict=True)}
         now.update(poses)
         self._compile(now)
+        slept = sleep.drowsy(data, index.tree)
         self.data.time = data.time
         build.carry_joints(model, data, self.model, self.data, [joint.name for joint in self._ground.joints])
         before, names, free = self._rows_in(index), self.index.names, self.index.qpos >= 0
@@ -155,15 +155,7 @@ class Engine:
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
         """A new model of all bodies, each at its pose, and of some vacant berths."""
-        spec = self._ground.copy()
-        made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
-        build.add_bodies(spec, made)
-        spares = build.add_spares(spec, berths.spare_parts(len(made)))
-        for name, record in self.records.items():
-            if record.static and name not in self._shapes:
-                build.set_standing(spec, record, poses[name])
-        build.set_memory(spec, len(self.records) + len(spares))
-        self.model = build.compiled(spec, self._meanwhile)
+        self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
         self.data = mujoco.MjData(self.model)
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]
@@ -172,6 +164,18 @@ class Engine:
         mujoco.mj_kinematics(self.model, self.data)
         self.index = self._indexed()
         self.revision += 1
+
+    def _compiled(self, poses: Mapping[str, Pose]) -> tuple[mujoco.MjModel, list[str]]:
+        """That model, and the names of the vacant berths."""
+        spec = self._ground.copy()
+        made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
+        build.add_bodies(spec, made)
+        spares = build.add_spares(spec, berths.spare_parts(len(made)))
+        for name, record in self.records.items():
+            if record.static and name not in self._shapes:
+                build.set_standing(spec, record, poses[name])
+        build.set_memory(spec, len(self.records) + len(spares))
+        return spec.compile(), spares
 
     def _indexed(self) -> BodyIndex:
         numbers = {

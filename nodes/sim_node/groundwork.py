@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from nodes.sim_node.build import IMPEDANCE
 from schemas.errors import BadFile
 
 # else MuJoCo writes a file into the working directory
@@ -18,7 +19,7 @@ mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 _TIMESTEP_S = 0.002
 _EXTENT_M = 10.0
 _CLASS_TEXT = "semmap:"
-_SKY = (0.78, 0.85, 0.92)
+_DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
 
 def bare_floor() -> mujoco.MjSpec:
@@ -55,7 +56,10 @@ def prepare(spec: mujoco.MjSpec) -> None:
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     if spec.option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and spec.option.impratio == 1.0:
         # what a file does not choose: with these, things that lean on one another do not creep
-        spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
+        spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        for geom in spec.geoms:
+            if np.array_equal(geom.solimp, _DEFAULT_IMPEDANCE):
+                geom.solimp = IMPEDANCE
     quality = spec.visual.quality
     quality.shadowsize = quality.offsamples = 0  # shadows and MSAA cost 40 times the frame on a CPU
     # a third of the default's time: what is round shrinks by a fiftieth of its radius at most

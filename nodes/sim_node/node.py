@@ -50,7 +50,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = open_world(config.world, Models(config.models), node.beat)
+        self._world = open_world(config.world, Models(config.models), node.tick)
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)

@@ -1,4 +1,4 @@
-"""MuJoCo's own window on the world: look around; double click and Ctrl-drag take things with the mouse."""
+"""MuJoCo's own window on the world: look around; a double click names a thing, Ctrl-drag takes it along."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import threading
 import warnings
 
 import mujoco
+import numpy as np
 
 from nodes.sim_node.world import World
 from schemas.errors import BadRequest
+
+_LABEL_M = 0.3
+_LABEL_LENGTH = 99  # what MuJoCo has room for
 
 
 class Window:
@@ -37,7 +41,26 @@ class Window:
             if simulate is not None:
                 simulate.load(self._world.model, self._world.data, "")
             self._shown = self._world.model
+        with self._viewer.lock():
+            self._label()
         self._viewer.sync()
+
+    def _label(self) -> None:
+        """Write its name above the selected body: names in the model are those of its compilation."""
+        world, scene, number = self._world, self._viewer.user_scn, self._viewer.perturb.select
+        (name,) = world.names_of(np.array([number])) if 0 < number < world.model.nbody else ("",)
+        scene.ngeom = int(bool(name))
+        if name:
+            label, above = scene.geoms[0], world.data.xpos[number] + (0.0, 0.0, _LABEL_M)
+            mujoco.mjv_initGeom(
+                label,
+                mujoco.mjtGeom.mjGEOM_LABEL,
+                np.ones(3),
+                above,
+                np.eye(3).ravel(),
+                np.ones(4, np.float32),
+            )
+            label.label = name[:_LABEL_LENGTH]
 
     def close(self) -> None:
         """Close it, and wait until nothing draws any more: the process could not end before."""

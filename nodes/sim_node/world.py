@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from nodes.sim_node import build, groundwork
-from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from nodes.sim_node.bodies import BodyRecord, Floats, Ints, pose_of
 from nodes.sim_node.engine import Engine
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import Model, ModelError
@@ -45,11 +45,12 @@ class World:
     ) -> None:
         """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile.
 
-        `meanwhile` is called again and again while something takes its time.
+        `meanwhile` is called again and again while models are read and compiled. It may let time pass
+        (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there.
         """
         ground = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
         self._engine = Engine(ground, meanwhile)
-        self._models = models
+        self._models, self._meanwhile = models, meanwhile
         self.name = mjcf.name if mjcf else "empty"
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
@@ -74,15 +75,7 @@ class World:
 
     def spawn(self, orders: Sequence[BodyOrder]) -> Spawned:
         """Make bodies, all in one go; what cannot be made is told in `failed`, name by name."""
-        newcomers: dict[str, tuple[BodyRecord, Model]] = {}
-        failed: dict[str, str] = {}
-        for order in orders:
-            try:
-                if order.name in newcomers:
-                    raise ModelError(f"a body named {order.name} is ordered twice")
-                newcomers[order.name] = self._newcomer(order)
-            except ModelError as error:
-                failed[order.name] = str(error)
+        newcomers, failed = build.aside(lambda: self._newcomers(orders), self._meanwhile)
         if newcomers:
             self._engine.add(list(newcomers.values()))
             self._settle(newcomers)
@@ -149,7 +142,7 @@ class World:
             names=engine.index.names,
             poses=tuple(engine.poses().ravel().tolist()),
             resting=tuple(engine.resting.tolist()),
-            commits=tuple(record.commit for record in engine.records.values()),
+            commits=tuple(record.commit for record in engine.index.records),
         )
 
     def scene(self) -> Scene:
@@ -177,11 +170,30 @@ class World:
 
     def body_names(self) -> list[str]:
         """(ngeom,) for each geom of `model` the name of the body that it belongs to, or ""."""
+        return self.names_of(self.model.geom_bodyid)
+
+    def names_of(self, numbers: Ints) -> list[str]:
+        """For each of these bodies of `model` the name of the body that it is, or is a part of, or ""."""
         names = np.full(self.model.nbody, "", dtype=object)
         names[self._engine.index.body] = self._engine.index.names
-        return names[self.model.body_rootid[self.model.geom_bodyid]].tolist()  # type: ignore[no-any-return]
+        return names[self.model.body_rootid[numbers]].tolist()  # type: ignore[no-any-return]
 
     # how it is done
+
+    def _newcomers(
+        self, orders: Iterable[BodyOrder]
+    ) -> tuple[dict[str, tuple[BodyRecord, Model]], dict[str, str]]:
+        """What is to be made, by name, and why the rest cannot be; files may take their time."""
+        newcomers: dict[str, tuple[BodyRecord, Model]] = {}
+        failed: dict[str, str] = {}
+        for order in orders:
+            try:
+                if order.name in newcomers:
+                    raise ModelError(f"a body named {order.name} is ordered twice")
+                newcomers[order.name] = self._newcomer(order)
+            except ModelError as error:
+                failed[order.name] = str(error)
+        return newcomers, failed
 
     def _newcomer(self, order: BodyOrder) -> tuple[BodyRecord, Model]:
         if self._engine.has(order.name):

@@ -29,6 +29,11 @@ def test_many_orders_are_several_batches_wide_things_first():
     assert sorted(o.name for o in (*first, *second)) == sorted(o.name for o in orders)
 
 
+def test_each_batch_doubles_what_is_there():
+    orders = [order(i) for i in range(5 * BATCH)]
+    assert [len(batch) for batch in batches(orders)] == [BATCH, BATCH, 2 * BATCH, BATCH]
+
+
 def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(door):
     asked = []
     keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *words: asked.append(words), asked.append)

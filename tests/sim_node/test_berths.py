@@ -86,6 +86,25 @@ def test_who_left_is_gone_for_touch_and_sight_and_lets_the_world_sleep():
     assert world.scene().bodies[0].pose.position_m[2] == pytest.approx(0.0, abs=0.002)
 
 
+def compiled_names(world: World) -> list[str | None]:
+    kind = mujoco.mjtObj.mjOBJ_BODY
+    return [mujoco.mj_id2name(world.model, kind, number) for number in range(world.model.nbody)]
+
+
+def test_no_berth_keeps_the_name_of_who_left():
+    world = World()
+    world.spawn([order(f"chair{i}", "chair", pose(i, 0)) for i in range(20)])  # more than there are berths
+    assert "chair1" in compiled_names(world)
+    world.delete(["chair1"])
+    world.spawn([order("chair_new", "chair", pose(1, 0))])
+    for compiled, name in zip(
+        compiled_names(world), world.names_of(np.arange(world.model.nbody)), strict=True
+    ):
+        assert compiled in (name, None, "world")
+    assert "chair_new" in world.body_names()
+    assert "chair1" not in world.body_names()
+
+
 def test_those_that_leave_in_the_air_do_not_fall():
     world = World()
     world.spawn([order("can1", "can", pose(0, 0, 5.0))])

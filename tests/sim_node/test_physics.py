@@ -1,11 +1,12 @@
 import math
 
+import mujoco
 import numpy as np
 import pytest
 
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.world import World
-from schemas.entities import angle_rad, distance_m
+from schemas.entities import Pose, angle_rad, distance_m
 from tests.sim_node.orders import hand, order, pose
 
 
@@ -85,6 +86,38 @@ def test_a_cup_on_a_tray_goes_with_neither():
     world.move([hand("table1", pose(0, 4))])
     world.step(2.0)
     assert poses(world)["cup1"].position_m[2] < 0.1
+
+
+def test_what_lies_on_a_slope_or_leans_does_not_creep_even_while_nothing_may_sleep():
+    world = World()
+    slope = math.radians(20)
+    tilt = (math.cos(slope / 2), 0.0, math.sin(slope / 2), 0.0)
+
+    def on_slope(across: float) -> Pose:
+        return Pose(
+            position_m=(0.1 * math.sin(slope), across, 1.0 + 0.1 * math.cos(slope)), orientation_wxyz=tilt
+        )
+
+    kinds = ["box", "book", "plate", "can", "cup"]
+    leaning = Pose(position_m=(4.95 - math.sin(slope) - 0.02, 0, 0.005), orientation_wxyz=tilt)
+    world.spawn(
+        [
+            order(
+                "ramp", "?", Pose(position_m=(0, 0, 1), orientation_wxyz=tilt), size_m=(2, 4, 0.1), fixed=True
+            ),
+            *(order(kind, kind, on_slope(0.5 * i - 1)) for i, kind in enumerate(kinds)),
+            order("wall", "?", pose(5, 0), size_m=(0.1, 2, 2), fixed=True),
+            order("board", "?", leaning, size_m=(0.02, 0.3, 1.0)),
+        ]
+    )
+    world.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    world.step(2.0)
+    before = poses(world)
+    world.step(5.0)
+    for name in (*kinds, "board"):
+        assert distance_m(poses(world)[name], before[name]) < 0.001, name
+    assert poses(world)["cup"].position_m[2] > 0.5
+    assert angle_rad(poses(world)["board"], leaning) < 0.1
 
 
 def test_an_apple_does_not_roll_for_ever():

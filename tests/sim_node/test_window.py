@@ -37,6 +37,7 @@ def test_the_mouse_pulls_a_body_and_lets_it_go():
         for _ in range(40):
             window.refresh()
             world.step(0.05)
+        assert window._viewer.user_scn.geoms[0].label == "chair1"
     finally:
         window.close()
     chair = world.scene().bodies[0]

@@ -199,6 +199,34 @@ def test_others_hear_of_us_while_much_is_made(monkeypatch):
     assert beats
 
 
+def test_time_goes_on_while_much_is_made(monkeypatch):
+    monkeypatch.setattr(build, "_PATIENCE_S", 0.001)
+    told = []
+
+    def meanwhile():
+        if told:
+            world.step(0.01)
+            told.append(world.poses())
+
+    world = World(meanwhile=meanwhile)
+    world.spawn([order("shelf1", "shelf", pose(5, 5), fixed=True), order("can1", "can", pose(0, 0, 50))])
+    world.step(0.1)
+    told.append(world.poses())
+    world.spawn(
+        [order(f"can{i}", "can", pose(1 + 0.5 * (i % 15), 1 + 0.5 * (i // 15))) for i in range(2, 200)]
+    )
+    assert len(told) > 2
+    assert all(poses.names == ("shelf1", "can1") for poses in told)
+    fallen_s = told[-1].sim_time_s
+    assert fallen_s > told[0].sim_time_s
+    assert body(world, "can1").pose.position_m[2] == pytest.approx(50 - 9.81 * fallen_s**2 / 2, abs=0.01)
+    assert len(world) == 200
+    world.step(0.1)
+    assert body(world, "can1").pose.position_m[2] == pytest.approx(
+        50 - 9.81 * (fallen_s + 0.1) ** 2 / 2, abs=0.01
+    )
+
+
 def test_the_overview_passes_over_what_is_far_off():
     world = World()
     assert world.extent()[1] == pytest.approx((1, 1, 1))

@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.talking import command, given, talks, vector_option, write_atomically
+from nodes.extern.cli.talking import given, talks, vector_option, write_atomically
 from nodes.extern.client import Client
-from schemas import commands, errors
+from schemas import errors
 
 
 @click.command()
@@ -27,7 +27,7 @@ def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
 @talks
 def pause(client: Client, off: bool | None) -> None:
     """Stop simulated time, or let it run again."""
-    print(client.send(commands.Pause(off=off)).text)
+    print(client.pause(off=off).text)
 
 
 @click.command()
@@ -35,14 +35,14 @@ def pause(client: Client, off: bool | None) -> None:
 @talks
 def step(client: Client, seconds: float) -> None:
     """Let paused time go on for a moment."""
-    print(client.send(command(commands.StepOnce, seconds=seconds)).text)
+    print(client.step(seconds).text)
 
 
 @click.command()
 @talks
 def reset(client: Client) -> None:
     """Put every body back where the map says."""
-    print(client.send(commands.Reset()).text)
+    print(client.reset().text)
 
 
 @click.command()

@@ -1,4 +1,4 @@
-"""Electronics. Depth x, width y, height z [m]; screens face +x."""
+"""Electronics. Screens face +x. Depth x, width y, height z [m]."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from nodes.sim_node.models.forms import (
     front,
     shade,
     slab,
-    solid,
     turned,
 )
 from nodes.sim_node.models.parts import (
@@ -26,7 +25,6 @@ from nodes.sim_node.models.parts import (
     ALONG_Y,
     Colour,
     Parts,
-    Vec3,
     about,
     ball,
     box,
@@ -35,6 +33,8 @@ from nodes.sim_node.models.parts import (
     rod,
     seen,
 )
+
+_DIGIT: Colour = (0.3, 0.95, 0.7)
 
 
 def television(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -57,66 +57,6 @@ def television(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
 
 
-def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A screen on a stem and a plate."""
-    low = 0.28 * z
-    return [
-        box((0.15 * x, y, z - low), (0.1 * x, 0, (z + low) / 2), colour),
-        *seen(box((0.02 * x, 0.95 * y, 0.92 * (z - low)), (0.18 * x, 0, (z + low) / 2), (0.20, 0.45, 0.70))),
-        *seen(box((0.01 * x, 0.5 * y, 0.3 * z), (0.195 * x, -0.1 * y, 0.7 * z), WHITE)),
-        box((0.1 * x, 0.1 * y, 0.5 * z), (-0.05 * x, 0, 0.27 * z), STEEL),
-        box((x, 0.42 * y, 0.03 * z), (0, 0, 0.015 * z), STEEL),
-    ]
-
-
-def computer(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A tower with a drive, a button and vents."""
-    return [
-        box((x - 0.006, y, z), (-0.003, 0, z / 2), colour),
-        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.88 * z), LIGHT, deep=0.006),
-        *front(x / 2, 0.8 * y, 0.08 * z, (0, 0.77 * z), LIGHT, deep=0.006),
-        *seen(rod(0.08 * y, 0.008, (x / 2 - 0.003, 0, 0.64 * z), (0.3, 0.7, 0.95), ALONG_X)),
-        *seen(
-            box((0.006, 0.7 * y, 0.015 * z), (x / 2 - 0.003, 0, (0.1 + 0.05 * i) * z), BLACK)
-            for i in range(7)
-        ),
-    ]
-
-
-def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """An open lid at -x over a keyboard."""
-    deck, tilt = 0.08 * z, -0.3
-    lid: Vec3 = (-0.40 * x - 0.02, 0, z / 2)
-    return [
-        slab(x * 0.86, y, 0, deck, colour),
-        *seen(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
-        *seen(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
-        box((0.02 * x, y, 0.98 * z), lid, colour, about("y", tilt)),
-        *seen(
-            box(
-                (0.004, 0.93 * y, 0.84 * z),
-                (lid[0] + 0.013 * x, 0, lid[2] + 0.01 * z),
-                (0.25, 0.55, 0.80),
-                about("y", tilt),
-            )
-        ),
-    ]
-
-
-def keyboard(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """Rows of keys on a plate."""
-    keys = seen(
-        box(
-            (0.15 * x, (0.5 * y if row == 4 else 0.052 * y), 0.5 * z),
-            (x * (0.4 - 0.2 * (4 - row)), y * place, 0.75 * z),
-            LIGHT,
-        )
-        for row in range(5)
-        for place in ([0.0] if row == 4 else [-0.455 + 0.07 * i for i in range(14)])
-    )
-    return [slab(x, y, 0, 0.6 * z, colour), *keys, *solid(0.9 * x, 0.95 * y, 0.6 * z, z)]
-
-
 def radio(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A box with a cloth front, a dial, two knobs and an aerial."""
     body = 0.62 * z
@@ -130,49 +70,30 @@ def radio(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def recorder(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A flat player with a slot and a display."""
-    return [
-        box((0.98 * x, y, z), (-0.01 * x, 0, z / 2), colour),
-        *front(x / 2, 0.4 * y, 0.16 * z, (-0.2 * y, 0.6 * z), BLACK, deep=0.02 * x),
-        *front(x / 2, 0.22 * y, 0.3 * z, (0.2 * y, 0.6 * z), (0.2, 0.8, 0.6), deep=0.02 * x),
-        *seen(rod(0.12 * z, 0.03 * x, (x / 2 - 0.01 * x, 0.4 * y, 0.4 * z), STEEL, ALONG_X)),
+    """A flat player: a cassette's flap, a display with digits, keys and a knob, on four feet."""
+    foot, face = 0.12 * z, 0.02 * x
+    edge = (x - face) / 2
+    feet = [
+        rod(0.04 * y, foot, (0.38 * x * sx, 0.4 * y * sy, foot / 2), BLACK)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
-
-
-def router(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A flat box with two aerials and lights."""
-    body = 0.22 * z
     return [
-        slab(x, y, 0, body, colour),
+        *seen(feet),
+        *felt(slab(0.98 * x, y, 0, foot, colour)),
+        box((0.98 * x, y, z - foot), (-0.01 * x, 0, (z + foot) / 2), colour),
+        *front(x / 2 - 0.0045, 0.98 * y, 0.86 * (z - foot), (0, (z + foot) / 2), STEEL, deep=face),
+        *front(x / 2 - 0.003, 0.46 * y, 0.34 * z, (-0.22 * y, 0.70 * z), BLACK, deep=face),
+        *front(x / 2 - 0.001, 0.40 * y, 0.05 * z, (-0.22 * y, 0.60 * z), GREY, deep=face),
+        *front(x / 2 - 0.003, 0.28 * y, 0.30 * z, (0.18 * y, 0.70 * z), BLACK, deep=face),
         *seen(
-            rod(0.012 * z + 0.003, 0.9 * z, (-0.42 * x, side * 0.38 * y, 0.55 * z), DARK) for side in (-1, 1)
-        ),
-        *seen(
-            box((0.004, 0.02, 0.2 * body), (x / 2, y * (0.08 * i - 0.2), body / 2), (0.3, 0.9, 0.4))
-            for i in range(6)
-        ),
-    ]
-
-
-def smartphone(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A slate with a bright screen and a lens."""
-    return [
-        slab(x, y, 0, z, colour),
-        *seen(box((0.93 * x, 0.9 * y, 0.001), (0, 0, z), (0.20, 0.42, 0.65))),
-        *seen(
-            box((0.14 * x, 0.2 * y, 0.001), (-0.3 * x + 0.2 * x * i, 0.22 * y * j, z + 0.0005), WHITE)
+            box((face, 0.025 * y, 0.2 * z), (edge, (0.10 + 0.05 * i + 0.03 * (i > 1)) * y, 0.7 * z), _DIGIT)
             for i in range(4)
-            for j in (-1, 1)
         ),
-    ]
-
-
-def tablet(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A big slate with a wide border and a button."""
-    return [
-        slab(x, y, 0, z, colour),
-        *seen(box((0.8 * x, 0.86 * y, 0.001), (-0.02 * x, 0, z), (0.30, 0.55, 0.75))),
-        *seen(rod(0.035 * x, 0.001, (0.44 * x, 0, z), GREY)),
+        *seen(
+            box((face, 0.05 * y, 0.1 * z), (edge, (-0.40 + 0.075 * i) * y, 0.34 * z), DARK) for i in range(5)
+        ),
+        *seen(rod(0.22 * z, 0.03 * x, (x / 2 - 0.015 * x, 0.41 * y, 0.52 * z), DARK, ALONG_X)),
     ]
 
 
@@ -276,15 +197,4 @@ def speaker(x: float, y: float, z: float, colour: Colour) -> Parts:
         *seen(rod(0.36 * y, 0.01, (x / 2 - 0.006, 0, 0.34 * z), GREY, ALONG_X)),
         *seen(rod(0.14 * y, 0.012, (x / 2 - 0.006, 0, 0.34 * z), BLACK, ALONG_X)),
         *seen(rod(0.18 * y, 0.01, (x / 2 - 0.006, 0, 0.77 * z), GREY, ALONG_X)),
-    ]
-
-
-def printer(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A box with paper behind and a tray in front."""
-    return [
-        box((0.7 * x, y, 0.7 * z), (-0.05 * x, 0, 0.35 * z), colour),
-        *seen(box((0.02, 0.6 * y, 0.45 * z), (-0.34 * x, 0, 0.77 * z), WHITE, about("y", -0.25))),
-        *seen(box((0.25 * x, 0.65 * y, 0.03), (0.37 * x, 0, 0.2 * z), DARK)),
-        *seen(box((0.3 * x, 0.55 * y, 0.008), (0.33 * x, 0, 0.23 * z), WHITE)),
-        *seen(box((0.5 * x, 0.9 * y, 0.02), (-0.05 * x, 0, 0.7 * z), DARK)),
     ]

@@ -63,28 +63,41 @@ class Models:
 def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     """The model in a file, in metres, stretched to `size_m`; `version` tells a changed file apart.
 
-    MJCF is taken in its initial configuration, as one rigid body. Raises ModelError, OSError.
+    MJCF is taken in its initial configuration, as one rigid body that weighs what its bodies weigh. A mesh
+    need not be closed: it collides as its hull, and weighs what most things of its size do. Raises
+    ModelError, OSError.
     """
     check_size(size_m)
     if path.stat().st_size > _LARGEST_FILE_BYTES:
         raise ModelError(f"the model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
     try:
-        parts = _mesh_parts(path) if path.suffix in MESHES else _mjcf_parts(path)
-        if not parts:
-            raise ModelError(f"the model file {path} holds nothing that has a shape")
+        parts, density = _mesh_parts(path) if path.suffix in MESHES else _mjcf_parts(path)
+        if all(part.role is Role.SEEN for part in parts):
+            raise ModelError("it holds nothing that has a shape and collides")
         if size_m is not None:
             parts = _stretched(parts, size_m)
-        model = assemble(str(path), _keyed(parts, f"{path}:{version}:{size_m}"), _mass_kg(parts))
-        check_size(model.size_m)
+        extents = _extents(parts)
+        check_size(extents)
+        parts = _keyed(parts, f"{path}:{version}:{size_m}")
+        model = assemble(str(path), parts, density * float(np.prod(extents)))
         _try_out(model)
-    except (ModelError, OSError):
+    except OSError:
         raise
+    except ModelError as error:
+        raise ModelError(f"the model file {path} cannot be used: {error}") from None
     except Exception as error:  # the readers of the file formats raise whatever they come across
         raise ModelError(f"the model file {path} cannot be used: {' '.join(str(error).split())}") from None
     return model
 
 
-def _mesh_parts(path: Path) -> list[Part]:
+def _extents(parts: list[Part]) -> Vec3:
+    """What parts measure together [m]."""
+    low, high = bounds(parts)
+    return _vec3(high - low)
+
+
+def _mesh_parts(path: Path) -> tuple[list[Part], float]:
+    """The parts of a mesh file, and the density of the box around them [kg/m^3]."""
     import trimesh  # takes a second, which a start without such files need not wait
 
     scene = trimesh.load_scene(path)
@@ -93,7 +106,7 @@ def _mesh_parts(path: Path) -> list[Part]:
     for mesh in scene.dump():
         if len(mesh.faces):
             parts.append(_mesh_part(np.asarray(mesh.vertices) @ up.T, np.asarray(mesh.faces), _colour(mesh)))
-    return parts
+    return parts, DENSITY
 
 
 def _colour(mesh: Any) -> Colour:
@@ -111,7 +124,8 @@ def _mesh_part(vertices: Floats, faces: Any, colour: Colour, role: Role = Role.B
     return Part(Shape.MESH, _vec3(half), _vec3(middle), colour, role=role, mesh=mesh)
 
 
-def _mjcf_parts(path: Path) -> list[Part]:
+def _mjcf_parts(path: Path) -> tuple[list[Part], float]:
+    """The parts of an MJCF file, and the density of the box around them [kg/m^3]."""
     model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -143,12 +157,17 @@ def _mjcf_parts(path: Path) -> list[Part]:
                 role,
             )
         )
-    return parts
+    if model.nbody == 1 or not parts:  # geoms without a body have no mass
+        return parts, DENSITY
+    mass_kg = float(model.body_mass[1:].sum())
+    if mass_kg <= 0.0:
+        raise ModelError("it weighs nothing; its geoms need a mass or a density")
+    return parts, mass_kg / max(float(np.prod(_extents(parts))), 1e-9)
 
 
 def _half(model: mujoco.MjModel, geom: int) -> Vec3:
     a, b, c = (float(value) for value in model.geom_size[geom])
-    kind = model.geom_type[geom]
+    kind = int(model.geom_type[geom])  # a NumPy integer is never among enumerations
     if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
         return (a, a, a)
     if kind in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_CAPSULE):
@@ -194,11 +213,6 @@ def _keyed(parts: list[Part], key: str) -> list[Part]:
         )
         for number, part in enumerate(parts)
     ]
-
-
-def _mass_kg(parts: list[Part]) -> float:
-    low, high = bounds(parts)
-    return DENSITY * float(np.prod(high - low))
 
 
 def _try_out(model: Model) -> None:

@@ -14,7 +14,7 @@ from nodes.sim_node.build import add_part
 from nodes.sim_node.models.library import Model, build
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.raycast import raycast
-from nodes.sim_node.vision.view import overview
+from nodes.sim_node.vision.view import FROM_THE_FRONT, overview
 
 _CELL, _LABEL, _COLUMNS, _FINE = 150, 18, 13, 2
 _PAPER, _INK = (242, 242, 240), (40, 40, 44)
@@ -30,9 +30,8 @@ def portrait(model: Model, pixels: int) -> Image.Image:
     data = mujoco.MjData(compiled)
     mujoco.mj_kinematics(compiled, data)
     x, y, z = model.size_m
-    view = overview(
-        np.array([-x / 2, -y / 2, 0.0]), np.array([x / 2, y / 2, z]), _FINE * pixels, _FINE * pixels
-    )
+    low, high = np.array([-x / 2, -y / 2, 0.0]), np.array([x / 2, y / 2, z])
+    view = overview(low, high, _FINE * pixels, _FINE * pixels, FROM_THE_FRONT)
     rgb, depth, _ = raycast(compiled, data, view)
     rgb[depth == 0.0] = _PAPER
     return Image.fromarray(rgb).resize((pixels, pixels), Image.Resampling.BOX)

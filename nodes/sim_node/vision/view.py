@@ -74,19 +74,28 @@ def bulk(low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
     return low_m[near].min(axis=0), high_m[near].max(axis=0)
 
 
-def overview(low_m: Floats, high_m: Floats, width: int, height: int) -> View:
-    """A view from above and in front (+x, -y) that just holds the box between two corners (3,)."""
+FROM_ALOFT = (0.40, -0.46, 0.80)
+FROM_THE_FRONT = (0.68, -0.44, 0.58)
+
+
+def overview(
+    low_m: Floats, high_m: Floats, width: int, height: int, back: tuple[float, float, float] = FROM_ALOFT
+) -> View:
+    """A view in which the box between two corners (3,) just fits, from the direction `back` of it.
+
+    The front of things is +x.
+    """
     fovy = float(np.radians(36.0))
     middle = (low_m + high_m) / 2.0
-    back = np.array([0.40, -0.46, 0.80])
-    aimed = look_at(middle + back, middle, width, height, fovy)
+    outward = np.asarray(back) / np.linalg.norm(back)
+    aimed = look_at(middle + outward, middle, width, height, fovy)
     corners = np.stack(np.meshgrid(*zip(low_m, high_m, strict=True)), axis=-1).reshape(-1, 3) - middle
     x, y, z = (corners @ aimed.map_from_camera[:3, :3]).T
     tangent = np.tan(fovy / 2.0)
     distance = max(
         float(np.max(np.abs(y) / tangent - z)), float(np.max(np.abs(x) / tangent * height / width - z))
     )
-    return look_at(middle + 1.04 * distance * back / np.linalg.norm(back), middle, width, height, fovy)
+    return look_at(middle + 1.04 * distance * outward, middle, width, height, fovy)
 
 
 def pinhole(width: int, height: int, fovy_rad: float) -> Floats:

@@ -3,7 +3,7 @@ import trimesh
 
 from nodes.sim_node.models.files import Models
 from nodes.sim_node.models.library import ModelError
-from nodes.sim_node.models.parts import Role
+from nodes.sim_node.models.parts import Role, Shape
 from nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
 
@@ -33,6 +33,17 @@ def folder(tmp_path):
     open_mesh = trimesh.creation.icosphere(radius=0.2)
     open_mesh.update_faces(range(len(open_mesh.faces) // 2))
     open_mesh.export(tmp_path / "open.stl")
+    (tmp_path / "round.xml").write_text(
+        """<mujoco><worldbody><body>
+          <geom type="sphere" size="0.1" pos="0 0 0.5" mass="1"/>
+          <geom type="cylinder" size="0.2 0.05" mass="2"/>
+          <geom type="capsule" size="0.05 0.2" pos="0 0 0.25" mass="0.5"/>
+        </body></worldbody></mujoco>"""
+    )
+    (tmp_path / "light.xml").write_text(
+        "<mujoco><worldbody><body><geom size='0.1' mass='0'/></body></worldbody></mujoco>"
+    )
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (tmp_path / "broken.xml").write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
     (tmp_path / "broken.obj").write_text("f 1 2 3")
@@ -65,13 +76,40 @@ def test_mjcf_is_taken_as_one_rigid_body(folder):
     assert toy.parts[0].colour == (1.0, 0.0, 0.0)
 
 
+def test_what_is_round_in_mjcf_stays_so_and_weighs_what_it_says(folder):
+    round_ = Models(folder)("round", None)
+    assert [part.shape for part in round_.parts] == [Shape.ELLIPSOID, Shape.CYLINDER, Shape.CAPSULE]
+    assert [part.half for part in round_.parts] == [(0.1, 0.1, 0.1), (0.2, 0.2, 0.05), (0.05, 0.05, 0.2)]
+    assert round_.size_m == pytest.approx((0.4, 0.4, 0.65))
+    assert round_.inertial.mass_kg == pytest.approx(3.5)
+    twice = Models(folder)("round", (0.8, 0.8, 1.3))
+    assert twice.inertial.mass_kg == pytest.approx(8 * 3.5)
+
+
 @pytest.mark.parametrize(
-    "name", ["broken.xml", "broken.stl", "broken.obj", "empty.xml", "none.glb", "huge.stl"]
+    ("name", "why"),
+    [
+        ("broken.xml", "blob"),
+        ("broken.stl", "nothing that has a shape and collides"),
+        ("broken.obj", "cannot be used"),
+        ("empty.xml", "nothing that has a shape and collides"),
+        ("none.glb", "No such file"),
+        ("huge.stl", "0.001 to 100 m along each axis, not 4000 m"),
+        ("flat.obj", "0.001 to 100 m along each axis, not 0 m"),
+        ("light.xml", "weighs nothing"),
+    ],
 )
-def test_a_bad_file_is_told(folder, name):
-    with pytest.raises(ModelError) as told:
+def test_a_bad_file_is_told(folder, name, why):
+    with pytest.raises(ModelError, match=why) as told:
         Models(folder)(name, None)
+    assert name in str(told.value)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("name", ["broken.stl", "empty.xml", "flat.obj", "light.xml"])
+def test_no_size_makes_a_bad_file_good(folder, name):
+    with pytest.raises(ModelError, match=f"{name} cannot be used: (it|a body)"):
+        Models(folder)(name, (1.0, 1.0, 1.0))
 
 
 def test_bodies_from_files_stand_beside_others(folder):

@@ -1,0 +1,202 @@
+"""What a person wears, carries and plays with. Depth x, width y, height z [m]."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+from nodes.sim_node.models.forms import (
+    BLACK,
+    BRASS,
+    DARK,
+    GLASSY,
+    PAPER,
+    STEEL,
+    WHITE,
+    column,
+    ring,
+    shade,
+    shifted,
+    slab,
+    turned,
+)
+from nodes.sim_node.models.parts import (
+    ALONG_X,
+    Colour,
+    Part,
+    Parts,
+    about,
+    ball,
+    box,
+    felt,
+    pill,
+    product,
+    rod,
+    seen,
+)
+
+
+def keys(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A ring with two keys."""
+    blades = [
+        part
+        for angle in (-0.35, 0.3)
+        for part in (
+            rod(0.2 * y, 0.8 * z, (0.02 * x * math.cos(angle), 0.2 * x * math.sin(angle), 0.4 * z), colour),
+            box(
+                (0.5 * x, 0.1 * y, 0.6 * z),
+                (0.24 * x, 0.42 * x * math.sin(angle), 0.4 * z),
+                colour,
+                about("z", angle),
+            ),
+            box(
+                (0.06 * x, 0.14 * y, 0.6 * z),
+                (0.4 * x, 0.56 * x * math.sin(angle) + 0.07 * y, 0.4 * z),
+                colour,
+            ),
+        )
+    ]
+    hoop = shifted(ring((0.22 * x, 0.22 * x), 0.4 * z, z, 0.03 * x, STEEL, count=12), x=-0.28 * x)
+    return [*seen(blades), *seen(hoop), *felt(slab(0.95 * x, 0.8 * y, 0, z, colour))]
+
+
+def glasses(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Two round lenses and folded-back temples."""
+    radius = min(0.23 * y, z / 2)
+    lenses = [
+        part
+        for s in (-1, 1)
+        for part in (
+            rod(radius, 0.05 * x, (0.45 * x, 0.26 * y * s, radius), colour, ALONG_X),
+            rod(0.82 * radius, 0.06 * x, (0.455 * x, 0.26 * y * s, radius), GLASSY, ALONG_X),
+            box((0.95 * x, 0.02 * y, 0.1 * z), (0, 0.48 * y * s, 1.4 * radius), colour),
+            box(
+                (0.12 * x, 0.02 * y, 0.5 * z),
+                (-0.45 * x, 0.48 * y * s, 1.0 * radius),
+                colour,
+                about("y", 0.5),
+            ),
+        )
+    ]
+    bridge = box((0.05 * x, 0.14 * y, 0.1 * z), (0.45 * x, 0, 1.3 * radius), colour)
+    return [*seen(lenses), *seen(bridge), *felt(slab(x, 0.9 * y, 0, 0.8 * z, colour))]
+
+
+def wristwatch(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A dial on a strap laid out flat."""
+    return [
+        slab(x, 0.55 * y, 0, 0.5 * z, colour),
+        *seen(rod(0.5 * y, 0.9 * z, (0, 0, 0.5 * z), BRASS)),
+        *seen(rod(0.42 * y, 0.1 * z, (0, 0, 0.96 * z), PAPER)),
+        *seen(box((0.3 * y, 0.04 * y, 0.05 * z), (0.13 * y, 0, z), BLACK)),
+        *seen(box((0.04 * y, 0.22 * y, 0.05 * z), (0, 0.1 * y, z), BLACK)),
+    ]
+
+
+def wallet(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Folded leather with notes that peep out."""
+    return [
+        slab(x, y, 0, 0.42 * z, colour),
+        *seen(slab(0.96 * x, 0.96 * y, 0.42 * z, 0.6 * z, PAPER)),
+        slab(x, y, 0.58 * z, z, shade(colour, 1.2)),
+        *seen(box((0.3 * x, 0.2 * y, 0.5 * z), (0.42 * x, 0, 0.6 * z), shade(colour, 0.7))),
+        *seen(box((0.4 * x, 0.7 * y, 0.003), (-0.14 * x, 0, 0.52 * z), (0.5, 0.7, 0.5))),
+    ]
+
+
+def clothes(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A shirt laid flat: body, sleeves, a neckline at -x."""
+    return [
+        box((x, 0.56 * y, z), (0, 0, z / 2), colour),
+        *seen(
+            box((0.42 * x, 0.3 * y, 0.9 * z), (-0.3 * x, 0.33 * y * s, z / 2), colour, about("z", 0.5 * s))
+            for s in (-1, 1)
+        ),
+        *seen(rod(0.11 * y, 0.004, (-0.48 * x, 0, z), shade(colour, 0.5))),
+        *seen(rod(0.01, 0.003, (x * (-0.25 + 0.16 * i), 0, z), WHITE) for i in range(4)),
+    ]
+
+
+def hat(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A brim, a crown, a band."""
+    radius = min(x, y) / 2
+    return [
+        column(radius, 0, 0.08 * z, colour),
+        *turned([(0.6 * radius, 0.08 * z), (0.5 * radius, z)], colour, steps=5),
+        *seen(column(0.62 * radius, 0.1 * z, 0.28 * z, DARK)),
+        *felt(column(0.55 * radius, 0.08 * z, z, colour)),
+    ]
+
+
+def shoes(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A pair, toes to +x."""
+    pair = [
+        part
+        for s in (-1, 1)
+        for part in (
+            box((0.96 * x, 0.36 * y, 0.18 * z), (0, 0.27 * y * s, 0.09 * z), WHITE),
+            ball((0.6 * x, 0.38 * y, 0.7 * z), (0.18 * x, 0.27 * y * s, 0.36 * z), colour),
+            ball((0.5 * x, 0.38 * y, 0.94 * z), (-0.22 * x, 0.27 * y * s, 0.48 * z), colour),
+            rod(0.13 * y, 0.3 * z, (-0.24 * x, 0.27 * y * s, 0.86 * z), shade(colour, 0.5)),
+        )
+    ]
+    return [
+        *seen(pair),
+        *felt(box((0.96 * x, 0.36 * y, 0.8 * z), (0, 0.27 * y * s, 0.4 * z), colour) for s in (-1, 1)),
+    ]
+
+
+def umbrella(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Folded and lying down: a pleated cone to a tip at +x, a strap, and a crook to hold it by."""
+    middle, wood = z / 2, (0.42, 0.26, 0.13)
+    pleats = [
+        rod(
+            middle * (1.0 - 0.115 * i),
+            0.1 * x,
+            ((0.1 * i - 0.16) * x, 0, middle),
+            shade(colour, 0.8 + 0.3 * (i % 2)),
+            ALONG_X,
+        )
+        for i in range(6)
+    ]
+    crook = [(-0.40 * x, 0.0), (-0.47 * x, 0.02 * y), (-0.49 * x, 0.25 * y), (-0.45 * x, 0.44 * y)]
+    return [
+        *seen(pleats),
+        *seen(rod(1.06 * middle, 0.02 * x, (-0.1 * x, 0, middle), DARK, ALONG_X)),
+        *seen(rod(0.008, 0.12 * x, (0.44 * x, 0, middle), STEEL, ALONG_X)),
+        *seen(rod(0.008, 0.22 * x, (-0.31 * x, 0, middle), STEEL, ALONG_X)),
+        *seen(_segment(start, end, middle, wood) for start, end in pairwise(crook)),
+        *felt(box((0.9 * x, 0.6 * z, z), (0, 0, middle), colour)),
+    ]
+
+
+def _segment(start: tuple[float, float], end: tuple[float, float], z: float, colour: Colour) -> Part:
+    """A piece of a bent rod at one height."""
+    across, along = end[1] - start[1], end[0] - start[0]
+    length = math.hypot(along, across)
+    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2, z)
+    return pill(
+        0.014, length + 0.028, middle, colour, product(about("z", math.atan2(across, along)), ALONG_X)
+    )
+
+
+def sphere(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A football with dark spots."""
+    spots = [
+        (1, 0, 0),
+        (-1, 0, 0),
+        (0, 1, 0),
+        (0, -1, 0),
+        (0, 0, 1),
+        (0.6, 0.6, 0.53),
+        (-0.6, 0.6, 0.53),
+        (0.6, -0.6, 0.53),
+        (-0.6, -0.6, 0.53),
+    ]
+    return [
+        ball((x, y, z), (0, 0, z / 2), colour),
+        *seen(
+            ball((0.3 * x, 0.3 * y, 0.3 * z), (0.38 * x * i, 0.38 * y * j, z / 2 + 0.38 * z * k), BLACK)
+            for i, j, k in spots
+        ),
+    ]

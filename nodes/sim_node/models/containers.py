@@ -1,0 +1,146 @@
+"""Boxes, bags and buckets. Depth x, width y, height z [m]."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+from nodes.sim_node.models.forms import (
+    BLACK,
+    BRASS,
+    DARK,
+    PAPER,
+    STEEL,
+    column,
+    hollow_box,
+    ring,
+    shade,
+    slab,
+)
+from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, pill, rod, seen
+
+
+def crate(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A cardboard box, closed, with tape across the lid."""
+    return [
+        slab(x, y, 0, z, colour),
+        *seen(slab(0.14 * x, y + 0.001, 0.85 * z, z + 0.001, (0.85, 0.78, 0.60))),
+        *seen(box((x + 0.001, 0.25 * y, 0.16 * z), (0, 0.2 * y, 0.35 * z), PAPER)),
+    ]
+
+
+def bag(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A shopping bag with two handles."""
+    body = 0.74 * z
+    return [
+        slab(x, y, 0, body, colour),
+        *seen(slab(0.86 * x, 0.94 * y, body, body + 0.004, shade(colour, 0.5))),
+        *seen(
+            part
+            for s in (-1, 1)
+            for part in (
+                box((0.012, 0.025, z - body), (0.4 * x * s, -0.18 * y, (z + body) / 2), DARK),
+                box((0.012, 0.025, z - body), (0.4 * x * s, 0.18 * y, (z + body) / 2), DARK),
+                box((0.012, 0.39 * y, 0.025), (0.4 * x * s, 0, z - 0.0125), DARK),
+            )
+        ),
+    ]
+
+
+def backpack(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A rounded sack with a pocket in front and straps behind."""
+    return [
+        box((0.55 * x, 0.96 * y, 0.82 * z), (-0.05 * x, 0, 0.41 * z), colour),
+        *seen(ball((0.55 * x, 0.96 * y, 0.4 * z), (-0.05 * x, 0, 0.8 * z), colour)),
+        *seen(box((0.24 * x, 0.72 * y, 0.36 * z), (0.34 * x, 0, 0.25 * z), shade(colour, 0.75))),
+        *seen(box((0.01, 0.6 * y, 0.012), (0.23 * x, 0, 0.62 * z), BRASS)),
+        *seen(
+            pill(0.06 * x, 0.7 * z, (-0.42 * x, 0.28 * y * s, 0.45 * z), shade(colour, 0.5)) for s in (-1, 1)
+        ),
+    ]
+
+
+def suitcase(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """Upright, ribbed, on wheels, with a pulled-out handle."""
+    low, high = 0.05 * z, 0.78 * z
+    return [
+        slab(0.9 * x, y, low, high, colour),
+        *seen(
+            box((x, 0.06 * y, 0.92 * (high - low)), (0, y * k, (low + high) / 2), shade(colour, 1.25))
+            for k in (-0.3, -0.1, 0.1, 0.3)
+        ),
+        *(
+            rod(0.025 * z, 0.04, (0.36 * x * i, 0.4 * y * j, 0.025 * z), BLACK, ALONG_Y)
+            for i in (-1, 1)
+            for j in (-1, 1)
+        ),
+        *seen(rod(0.01, z - high, (-0.3 * x, 0.2 * y * s, (z + high) / 2), STEEL) for s in (-1, 1)),
+        *seen(box((0.03, 0.46 * y, 0.025), (-0.3 * x, 0, z - 0.0125), BLACK)),
+    ]
+
+
+def case(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A briefcase, upright, with a grip and two locks."""
+    body = 0.84 * z
+    return [
+        slab(x, y, 0, body, colour),
+        *seen(box((1.02 * x, 1.002 * y, 0.02), (0, 0, 0.6 * body), shade(colour, 0.6))),
+        *seen(box((0.01, 0.05 * y, 0.06 * z), (x / 2, 0.3 * y * s, 0.62 * body), BRASS) for s in (-1, 1)),
+        *seen(box((0.25 * x, 0.03, z - body), (0, 0.15 * y * s, (z + body) / 2), DARK) for s in (-1, 1)),
+        *seen(box((0.3 * x, 0.36 * y, 0.03), (0, 0, z - 0.015), DARK)),
+    ]
+
+
+def bin_(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A round, open waste bin."""
+    radius = min(x, y) / 2
+    return [
+        column(0.78 * radius, 0, 0.03 * z, colour),
+        *ring((0.8 * radius, 0.98 * radius), 0.01 * z, z, 0.006, colour),
+        *seen(ring((radius, radius), 0.94 * z, z, 0.012, shade(colour, 0.7))),
+    ]
+
+
+def bucket(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """An open pail with its bail up."""
+    radius, rim = min(x, y) / 2, 0.68 * z
+    rise = z - rim - 0.004
+    corners = [
+        (0.95 * radius * math.cos(a), rim + rise * math.sin(a)) for a in (math.pi * i / 8 for i in range(9))
+    ]
+    bail = seen(
+        box(
+            (0.008, 0.008, math.hypot(y1 - y0, z1 - z0) + 0.004),
+            (0, (y0 + y1) / 2, (z0 + z1) / 2),
+            STEEL,
+            about("x", -math.atan2(y1 - y0, z1 - z0)),
+        )
+        for (y0, z0), (y1, z1) in pairwise(corners)
+    )
+    return [
+        column(0.7 * radius, 0, 0.03 * z, colour),
+        *ring((0.72 * radius, 0.98 * radius), 0.01 * z, rim, 0.006, colour),
+        *seen(ring((radius, radius), 0.93 * rim, rim, 0.01, shade(colour, 0.8))),
+        *bail,
+    ]
+
+
+def basket(x: float, y: float, z: float, colour: Colour) -> Parts:
+    """A woven, open box with two grips."""
+    bands = 4
+    hollow = hollow_box(x, y, z, 0.012, colour)
+    outer = [
+        part
+        for band in range(bands)
+        for part in seen(
+            box((size_x, size_y, 0.3 * z / bands), (px, py, z * (band + 0.5) / bands), shade(colour, 0.72))
+            for size_x, size_y, px, py in (
+                (0.004, y, x / 2, 0.0),
+                (0.004, y, -x / 2, 0.0),
+                (x, 0.004, 0.0, y / 2),
+                (x, 0.004, 0.0, -y / 2),
+            )
+        )
+    ]
+    grips = seen(box((0.3 * x, 0.02, 0.06 * z), (0, (y / 2 + 0.004) * s, 0.88 * z), DARK) for s in (-1, 1))
+    return [*hollow, *outer, *grips]
