@@ -103,7 +103,7 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0)
-    track = replace(track, told=entity.pose)
+    track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
     target = _target(track, kinship)
     return Candidate(
         track,

@@ -50,17 +50,14 @@ class Track:
         if self.whole and not seen.whole and _within(seen, self, config.still_m):
             return replace(self, votes=votes, looks=self.looks + 1, unseen=0, odd=0)  # a part, where it was
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
-        still = (
-            self.looks > 0
-            and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
-            and turn_between(self, pose) <= config.turned_rad
-        )
+        near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
+        still = near and turn_between(self, pose) <= config.turned_rad
         return replace(
             self._sized(size_m, whole=seen.whole),
             pose=self._mean(pose) if still else pose,
             votes=votes,
             looks=self.looks + 1 if still else 1,
-            filled=self.filled if still else 0,
+            filled=self.filled if still else self.filled + 1 if near else 0,
             unseen=0,
             odd=0,
         )

@@ -70,6 +70,16 @@ def test_identity_survives_a_move(to):
     assert len(table.entities) == 3
 
 
+def test_a_thing_whose_yaw_nobody_can_tell_has_moved_all_the_same():
+    table = Table([seen("Book", at(1, 1))])
+    table.looks(5)
+    told = []
+    for look in range(4):
+        table.things = [seen("Book", at(2, 1, yaw=0.8 * (look % 2)))]
+        told += table.look()
+    assert [command.name for command in told] == ["book1"]
+
+
 def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
     table = Table([seen("Cup", at(1, 1))])
     table.looks(5)
