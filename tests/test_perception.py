@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
 
 import pytest
 
@@ -70,6 +72,12 @@ def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, mon
         assert status.truth == "perceived"
         assert "perception_node" in {node.node for node in status.nodes}
         assert not any(node.last_error for node in status.nodes)
+
+        (pid,) = [node.pid for node in status.nodes if node.node == "perception_node"]
+        os.kill(pid, signal.SIGKILL)
+        put(client, "another_bottle", "bottle", 0.1, 0.05)
+        another = until(lambda: there(client, 0.1, 0.05), "a new process sees")
+        assert (another.class_, another.name) == ("Bottle", "bottle2")  # who watches knows bottle1 as gone
 
     (recording,) = (tmp_path / "recordings").glob("*.rrd")
     labels = column(recording, "/map/perception/boxes", "Boxes3D:labels")

@@ -20,7 +20,8 @@ from benchmarks.perception.table import Row
 from nodes import bus
 from nodes.extern.client import Client, connect
 from schemas import keys
-from schemas.entities import Pose
+from schemas.commits import Commit
+from schemas.entities import Entity, Pose
 from schemas.scenes import BodyOrder, Delete, Deleted, Spawn, Spawned
 
 _TABLE_Z = 0.74
@@ -70,25 +71,33 @@ def new_things(folder: Path, things: int = 10) -> Latency:
     random_ = random.Random(3)
     seconds: list[float | None] = []
     with _running(folder) as client:
-        _until(lambda: "things seen" in _detail(client))
+        known: dict[str, Entity] = {}
+
+        def on_commit(_: str, commit: Commit) -> None:
+            known.update({entity.name: entity for entity in commit.changed})
+            for gone in commit.removed:
+                known.pop(gone.name, None)
+
+        bus.follow(client.session, keys.COMMIT, on_commit)
+        _until(lambda: "things seen" in _detail(client), every_s=0.5)
         for n in range(things):
             at = (random_.uniform(-0.4, 0.4), random_.uniform(-0.25, 0.25))
             model = _THINGS[n % len(_THINGS)]
             pose = Pose(position_m=(*at, _TABLE_Z + 0.002))
             body = BodyOrder(name=f"body{n}", class_="Object", model=model, pose=pose, commit=0)
             bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(body,)), Spawned)
-            seconds.append(_until(lambda at=at: _is_there(client, at)))
+            seconds.append(_until(lambda at=at: _is_there(known, at)))
             bus.ask(client.session, keys.SIM, "delete", Delete(names=(body.name,)), Deleted)
-            _until(lambda at=at: not _is_there(client, at))
+            _until(lambda at=at: not _is_there(known, at))
         look_ms = float(_detail(client).rpartition("seen, ")[2].split(" ")[0])
     return Latency(tuple(s for s in seconds if s is not None), seconds.count(None), look_ms)
 
 
-def _is_there(client: Client, at: tuple[float, float]) -> bool:
+def _is_there(known: dict[str, Entity], at: tuple[float, float]) -> bool:
     """Whether something small stands there, as far as the map knows."""
     return any(
         math.dist(e.pose.position_m[:2], at) < 0.08
-        for e in client.list()
+        for e in list(known.values())
         if e.pose is not None and e.pose.position_m[2] > _TABLE_Z / 2.0
     )
 
@@ -97,13 +106,13 @@ def _detail(client: Client) -> str:
     return next((n.detail for n in client.status().nodes if n.node == "perception_node"), "")
 
 
-def _until(condition: Callable[[], bool]) -> float | None:
+def _until(condition: Callable[[], bool], every_s: float = 0.01) -> float | None:
     """How long it took to come true [s], None if it did not."""
     started = time.monotonic()
     while not condition():
         if time.monotonic() - started > _PATIENCE_S:
             return None
-        time.sleep(0.02)
+        time.sleep(every_s)
     return time.monotonic() - started
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from statistics import mean
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,7 @@ _LARGEST_M = 0.18
 _LOOKS = 5
 """Looks after each move; at five a second it takes one second."""
 _SAME_M = 0.06
+_SEEDS = (5, 6, 7)
 
 
 class Kept(NamedTuple):
@@ -53,11 +55,17 @@ def measure(moves: int, learnt: Learnt) -> list[Row]:
     kinship = Kinship(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
-    kept = identity(lambda clouds: look(clouds, learnt), kinship, moves=moves)
+    stage = Stage()  # one for all: with a second OpenGL context the first one's end harms it
+    runs = [
+        identity(lambda clouds: look(clouds, learnt), kinship, stage, moves=moves, seed=seed)
+        for seed in _SEEDS
+    ]
+    shares = [run.kept / run.moves for run in runs]
     what = f"identity kept over {moves} moves, 20 objects"
     return [
-        Row(what, kept.kept / kept.moves, reach=0.95, aim=0.99),
-        Row(f"{what}: of those still seen", kept.kept / max(1, kept.held)),
+        Row(f"{what}, mean of {len(runs)} tables", mean(shares), reach=0.95, aim=0.99),
+        Row(f"{what}, the worst table", min(shares)),
+        Row(f"{what}: of those still seen", sum(run.kept for run in runs) / sum(run.held for run in runs)),
     ]
 
 
@@ -110,13 +118,14 @@ class ObedientMap:
 def identity(
     perceive: Callable[[Sequence[Cloud]], Look],
     kinship: Kinship,
+    stage: Stage,
     *,
     moves: int = 100,
     things: int = 20,
-    seed: int = 5,
+    seed: int,
 ) -> Kept:
     """Move things about and see who keeps their names."""
-    rng, stage, config = np.random.default_rng(seed), Stage(), TrackingConfig()
+    rng, config = np.random.default_rng(seed), TrackingConfig()
     cells = [(column, row) for column in range(_COLUMNS) for row in range(_ROWS)]
     rng.shuffle(cells)
     items = [_item(n, cell, rng) for n, cell in enumerate(cells[:things])]

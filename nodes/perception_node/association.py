@@ -14,16 +14,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from msgspec import structs
+
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import ANYTHING, Kinship
+from nodes.perception_node.kinship import ANYTHING, Kinship, Votes
 from nodes.perception_node.likeness import Target
 from nodes.perception_node.matching import Candidate, Matching, match
 from nodes.perception_node.overlap import Place, are_of_one, share
 from nodes.perception_node.telling import has_moved, is_sure, news, proposals
 from nodes.perception_node.tracks import Track, Tracks, slack_m
 from nodes.perception_node.visibility import Looks
-from schemas.commands import Command
-from schemas.entities import Entity, Size, distance_m
+from schemas.commands import Add, Command
+from schemas.entities import Entity, Size, distance_m, free_name
 from schemas.perception import Observation
 
 _ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
@@ -63,7 +65,7 @@ def associate(
     }
     tentative = _tentative(tracks.tentative, matching, observations, config)
     told = [news(entities[name], track, kinship, config) for name, track in known.items()]
-    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, config))
+    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, kinship, config))
     added = proposals(proposed, {*tracks.names, *entities}, kinship)
     names = {j: name for name, j in matching.known.items()}
     return Association(
@@ -77,22 +79,36 @@ def associate(
     )
 
 
+def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
+    """Another name for a new thing, whose name turns out to have been given before this memory began."""
+    assert add.name is not None
+    name = free_name(add.class_, tracks.names.union(entities))
+    known = {name if old == add.name else old: track for old, track in tracks.known.items()}
+    tracks = replace(tracks, known=known, names=tracks.names | {name})
+    return tracks, structs.replace(add, name=name, reason=f"{name} was seen")
+
+
 def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: TrackingConfig) -> Candidate:
-    """An entity; if somebody else has told the map another pose of it since, that counts."""
+    """An entity; if somebody else has told the map another pose of it since, that counts.
+
+    What the process before this one believed of perception's own is remembered by the map.
+    """
     assert entity.pose is not None
     usual_m = kinship.usual_m.get(entity.class_)
+    own = entity.shape_provenance.source == "perception"
     if track is None:
-        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, told=entity.pose)
+        sureness = entity.shape_provenance.confidence if own else None
+        votes = Votes() if sureness is None else Votes.remembered(entity.class_, sureness)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0)
-    track = replace(track, told=entity.pose)
+    track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
     target = _target(track, kinship)
-    own = entity.shape_provenance.source == "perception"
     return Candidate(
         track,
         target._replace(
-            size_m=track.size_m if track.looks else entity.size_m,
+            size_m=track.size_m if track.sized else entity.size_m,
             class_=entity.class_ if target.class_ == ANYTHING else target.class_,
             whole=track.whole or not own,
             usual_m=usual_m,

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float32]
 Transform = NDArray[np.float64]
 
+FEWEST_POINTS = 10
+"""In fewer nothing can be found."""
+
 
 @dataclass(frozen=True)
 class Cloud:
@@ -31,3 +34,8 @@ class Cloud:
     def organised(self) -> bool:
         """Whether neighbours in the array are neighbours in the picture."""
         return len(self.points_camera) > 1
+
+    @property
+    def measured(self) -> int:
+        """How many points were seen in front of the camera."""
+        return int(np.count_nonzero(self.points_camera[..., 2] > 0))

@@ -15,6 +15,9 @@ class TrackingConfig:
 
     confirm_looks: int = 3
     """Looks in which a thing must be seen at rest before it is an entity."""
+    clear_looks: int = 2
+    """The same for one that no picture's edge cuts, and whose class is as sure as `clear`."""
+    clear: float = 0.8
     rest_looks: int = 2
     """Looks in which a known entity must be seen elsewhere, at rest, before it has moved."""
     nudge_looks: int = 8

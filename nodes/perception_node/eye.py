@@ -7,9 +7,10 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.cloud import FEWEST_POINTS, Cloud
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.pipeline import Look
+from nodes.perception_node.projection import FARTHEST_M
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -72,4 +73,6 @@ class Eye:
         if step > 1:
             size = f"{frame.width} x {frame.height} pixels"
             self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
+        if cloud.measured < FEWEST_POINTS:
+            self._complain(f"camera {frame.camera} measures no depth between 0 and {FARTHEST_M:g} m")
         return cloud

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud, Transform
-from nodes.perception_node.projection import cloud_of
+from nodes.perception_node.projection import cloud_of, fits
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -156,16 +156,8 @@ def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
 
 def _intrinsics(frame: CameraFrame) -> Transform:
     numbers = np.array(frame.intrinsics, dtype=float)
-    if numbers.size == 9 and np.isfinite(numbers).all():
-        k = numbers.reshape(3, 3)
-        focal, middle = k[[0, 1], [0, 1]], k[:2, 2]
-        size = np.array([frame.width, frame.height])
-        if (
-            (focal > 0.1 * size).all()
-            and (np.abs(middle - size / 2.0) < size).all()
-            and (k[2] == [0, 0, 1]).all()
-        ):
-            return k
+    if numbers.size == 9 and fits(numbers.reshape(3, 3), frame.width, frame.height):
+        return numbers.reshape(3, 3)
     raise BadRequest(
         f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit a picture of {frame.width} x"
         f" {frame.height} pixels; they are fx 0 cx 0 fy cy 0 0 1"

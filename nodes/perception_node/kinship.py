@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from schemas.entities import Size
+from schemas.entities import ClassInfo, Size
 
 ANYTHING = "Object"
 """The class of what is like nothing known."""
@@ -46,12 +46,25 @@ class Kinship:
         return len(self.ancestors.get(class_name, ()))
 
 
+def kinship_of(classes: Iterable[ClassInfo], usual_m: Mapping[str, Size]) -> Kinship:
+    """The hierarchy and the labels of the TBox's classes, with what is known of their sizes."""
+    rows = list(classes)
+    labels = {row.name: row.labels.get("en") or row.labels.get("") or "" for row in rows}
+    return Kinship({row.name: frozenset(row.ancestors) for row in rows}, labels, usual_m)
+
+
 @dataclass(frozen=True)
 class Votes:
     """What was said of one thing, look by look: class to probability, older looks counting less."""
 
     weights: Mapping[str, float] = field(default_factory=dict)
     looks: float = 0.0
+
+    @staticmethod
+    def remembered(class_name: str, probability: float) -> Votes:
+        """What is left of very many looks that said the same, with this mean probability."""
+        looks = 1.0 / (1.0 - _FORGET)
+        return Votes({class_name: probability * looks}, looks)
 
     def cast(self, class_name: str, probability: float) -> Votes:
         """One more look."""

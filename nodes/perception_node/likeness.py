@@ -13,9 +13,13 @@ from schemas.perception import Observation
 FORBIDDEN = math.inf
 _NEARBY_M = 0.05
 _SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
-"""What stands in place is the thing if its size is no more unlike (mean of |log ratio|)."""
+"""What stands in place is the thing if its size is no more unlike (`size_unlike`)."""
 _OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
 """The same for what is recognised somewhere else: by a class and size, or by its size alone."""
+_VAGUE = 0.1
+"""How unlike what is like nothing known is what has a class."""
+_BLUR_M = 0.01
+"""What an extent may be off by, however small it is."""
 _HIDDEN_PART = 0.3
 """How much it counts that an extent is smaller of what is seen in part."""
 
@@ -52,26 +56,37 @@ def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
     return aside / reach + unlike + alien
 
 
-def cost_elsewhere(target: Target, seen: Observation, kinship: Kinship) -> float:
-    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind."""
+def cost_anywhere(target: Target, seen: Observation, kinship: Kinship) -> float:
+    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind.
+
+    Where it is hardly counts, but what has come back to its place may be less like it.
+    """
     place = target.place
-    if place is None or not kinship.related(target.class_, seen.class_):
+    if place is None:
         return FORBIDDEN
+    vague = ANYTHING in (seen.class_, target.class_)
     unlike = size_unlike(target._replace(size_m=place.size_m), seen)
-    if unlike > (_OF_ANY_KIND if ANYTHING in (seen.class_, target.class_) else _OF_A_KIND):
+    alike = kinship.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
+    if not alike and cost_in_place(target, seen, kinship) == FORBIDDEN:
         return FORBIDDEN
     aside, above = _apart(place.pose, place.size_m, seen)
-    return unlike + class_unlike(target.class_, seen, kinship) + 0.1 * math.hypot(aside, above)
+    doubt = _VAGUE if vague and target.class_ != seen.class_ else class_unlike(target.class_, seen, kinship)
+    return unlike + doubt + 0.1 * math.hypot(aside, above)
 
 
 def size_unlike(target: Target, seen: Observation) -> float:
-    """Mean of |log ratio| of the extents, however turned; what is seen in part may be smaller."""
+    """How unlike the extents are, however turned: the mean of |log ratio|, or half the worst if that is more.
+
+    What is seen in part may be smaller. A single extent that is twice too large is that of a thing with its
+    neighbour, however right the others are.
+    """
     if target.size_m is None:
         return 0.0
     pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
-    ratios = [math.log(now / before) for before, now in pairs]
+    ratios = [math.log((now + _BLUR_M) / (before + _BLUR_M)) for before, now in pairs]
     shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
-    return sum(ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios) / 3.0
+    unlike = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
+    return max(sum(unlike) / 3.0, max(unlike) / 2.0)
 
 
 def class_unlike(class_name: str, seen: Observation, kinship: Kinship) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -10,8 +10,8 @@ from scipy.optimize import linear_sum_assignment
 
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.kinship import Kinship
-from nodes.perception_node.likeness import Target, cost_elsewhere, cost_in_place
-from nodes.perception_node.overlap import Place, are_of_one
+from nodes.perception_node.likeness import Target, cost_anywhere, cost_in_place, size_unlike
+from nodes.perception_node.overlap import Place, are_of_one, share
 from nodes.perception_node.tracks import Track
 from nodes.perception_node.visibility import Looks, Sight
 from schemas.perception import Observation
@@ -22,6 +22,11 @@ K = TypeVar("K", str, int)
 Cost = Callable[[Target, Observation, Kinship], float]
 
 _PROHIBITIVE = 1e6
+_COVERED = 0.6
+"""A thing of which this share is in a segment's box may be a part of the segment."""
+_FILLED = 0.2
+"""Its parts fill this share of a segment's box: that of a table holds what lies on it, but not much of it."""
+_LIKE = 0.15
 
 
 class Candidate(NamedTuple):
@@ -61,35 +66,35 @@ def match(
         found = assign(targets, seen, lambda target, o: cost(target, o, kinship))
         return {list(of)[a]: free[b] for a, b in found}
 
-    every = set(range(len(observations)))
-    seen = pairs(known, every, cost_in_place)
+    there = {name: c for name, c in known.items() if not c.track.unseen}
+    single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
+    seen = pairs(there, single, cost_in_place)
     places = {name: _look_at(c.target, looks) for name, c in known.items() if name not in seen}
+    rest = single.difference(seen.values())
     parts = {
-        name: {j for j in every.difference(seen.values()) if _may_be_of(c.target, observations[j])}
+        name: {j for j in rest if _may_be_of(c.target, observations[j])}
         for name, c in known.items()
         if places.get(name) != "open"
     }
     gone = {name for name in places if known[name].track.is_gone(config)}
-    standing = parts.keys() - gone
-    left = every.difference(seen.values(), *(parts[name] for name in standing))
-    strangers = {
+    standing = [name for name in parts if name in there and name not in gone]
+    left = rest.difference(*(parts[name] for name in standing))
+    relatives = {
         j
-        for j in every.difference(seen.values(), left)
-        if not any(
-            j in parts[name] and kinship.related(known[name].target.class_, observations[j].class_)
-            for name in standing
-        )
+        for name in standing
+        for j in parts[name]
+        if kinship.related(known[name].target.class_, observations[j].class_)
     }
     vanished = {
         name: known[name]
         for name, sight in places.items()
-        if sight == "open" or name in gone or known[name].track.unseen
+        if sight == "open" or name in gone or name not in there
     }
-    found = pairs(vanished, left | strangers, cost_elsewhere)
+    found = pairs(vanished, rest - relatives, cost_anywhere)
     again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
     unseen = places.keys() - found.keys()
     for name in unseen:
-        others = {*found.values(), *(seen.values() if known[name].track.unseen else ())}
+        others = {*found.values(), *(seen.values() if name not in there else ())}
         if any(_may_be_of(known[name].target, observations[j]) for j in others):
             places[name] = "open"  # to itself: another has come to stand there
     return Matching(
@@ -111,6 +116,22 @@ def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float
 def _look_at(target: Target, looks: Looks) -> Sight:
     """Of a thing of unknown size nobody can tell whether it is there."""
     return "hidden" if target.place is None else looks(*target.place)
+
+
+def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
+    """Whether a segment is made of several things: it covers their places, which fill it; it is like none."""
+    whole = Place(seen.pose, seen.size_m)
+    covered = [
+        (c.target, place)
+        for c in known
+        if (place := c.target.place) is not None and share(place, whole) > _COVERED
+    ]
+    volume_m3 = sum(place.volume_m3 for _, place in covered)
+    return (
+        len(covered) > 1
+        and volume_m3 > _FILLED * whole.volume_m3
+        and all(size_unlike(target, seen) > _LIKE for target, _ in covered)
+    )
 
 
 def _may_be_of(target: Target, seen: Observation) -> bool:

@@ -17,12 +17,12 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.loop import Node, open_node
-from nodes.perception_node.association import associate
+from nodes.map_view import MapView
+from nodes.perception_node.association import associate, renamed
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.eye import Eye
-from nodes.perception_node.kinship import Kinship
-from nodes.perception_node.map_view import MapView, kinship_of
+from nodes.perception_node.kinship import Kinship, kinship_of
 from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
@@ -30,9 +30,10 @@ from nodes.perception_node.tracks import Tracks
 from nodes.perception_node.visibility import looking
 from schemas import codec, keys
 from schemas.bridge import BRIDGE, SnapshotQuery
-from schemas.commands import Changed, Classes, Command
+from schemas.commands import Add, Changed, Classes, Command, LastSeen, Sighting
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Size
+from schemas.errors import UnknownName
 from schemas.health import Health
 
 _COMPLAINT_S = 60.0
@@ -136,12 +137,33 @@ class Perception:
         now = time.monotonic()
         for command in commands:
             if self._refused.get(subject_of(command), 0.0) < now:
-                verb = str(command.__struct_config__.tag)
                 self._untold += 1
-                future = self._node.ask_later(keys.CMD, verb, command, Changed)
-                future.add_done_callback(partial(self._on_told, command))
+                if isinstance(command, Add):
+                    self._add(command)
+                else:
+                    self._send(command)
 
-    def _on_told(self, command: Command, done: Future[Changed]) -> None:
+    def _add(self, command: Add) -> None:
+        """Ask first whether anything was ever called so: names were given before this process began."""
+        assert command.name is not None
+        asked = self._ask_kb("last-seen", LastSeen(name=command.name))
+        asked.add_done_callback(partial(self._on_sighting, command))
+
+    def _on_sighting(self, command: Add, done: Future[Sighting]) -> None:
+        error = done.exception()
+        if isinstance(error, UnknownName):
+            self._send(command)
+        elif error is None:
+            self._tracks, command = renamed(self._tracks, command, self._map.entities)
+            self._add(command)
+        else:
+            self._on_told(command, done)
+
+    def _send(self, command: Command) -> None:
+        future = self._node.ask_later(keys.CMD, str(command.__struct_config__.tag), command, Changed)
+        future.add_done_callback(partial(self._on_told, command))
+
+    def _on_told(self, command: Command, done: Future[Any]) -> None:
         self._untold -= 1
         error = done.exception()
         if error is None:

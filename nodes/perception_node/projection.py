@@ -7,6 +7,23 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud, Transform
 
+FARTHEST_M = 100.0
+"""No depth camera measures as far."""
+
+
+def fits(intrinsics: Transform, width: int, height: int) -> bool:
+    """Whether intrinsics (3, 3) may be those of a picture of this size, and not of one twice as large.
+
+    Its angle of view is below 157 degrees, and the optical axis meets its middle half.
+    """
+    focal, middle, size = intrinsics[[0, 1], [0, 1]], intrinsics[:2, 2], np.array([width, height])
+    return bool(
+        np.isfinite(intrinsics).all()
+        and (focal > 0.1 * size).all()
+        and (np.abs(middle - size / 2.0) <= size / 4.0).all()
+        and (intrinsics[2] == [0, 0, 1]).all()
+    )
+
 
 def cloud_of(
     depth_m: NDArray[np.float32],
@@ -19,6 +36,8 @@ def cloud_of(
 ) -> Cloud:
     """The points that a depth picture (H, W) [m] sees, 0 or NaN for nothing; the first pixel's middle is 0.5.
 
+    What is as far as `FARTHEST_M` was not measured either.
+
     Raises ValueError where picture, colours and intrinsics do not fit together.
     """
     height, width = depth_m.shape
@@ -30,7 +49,7 @@ def cloud_of(
         raise ValueError("intrinsics are three rows of three numbers with positive focal lengths")
     right = ((np.arange(width) + 0.5 - intrinsics[0, 2]) / intrinsics[0, 0]).astype(np.float32)
     down = ((np.arange(height) + 0.5 - intrinsics[1, 2]) / intrinsics[1, 1]).astype(np.float32)
-    seen = np.where((depth_m > 0.0) & np.isfinite(depth_m), depth_m, np.float32(np.nan))
+    seen = np.where((depth_m > 0.0) & (depth_m < FARTHEST_M), depth_m, np.float32(np.nan))
     points = np.empty((height, width, 3), np.float32)
     points[..., 0], points[..., 1], points[..., 2] = seen * right, seen * down[:, None], seen
     return Cloud(points, rgb, map_from_camera, intrinsics, camera, stamp_ns)

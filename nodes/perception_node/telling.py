@@ -33,9 +33,11 @@ def subject_of(command: Command) -> str:
     raise TypeError(f"perception does not say {type(command).__name__}")
 
 
-def is_sure(track: Track, config: TrackingConfig) -> bool:
+def is_sure(track: Track, kinship: Kinship, config: TrackingConfig) -> bool:
     """Whether a thing was seen at rest often enough to become an entity."""
-    return track.looks >= config.confirm_looks and not track.unseen
+    clear = track.whole and track.votes.share(track.votes.belief(kinship), kinship) >= config.clear
+    enough = config.clear_looks if clear else config.confirm_looks
+    return track.looks >= enough and not track.unseen
 
 
 def proposals(tracks: Iterable[Track], taken: Set[str], kinship: Kinship) -> dict[str, Add]:
@@ -65,11 +67,11 @@ def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig)
     own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
     if track.is_gone(config):
         return _gone(entity, track, own, config)
-    if track.unseen or track.odd or track.looks < config.rest_looks:
+    if not track.rests(config.rest_looks):
         return None
     changes: dict[str, Any] = {}
     if has_moved(entity, track, config):
-        if track.looks < (config.rest_looks if track.left else config.nudge_looks):
+        if not track.left and track.looks < config.nudge_looks:
             return None
         pose = rounded(track.pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}

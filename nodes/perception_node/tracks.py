@@ -20,17 +20,20 @@ _MEMORY = 20
 
 @dataclass(frozen=True)
 class Track:
-    """Observations tied to one thing: `pose` and `size_m` are their mean since it came to rest.
+    """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of `sized` looks.
 
-    `looks` is how often it was seen since then, `unseen` how often in a row it should have been seen since
-    and was not, `odd` how often in a row something of another size filled its place. `whole`: it was seen
-    unhidden and uncut. `told` is the map's pose at the last look; `left`: that place is seen empty.
+    `looks` is how often it was seen since it rests, `filled` how often its place was since then although the
+    thing was not told apart, `unseen` how often in a row it should have been seen since and was not, `odd`
+    how often in a row something of another size filled its place. `whole`: it was seen unhidden and uncut.
+    `told` is the map's pose at the last look; `left`: that place is seen empty.
     """
 
     pose: Pose
     size_m: Size
     votes: Votes = field(default_factory=Votes)
+    sized: int = 0
     looks: int = 0
+    filled: int = 0
     unseen: int = 0
     odd: int = 0
     whole: bool = False
@@ -47,31 +50,44 @@ class Track:
         if self.whole and not seen.whole and _within(seen, self, config.still_m):
             return replace(self, votes=votes, looks=self.looks + 1, unseen=0, odd=0)  # a part, where it was
         pose, size_m = turned_like(seen.pose, seen.size_m, self)
-        still = (
-            self.looks > 0
-            and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
-            and turn_between(self, pose) <= config.turned_rad
+        near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
+        still = near and turn_between(self, pose) <= config.turned_rad
+        return replace(
+            self._sized(size_m, whole=seen.whole),
+            pose=self._mean(pose) if still else pose,
+            votes=votes,
+            looks=self.looks + 1 if still else 1,
+            filled=self.filled if still else self.filled + 1 if near else 0,
+            unseen=0,
+            odd=0,
         )
-        if still:
-            pose, size_m = self._mean(pose, size_m)
-        elif self.whole and not seen.whole:
-            size_m = self.size_m
-        whole = self.whole or seen.whole
-        looks = self.looks + 1 if still else 1
-        return replace(self, pose=pose, size_m=size_m, votes=votes, looks=looks, unseen=0, odd=0, whole=whole)
 
     def miss(self, place: Sight, *, odd: bool) -> Track:
         """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
         if place == "hidden":
             return self
-        return replace(self, unseen=self.unseen + 1 if place == "open" else 0, odd=self.odd + 1 if odd else 0)
+        if place == "open":
+            return replace(self, unseen=self.unseen + 1, odd=0)
+        return replace(self, filled=self.filled + 1, unseen=0, odd=self.odd + 1 if odd else 0)
 
-    def _mean(self, pose: Pose, size_m: Size) -> tuple[Pose, Size]:
+    def rests(self, looks: int) -> bool:
+        """Whether it was seen where it is, and is there since so many looks."""
+        return self.looks > 0 and self.looks + self.filled >= looks and not self.unseen and not self.odd
+
+    def _sized(self, size_m: Size, *, whole: bool) -> Track:
+        """With one more look at its size; one at the whole of it is worth more than any at a part."""
+        if self.whole and not whole:
+            return self
+        if self.sized and self.whole == whole:
+            sized = min(self.sized + 1, _MEMORY)
+            return replace(self, size_m=_between(self.size_m, size_m, 1.0 / sized), sized=sized)
+        return replace(self, size_m=size_m, sized=1, whole=whole)
+
+    def _mean(self, pose: Pose) -> Pose:
         share = 1.0 / min(self.looks + 1, _MEMORY)
         yaw = self.pose.yaw_rad + share * _wrapped(pose.yaw_rad - self.pose.yaw_rad)
         position = _between(self.pose.position_m, pose.position_m, share)
-        mean = Pose(position_m=position, orientation_wxyz=orientation_from_yaw(yaw))
-        return mean, _between(self.size_m, size_m, share)
+        return Pose(position_m=position, orientation_wxyz=orientation_from_yaw(yaw))
 
 
 @dataclass(frozen=True)

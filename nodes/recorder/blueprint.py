@@ -1,12 +1,13 @@
-"""How a viewer shows a recording: the scene large, beside it the commit, the log and the graph."""
+"""How a viewer shows a recording: the scene, below it the pictures of cameras, beside it what was said."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import rerun.blueprint as rrb
 
+from nodes.recorder.sightings import BOXES, camera_path
 from schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)
@@ -14,6 +15,8 @@ _LOG_COLUMNS = rrb.TextLogColumns(
     timeline_columns=[rrb.encodings.TimelineColumn("time", visible=False)], text_log_columns=["body"]
 )
 _GRID = (255, 255, 255, 30)
+_LEAST_EXTENT_M = 1.5
+_MOST_PICTURES = 3
 
 
 @dataclass(frozen=True)
@@ -29,12 +32,16 @@ def bounds_of(poses: Iterable[Pose]) -> Bounds:
     points = [pose.position_m for pose in poses]
     if not points:
         return Bounds()
-    (x0, x1), (y0, y1) = ((min(axis), max(axis)) for axis in list(zip(*points, strict=True))[:2])
-    return Bounds(((x0 + x1) / 2.0, (y0 + y1) / 2.0, 0.0), max(x1 - x0, y1 - y0, 4.0))
+    (x0, x1), (y0, y1), (z0, z1) = ((min(axis), max(axis)) for axis in zip(*points, strict=True))
+    middle = ((x0 + x1) / 2.0, (y0 + y1) / 2.0, (z0 + z1) / 2.0)
+    return Bounds(middle, max(x1 - x0, y1 - y0, _LEAST_EXTENT_M))
 
 
-def layout(bounds: Bounds) -> rrb.Blueprint:
-    """The blueprint, with the eye in the south-west, half way up, looking at `bounds`."""
+def layout(bounds: Bounds, cameras: Sequence[str] = ()) -> rrb.Blueprint:
+    """The blueprint, with the eye in the south-west, half way up, looking at `bounds`.
+
+    Below the scene are the pictures of `cameras`, with the boxes of what perception saw.
+    """
     x, y, z = bounds.centre_m
     e = bounds.extent_m
     eye = rrb.EyeControls3D(
@@ -50,9 +57,11 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
         line_grid=rrb.LineGrid3D(spacing=1.0, color=_GRID),
         eye_controls=eye,
     )
+    pictures = [_picture(camera) for camera in cameras[:_MOST_PICTURES]]
+    seen = rrb.Vertical(scene, rrb.Horizontal(*pictures), row_shares=[3, 2]) if pictures else scene
     return rrb.Blueprint(
         rrb.Horizontal(
-            scene,
+            seen,
             rrb.Vertical(
                 rrb.TextDocumentView(origin="/commits", contents="/commits", name="Commit"),
                 rrb.TextLogView(origin="/commits/log", name="Log", columns=_LOG_COLUMNS),
@@ -72,3 +81,8 @@ def layout(bounds: Bounds) -> rrb.Blueprint:
         rrb.BlueprintPanel(state="hidden"),
         auto_views=False,
     )
+
+
+def _picture(camera: str) -> rrb.Spatial2DView:
+    path = camera_path(camera)
+    return rrb.Spatial2DView(origin=path, contents=[f"/{path}", f"/{BOXES}"], name=camera)

@@ -1,12 +1,12 @@
-"""The map as it follows from a snapshot and the commits since."""
+"""The map with its relations, as it follows from a snapshot and the commits since."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
+from nodes.map_view import MapView
 from ontology import vocabulary as v
-from schemas.commits import Commit, Snapshot, Star
-from schemas.entities import Entity
+from schemas.commits import Commit, Star
 from schemas.explanations import Term, Triple
 
 Relation = tuple[str, str]
@@ -32,35 +32,27 @@ def missed(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
 
 
-class MapState:
-    """Entities by name, and the relations asserted between individuals, after commit `seq`."""
+class MapState(MapView):
+    """Besides the entities the relations asserted between individuals."""
 
     def __init__(self) -> None:
-        self.seq = -1
-        self.entities: dict[str, Entity] = {}
+        super().__init__()
         self._relations: dict[Term, set[Triple]] = {}
 
-    def begin(self, snapshot: Snapshot, stars: Iterable[Star]) -> None:
-        """Take over a snapshot. The stars may be newer: the commits since, taken again, change nothing."""
-        self.seq = snapshot.seq
-        self.entities = {entity.name: entity for entity in snapshot.entities}
+    def relate(self, stars: Iterable[Star]) -> None:
+        """Take the relations from stars. These may be newer: commits that are taken again change nothing."""
         self._relations = {}
         self._insert(triple for star in stars for triple in star.own)
 
     def take(self, commit: Commit) -> bool:
         """Take over a commit. False when one before it was missed, so that a snapshot is needed."""
-        if commit.seq <= self.seq:
-            return True
-        if commit.seq != self.seq + 1:
-            return False
-        self.seq = commit.seq
-        for gone in commit.removed:
-            self.entities.pop(gone.name, None)
-        self.entities.update({entity.name: entity for entity in commit.changed})
-        for triple in commit.retracted:
-            self._relations.get(triple[0], set()).discard(triple)
-        self._insert(commit.inserted)
-        return True
+        before = self.seq
+        known = super().take(commit)
+        if self.seq > before:
+            for triple in commit.retracted:
+                self._relations.get(triple[0], set()).discard(triple)
+            self._insert(commit.inserted)
+        return known
 
     def relations(self) -> dict[str, tuple[Relation, ...]]:
         """What each entity is asserted to have to do with other entities, sorted."""

@@ -7,7 +7,6 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes.loop import Node, open_node
-from nodes.recorder.blueprint import bounds_of
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.graph import graph_of
 from nodes.recorder.map_state import MapState, missed
@@ -96,7 +95,8 @@ class Recorder:
         after = snapshot.seq - 1 if first else self._map.seq
         lost = missed(after, snapshot.seq, self._early)
         anew = snapshot.seq < self._map.seq
-        self._map.begin(snapshot, stars)
+        self._map.begin(snapshot)
+        self._map.relate(stars)
         for commit in sorted(self._early, key=lambda commit: commit.seq):
             self._map.take(commit)
         self._early.clear()
@@ -195,7 +195,7 @@ class Recorder:
         self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
         if not self._arranged and self._map.entities:
             self._arranged = True
-            self._recording.arrange(bounds_of(self._stage.poses))
+            self._recording.arrange(self._stage.poses)
         self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
 
     def _ask_kb(self, verb: str, message: Any) -> Future[Any]:

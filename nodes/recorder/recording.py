@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from nodes.recorder import commit_text
-from nodes.recorder.blueprint import Bounds, layout
+from nodes.recorder.blueprint import bounds_of, layout
 from nodes.recorder.figures import Figure
 from nodes.recorder.geometry import shape_of
 from nodes.recorder.graph import Graph, nodes_and_edges
@@ -40,7 +40,9 @@ class Recording:
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self.path = path
         self._stream = stream
-        stream.send_blueprint(layout(Bounds()))
+        self._in_view: list[Pose] = []
+        self._cameras: list[str] = []
+        self.arrange()
         stream.log("map", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
     def at(self, seq: int, stamp_ns: int, sim_time_s: float | None) -> None:
@@ -51,9 +53,11 @@ class Recording:
         if sim_time_s is not None:
             self._stream.set_time("sim_time", duration=sim_time_s)
 
-    def arrange(self, bounds: Bounds) -> None:
-        """Arrange the viewer so that it looks at these bounds."""
-        self._stream.send_blueprint(layout(bounds))
+    def arrange(self, poses: Iterable[Pose] = (), cameras: Iterable[str] = ()) -> None:
+        """Arrange the viewer so that it looks at these poses too, and shows the pictures of these cameras."""
+        self._in_view.extend(poses)
+        self._cameras = sorted({*self._cameras, *cameras})
+        self._stream.send_blueprint(layout(bounds_of(self._in_view), self._cameras))
 
     def draw(self, name: str, figure: Figure, pose: Pose) -> None:
         """Draw a figure where it stands."""

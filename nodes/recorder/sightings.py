@@ -9,6 +9,7 @@ import rerun as rr
 from PIL import Image
 
 from nodes.recorder.palette import GREY, colour_of
+from schemas.entities import Pose
 from schemas.perception import Observation, Observations, SegmentedCloud
 from schemas.scenes import CameraFrame
 
@@ -19,8 +20,8 @@ OBSERVATION_FIELDS = "semmap.Observation"
 
 _PICTURE_WIDTH = 320
 _JPEG_QUALITY = 80
-_FRUSTUM_M = 0.3
-_POINT_M = 0.002
+_FRUSTUM_M = 0.15
+_POINT_M = 0.004
 
 
 def camera_path(camera: str) -> str:
@@ -56,6 +57,12 @@ def points_of(cloud: SegmentedCloud, seen: Observations) -> rr.Points3D:
     of_things = (labels > 0) & (labels < len(palette))
     colors[of_things] = palette[labels[of_things]]
     return rr.Points3D(np.frombuffer(cloud.positions, "<f4").reshape(-1, 3), colors=colors, radii=[_POINT_M])
+
+
+def stand_of(frame: CameraFrame) -> Pose:
+    """Where a camera is. Raises ValueError when the frame does not say it."""
+    x, y, z = np.array(frame.map_from_camera).reshape(4, 4)[:3, 3].tolist()
+    return Pose(position_m=(x, y, z))
 
 
 def picture_of(frame: CameraFrame, pixels: bytes) -> tuple[rr.AsComponents, ...]:

@@ -28,6 +28,7 @@ class Watching:
         self._at = at
         self._seen = Observations(stamp_ns=0, views=(), observations=())
         self._pictures: dict[str, tuple[CameraFrame, Callable[[], bytes]]] = {}
+        self._arranged: set[str] = set()
         node.follow(keys.OBSERVATIONS, self._on_observations)
         node.follow(keys.CLOUD, self._on_cloud)
         bus.follow_cameras(node.session, "rgb", self._keep, log.warning)
@@ -50,9 +51,12 @@ class Watching:
         for camera in list(self._pictures):
             frame, read = self._pictures.pop(camera)
             try:
-                drawn = sightings.picture_of(frame, read())
+                drawn, stand = sightings.picture_of(frame, read()), sightings.stand_of(frame)
             except ValueError as error:
                 log.warning("camera %s: its picture cannot be recorded: %s", camera, error)
                 continue
             self._at(frame.stamp_ns)
             self._recording.show(sightings.camera_path(camera), *drawn)
+            if camera not in self._arranged:
+                self._arranged.add(camera)
+                self._recording.arrange([stand], [camera])

@@ -54,6 +54,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
 
+    def __post_init__(self) -> None:
+        """Raises ValueError where what perception sees would only be what it said itself."""
+        if self.perception and self.sim and self.camera_hz and self.truth != "perceived":
+            raise ValueError(
+                f"with --truth {self.truth} the simulator's cameras show what the map says already, so"
+                " perception cannot look through them: add --truth perceived, or --camera-hz 0 for frames"
+                " of other cameras"
+            )
+
     @property
     def nodes(self) -> tuple[str, ...]:
         """The nodes to run, in the order of starting."""

@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
+from nodes.perception_node.association import renamed
 from nodes.perception_node.telling import DISPLACED, MISSING
+from nodes.perception_node.tracks import Tracks
 from schemas.commands import Add, Remove, Update
 from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
 
@@ -28,6 +30,21 @@ def test_a_new_thing_becomes_an_entity_after_enough_looks_and_only_once():
     assert add.confidence == pytest.approx(0.9)
     assert table.looks(20) == []
     assert table.taken_for == ("cup1",)
+
+
+@pytest.mark.parametrize(
+    ("thing", "looks"),
+    [
+        (seen("Cup", at(1, 1), p=0.9), 2),
+        (seen("Cup", at(1, 1), p=0.7), 3),
+        (seen("Cup", at(1, 1), p=0.9, whole=False), 3),
+    ],
+    ids=["clear", "of doubtful class", "cut by the picture's edge"],
+)
+def test_what_is_clear_is_an_entity_sooner(thing, looks):
+    table = Table([thing], config=replace(CONFIG, clear_looks=2, clear=0.8))
+    assert table.looks(looks - 1) == []
+    assert len(table.look()) == 1
 
 
 def test_what_flashes_up_or_moves_about_is_no_entity():
@@ -51,6 +68,16 @@ def test_identity_survives_a_move(to):
     assert names[update.name].pose == at(1, 1)
     assert update.at == pytest.approx(to.position_m)
     assert len(table.entities) == 3
+
+
+def test_a_thing_whose_yaw_nobody_can_tell_has_moved_all_the_same():
+    table = Table([seen("Book", at(1, 1))])
+    table.looks(5)
+    told = []
+    for look in range(4):
+        table.things = [seen("Book", at(2, 1, yaw=0.8 * (look % 2)))]
+        told += table.look()
+    assert [command.name for command in told] == ["book1"]
 
 
 def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
@@ -133,6 +160,93 @@ def test_a_name_is_not_given_twice():
     table.looks(20)
     table.things = [seen("Cup", at(1, 1))]
     assert [command.name for command in table.looks(20)] == ["cup2"]
+
+
+def test_a_new_process_takes_perceptions_own_from_the_map_and_goes_on():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    table.looks(5)
+    names = table.taken_for
+    table.tracks = Tracks()
+    assert table.look() == ()
+    assert table.taken_for == names
+    table.things[0] = moved(table.things[0], at(1.5, 2))
+    assert [command.name for command in table.looks(20)] == [names[0]]
+    table.tracks = Tracks()
+    del table.things[1]
+    assert [command.names for command in table.looks(20)] == [(names[1],)]
+
+
+def test_a_new_process_does_not_forget_at_its_first_looks_what_a_thing_was_taken_for():
+    table = Table([seen("Tableware", at(1, 1), SIZES["Cup"])])
+    table.looks(20)
+    table.tracks = Tracks()
+    table.things = [seen("Cup", at(1, 1))]
+    assert table.looks(CONFIG.confirm_looks) == []
+
+
+def test_a_name_that_was_given_before_is_exchanged():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    adds = table.looks(CONFIG.confirm_looks)
+    tracks, add = renamed(table.tracks, adds[0], table.entities)
+    assert (add.name, add.reason) == ("cup3", "cup3 was seen")
+    assert add.at == adds[0].at
+    assert tracks.known == {
+        "cup3": table.tracks.known["cup1"],
+        **{name: table.tracks.known[name] for name in ("cup2", "book1")},
+    }
+    assert tracks.names == {"cup1", "cup2", "cup3", "book1"}
+
+
+SIDE_BY_SIDE = (0.35, 0.08, 0.1)
+"""The box of two cups at a distance of 0.27 m."""
+
+
+def test_two_things_that_are_seen_as_one_stay_what_they_are_however_long():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.27, 1))])
+    table.looks(5)
+    apart = table.things
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    assert table.looks(3 * CONFIG.odd_looks) == []
+    table.things = apart
+    assert table.looks(20) == []
+
+
+def test_what_came_to_stand_beside_another_is_told_once_it_was_seen_apart_from_it():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(3, 1))])
+    table.looks(5)
+    table.things[1] = moved(table.things[1], at(1.27, 1))
+    assert table.look() == ()
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    (update,) = table.looks(20)
+    assert (update.name, update.at) == ("cup2", pytest.approx((1.27, 1.0, 0.7)))
+
+
+def test_one_look_at_it_with_its_neighbour_does_not_change_its_size():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(20)
+    table.things = [seen("Cup", at(2, 1), (0.08, 0.1, 0.1))]
+    table.look()
+    assert table.tracks.known["cup1"].size_m == pytest.approx(SIZES["Cup"], abs=0.002)
+
+
+def test_what_comes_to_stand_where_another_has_left_is_the_one_that_it_is_most_like():
+    """The one that left that place is like it too, but less."""
+    table = Table([seen("Object", at(1, 1), (0.08, 0.09, 0.12)), seen("Cup", at(2, 1))])
+    table.looks(5)
+    object_, cup = table.things
+    table.things = [cup]
+    table.look()
+    table.things = [moved(cup, at(1, 1))]
+    assert [command.name for command in table.looks(2)] == ["cup1"]
+    table.things = [moved(cup, at(1, 1)), moved(object_, at(2, 1))]
+    assert [command.name for command in table.looks(2)] == ["object1"]
+
+
+def test_a_big_thing_whose_box_holds_small_ones_is_new():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.2, 1.1))])
+    table.looks(5)
+    table.things.append(seen("Object", at(1.1, 1, 0.0), (1.0, 0.8, 0.8)))
+    assert [command.name for command in table.looks(20)] == ["object1"]
 
 
 def test_something_else_in_its_place_is_something_else():

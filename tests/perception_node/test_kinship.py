@@ -1,8 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.perception_node.kinship import ANYTHING, Kinship, Votes
-from nodes.perception_node.map_view import kinship_of
+from nodes.perception_node.kinship import ANYTHING, Kinship, Votes, kinship_of
 from schemas.entities import ClassInfo
 from tests.perception_node.things import KINSHIP
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.projection import cloud_of
+from nodes.perception_node.projection import cloud_of, fits
 
 INTRINSICS = np.array([[100.0, 0.0, 2.0], [0.0, 100.0, 1.0], [0.0, 0.0, 1.0]])
 
@@ -25,3 +25,22 @@ def test_wrong_intrinsics_are_told(bad):
 def test_colours_of_another_size_are_told():
     with pytest.raises(ValueError, match="colours"):
         cloud_of(np.ones((2, 2), np.float32), np.zeros((3, 2, 3), np.uint8), INTRINSICS)
+
+
+@pytest.mark.parametrize(
+    ("k", "width", "height", "fit"),
+    [
+        ((525.0, 525.0, 319.5, 239.5), 640, 480, True),
+        ((525.0, 525.0, 319.5, 239.5), 1280, 960, False),
+        ((525.0, 525.0, 319.5, 239.5), 320, 240, False),
+        ((525.0, 525.0, 319.5, 239.5), 4000, 3000, False),
+        ((-525.0, 525.0, 319.5, 239.5), 640, 480, False),
+        ((525.0, 0.5, 319.5, 239.5), 640, 480, False),
+        ((525.0, 525.0, 319.5, np.nan), 640, 480, False),
+    ],
+)
+def test_the_intrinsics_of_another_picture_do_not_fit(k, width, height, fit):
+    fx, fy, cx, cy = k
+    intrinsics = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+    assert fits(intrinsics, width, height) is fit
+    assert not fits(intrinsics.T, width, height)

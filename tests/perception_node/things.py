@@ -17,7 +17,9 @@ from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
 from schemas.perception import Observation
 
-CONFIG = TrackingConfig(confirm_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6)
+CONFIG = TrackingConfig(
+    confirm_looks=3, clear_looks=3, rest_looks=2, nudge_looks=5, gone_looks=4, odd_looks=6
+)
 SIZES: dict[str, Size] = {
     "Cup": (0.08, 0.08, 0.1),
     "Bottle": (0.07, 0.07, 0.28),
@@ -60,9 +62,10 @@ def entity(
     size_m: Size | None = None,
     *,
     source: Source = "operator",
+    confidence: float | None = None,
     **more,
 ) -> Entity:
-    said = Provenance(commit=1, stamp_ns=1, source=source)
+    said = Provenance(commit=1, stamp_ns=1, source=source, confidence=confidence)
     return Entity(
         name=name,
         class_=class_,
@@ -107,12 +110,7 @@ class Table:
     def _sight(self, pose: Pose, size_m: Size) -> Sight:
         if self.hidden:
             return "hidden"
-        filling = (
-            math.dist(pose.position_m, thing.pose.position_m) < max(size_m[:2]) / 2
-            and all(own > 0.5 * wanted for own, wanted in zip(thing.size_m, size_m, strict=True))
-            for thing in self.things
-        )
-        return "filled" if any(filling) else "open"
+        return "filled" if any(_fills(thing, pose, size_m) for thing in self.things) else "open"
 
     def _obey(self, command: Command) -> None:
         assert command.source == "perception"
@@ -122,7 +120,14 @@ class Table:
                 assert command.name not in self.entities
                 assert command.at is not None
                 pose = Pose(position_m=command.at, orientation_wxyz=command.orientation)
-                made = entity(command.name, command.class_, pose, command.size, source="perception")
+                made = entity(
+                    command.name,
+                    command.class_,
+                    pose,
+                    command.size,
+                    source="perception",
+                    confidence=command.confidence,
+                )
                 self.entities[command.name] = structs.replace(made, preferred_reference=command.ref)
             case Remove():
                 for name in command.names:
@@ -145,3 +150,13 @@ class Table:
             preferred_reference=command.ref or old.preferred_reference,
             conflict=conflict,
         )
+
+
+def _fills(thing: Observation, pose: Pose, size_m: Size) -> bool:
+    """Whether a thing that is not turned is where another would stand, and not much smaller."""
+    (x, y, z), (u, v, w) = thing.pose.position_m, pose.position_m
+    there = math.dist((x, y, z), (u, v, w)) < max(size_m[:2]) / 2
+    inside = abs(x - u) < thing.size_m[0] / 2 and abs(y - v) < thing.size_m[1] / 2 and z == w
+    return (there or inside) and all(
+        own > 0.5 * wanted for own, wanted in zip(thing.size_m, size_m, strict=True)
+    )

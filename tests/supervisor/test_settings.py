@@ -37,3 +37,11 @@ def test_settings_survive_the_file_and_are_checked():
     assert codec.decode(codec.encode_json(chosen), Settings) == chosen
     with pytest.raises(errors.BadRequest, match="angle_threshold_deg"):
         codec.decode(codec.encode_json(settings(angle_threshold_deg=-1.0)), Settings)
+
+
+def test_perception_does_not_look_at_what_the_map_says_itself():
+    for truth in ("map", "scene"):
+        with pytest.raises(ValueError, match=f"--truth {truth} .* add --truth perceived, or --camera-hz 0"):
+            settings(perception=True, truth=truth, camera_hz=5.0)
+        assert settings(perception=True, truth=truth).perception  # frames of other cameras
+    assert settings(perception=True, truth="perceived", camera_hz=5.0).perception

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from nodes import map_view
 from nodes.coordinator.class_names import ClassNames
 from schemas import errors
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity
 
 
-class MapView:
-    """The entities after commit `seq`, and the classes."""
+class MapView(map_view.MapView):
+    """Besides the entities the classes, and whether another knowledge base may know less."""
 
     def __init__(self) -> None:
+        super().__init__()
+        self.seq = 0  # an empty map until a snapshot says more
         self.classes = ClassNames()
-        self.entities: dict[str, Entity] = {}
-        self.seq = 0
         self.doubted = False
 
     def entity(self, name: str) -> Entity:
@@ -36,14 +37,8 @@ class MapView:
         """Take over a snapshot, unless it is older than what is known and not doubted."""
         if snapshot.seq >= self.seq or self.doubted:
             self.doubted = False
-            self.seq = snapshot.seq
-            self.entities = {entity.name: entity for entity in snapshot.entities}
+            super().begin(snapshot)
 
     def take(self, commit: Commit) -> bool:
         """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
-        if commit.seq == self.seq + 1:
-            self.seq = commit.seq
-            for gone in commit.removed:
-                self.entities.pop(gone.name, None)
-            self.entities.update({entity.name: entity for entity in commit.changed})
-        return commit.seq <= self.seq and not self.doubted
+        return super().take(commit) and not self.doubted

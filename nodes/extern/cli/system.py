@@ -62,7 +62,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--models", type=_path, default=None, help="Folder of your own models: chair.glb for chair."
     )
-    @click.option("--camera-hz", type=float, default=0.0, metavar="HZ", help="Publish the cameras' pictures.")
+    @click.option(
+        "--camera-hz",
+        type=float,
+        default=None,
+        metavar="HZ",
+        help="Publish the cameras' pictures. Default: not at all, 5 with --perception.",
+    )
     @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
     @click.option("--camera-noise", is_flag=True, help="With the noise of a Kinect's depth.")
     @click.option("--perception", is_flag=True, help="Keep the map by what the cameras see.")
@@ -138,8 +144,8 @@ def node(name: str, settings: Settings) -> None:
 def _settings(
     *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
-    window: bool, models: Path | None, camera_hz: float, camera_size: tuple[int, int], camera_noise: bool,
-    perception: bool, when_gone: str, no_sim: bool, no_record: bool,
+    window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
+    camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -163,7 +169,7 @@ def _settings(
         "connect": connect,
         "window": window,
         "models": None if models is None else _folder(models),
-        "camera_hz": camera_hz or (_PERCEPTION_HZ if perception else 0.0),
+        "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
         "camera_size": camera_size,
         "camera_noise": camera_noise,
         "perception": perception,

@@ -10,7 +10,7 @@ from msgspec import Struct
 from PIL import Image
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.projection import cloud_of
+from nodes.perception_node.projection import cloud_of, fits
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
@@ -62,6 +62,12 @@ def read_pictures(depth: Path, color: Path | None, lens: Lens) -> Cloud:
             (h, w), (height, width) = colors.shape[:2], depth_m.shape
             raise ValueError(f"colour is {w} x {h} pixels, depth {width} x {height}")
     intrinsics = np.array([[lens.fx, 0, lens.cx + 0.5], [0, lens.fy, lens.cy + 0.5], [0, 0, 1]])
+    height, width = depth_m.shape
+    if not fits(intrinsics, width, height):
+        raise ValueError(
+            f"a lens of fx {lens.fx:g} fy {lens.fy:g} cx {lens.cx:g} cy {lens.cy:g} does not fit a picture of"
+            f" {width} x {height} pixels"
+        )
     pose = None if lens.map_from_camera is None else np.reshape(lens.map_from_camera, (4, 4))
     return cloud_of(depth_m, colors, intrinsics, pose)
 

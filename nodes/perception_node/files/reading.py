@@ -5,14 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
-
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.cloud import FEWEST_POINTS, Cloud
 from nodes.perception_node.files import pcd, pictures, ply
 from schemas.errors import BadFile, BadRequest
-
-FEWEST_POINTS = 10
-"""Less is no cloud in which anything could be found."""
 
 _DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
 _PICTURES = (".png", ".tif", ".tiff")
@@ -53,12 +48,12 @@ def read_cloud(path: Path) -> Cloud:
 
 def checked(cloud: Cloud, path: Path) -> Cloud:
     """The cloud itself. Raises BadFile for one in which nothing could be found."""
-    points = cloud.points_camera
-    seen = int(np.count_nonzero(points[..., 2] > 0))
-    if points.size == 0:
+    if cloud.points_camera.size == 0:
         raise BadFile(f"{path} is empty: it has no points")
-    if seen < FEWEST_POINTS:
-        raise BadFile(f"{path} has {seen} points in front of the camera; at least {FEWEST_POINTS} are needed")
+    if cloud.measured < FEWEST_POINTS:
+        raise BadFile(
+            f"{path} has {cloud.measured} points in front of the camera; at least {FEWEST_POINTS} are needed"
+        )
     return cloud
 
 

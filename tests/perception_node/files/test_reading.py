@@ -92,6 +92,13 @@ def test_bad_intrinsics_are_refused(tmp_path, content):
         list(read_frames((rgb, depth), lens))
 
 
+def test_the_lens_of_another_camera_is_told(tmp_path):
+    rgb, depth, lens = write_pictures(tmp_path)
+    lens.write_text(json.dumps({**LENS, "cx": 319.5}))
+    with pytest.raises(BadFile, match=r"a lens of .* cx 319\.5 .* does not fit a picture of 8 x 6 pixels"):
+        list(read_frames((rgb, depth), lens))
+
+
 def test_what_is_no_cloud_is_refused_in_one_line(tmp_path):
     whole = pcd("binary_compressed")
     cases = {
