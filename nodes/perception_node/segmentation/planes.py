@@ -79,9 +79,9 @@ def find_planes(
         if count < max(_FEWEST_CELLS, share * everything):
             break
         free &= ~on
-        piece = _largest_piece(on)
-        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
         kind = _kind(normal, offset, map_from_camera, first=not planes)
+        piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
+        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
         least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
         if kind is None or (planes and sides[1] < least):
             continue

@@ -27,6 +27,7 @@ _KINDS = tuple(
     for name, kind in MODELS.items()
     if max(kind.size_m) <= _BIGGEST_M and sorted(kind.size_m)[1] >= _SMALLEST_M
 )
+_HALF_TABLE_M = (0.45, 1.2)
 _SCREENED = 0.2  # of the piles
 _FAULTLESS = 0.2  # of the piles are seen without the faults of a Kinect
 _PLAIN = 0.4  # of the things are mere boxes and cylinders: packets and tins
@@ -54,10 +55,11 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     screened = rng.random() < _SCREENED
     if screened:
         models[:2] = _long_and_narrow(paint, rng)
-    scene = Tabletop(models)
+    x, y = rng.uniform(*_HALF_TABLE_M, 2).tolist()
+    scene = Tabletop(models, (x, y))
     view = _view(rng)
     eye_m = view.map_from_camera[:2, 3]
-    area = rng.uniform(0.15, 0.45)
+    area = rng.uniform(0.15, min(0.45, x, y))
     if screened:
         scene.screen(0, 1, eye_m, rng)
     for thing in range(2 if screened else 0, len(models)):
