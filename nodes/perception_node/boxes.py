@@ -57,8 +57,8 @@ def best_yaw(points: Numbers) -> float:
 
 def _areas(xy: Numbers, yaws_rad: Numbers) -> Numbers:
     c, s = np.cos(yaws_rad), np.sin(yaws_rad)
-    along, across = xy @ np.array([c, s]), xy @ np.array([-s, c])
-    return np.asarray(np.ptp(along, axis=0) * np.ptp(across, axis=0))
+    along, across = np.column_stack([c, s]) @ xy.T, np.column_stack([-s, c]) @ xy.T
+    return np.asarray(np.ptp(along, axis=1) * np.ptp(across, axis=1))
 
 
 def box_around(points: Numbers, yaw_rad: float, bottom_m: float) -> Box:

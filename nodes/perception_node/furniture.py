@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
+from scipy.spatial import ConvexHull
 
 from nodes.perception_node.cloud import Floats
 from nodes.perception_node.segmentation import Segmentation
@@ -16,9 +16,7 @@ _ROOM_M = 2.2
 """A wall is higher or wider, as far as it is seen."""
 
 _NEAR_M = 0.03
-_LOW_M = 0.12
-_FEWEST = 60
-_OVER_M = 0.06
+_BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
@@ -39,43 +37,35 @@ def with_furniture(
         if plane.kind == "support" or (plane.kind == "wall" and _stands_free(points_map, planes == number))
     ]
     boxes = [_box(points_map[::_EVERY, ::_EVERY][planes[::_EVERY, ::_EVERY] == number]) for number in sides]
-    low_tops = [n for n in range(len(boxes)) if any(_lies_low_on(boxes[n], box) for box in boxes)]
-    for n in low_tops:
-        parts, _ = ndimage.label(planes == sides[n])
-        few = np.bincount(parts.ravel()) < _FEWEST
-        own = np.where(few[parts], 0, parts)
-        labels = np.where(own > 0, own + labels.max(initial=0), labels).astype(np.int32)
-    tops = [n for n in range(len(boxes)) if n not in low_tops]
     first = int(labels.max(initial=0)) + 1
-    body = [first + n for n in _touching([boxes[n] for n in tops])]
-    for n, own_label in zip(tops, body, strict=True):
-        labels[planes == sides[n]] = own_label
+    body = [first + n for n in _touching(boxes)]
+    for n, own_label in zip(sides, body, strict=True):
+        labels[planes == n] = own_label
     return labels, frozenset(body)
-
-
-def _lies_low_on(top: Corners, other: Corners) -> bool:
-    """Whether one level plane is so little above another that it is of low things that lie there."""
-    (low, high), (lowest, highest) = top, other
-    inside = (low[:2] > lowest[:2] - _OVER_M).all() and (high[:2] < highest[:2] + _OVER_M).all()
-    return bool(inside and 0.0 < (low + high - lowest - highest)[2] / 2 < _LOW_M)
 
 
 def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
     """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
-    boxes = [_box(np.concatenate([segment.points for segment in group])) for group in groups]
+    clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
+    boxes = [_box(points) for points in clouds]
     tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
     joined = {n: [n] for n in range(len(groups))}
-    for n, (lowest, highest) in enumerate(boxes):
+    for n, (_, highest) in enumerate(boxes):
         if n in tops:
             continue
-        middle = (lowest + highest)[:2] / 2
         for top in tops:
-            low, high = boxes[top]
-            below = _HANGING * high[2] < highest[2] < high[2] + 0.5 * _NEAR_M
-            if below and (middle > low[:2] - _OVER_M).all() and (middle < high[:2] + _OVER_M).all():
+            high = boxes[top][1][2]
+            reaches = _HANGING * high < highest[2] < high + 0.5 * _NEAR_M
+            if reaches and _share_beneath(clouds[n], clouds[top]) > _BENEATH:
                 joined[top] += joined.pop(n)
                 break
     return list(joined.values())
+
+
+def _share_beneath(points: Floats, top: Floats) -> float:
+    """How much of some points (N, 3) is within the hull of those of a top (M, 3), as seen from above."""
+    sides = ConvexHull(top[:, :2], qhull_options="QJ").equations  # a front alone is a line
+    return float((points[:, :2] @ sides[:, :2].T + sides[:, 2] < _NEAR_M).all(axis=1).mean())
 
 
 Corners = tuple[NDArray[np.float32], NDArray[np.float32]]

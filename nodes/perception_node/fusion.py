@@ -3,31 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from nodes.perception_node.sights import Sight
 
 _PROBES = 300
 _SAME_SHARE = 0.5
 _FEWEST_SEEN = 12
+_LARGE_SHARE = 0.2
 
 Member = tuple[int, int]
 """The number of a sight, and that of a segment in its `segments`."""
 
 
 def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
-    """Group segments by the thing they show.
+    """Group segments by the thing they show."""
+    members, most, many = shown_by_others(sights)
+    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
+    same = (most & many) | (most & most.T)  # few points may lie where two things touch
+    same &= carrier == carrier[:, None]  # what is flat looks like its table to another camera
+    return _groups(same | same.T, members)
 
-    The points of a segment are looked up in the other pictures: where another camera sees them too, its label
-    says what it took them for. Clouds without intrinsics or pose see nothing of what others do.
+
+class Shown(NamedTuple):
+    """What other cameras take segments for.
+
+    `most`, `many`: (M, M) whether most of the points of one that another camera sees, and a large share of
+    all its points, are of another segment there.
+    """
+
+    members: list[Member]
+    most: NDArray[np.bool_]
+    many: NDArray[np.bool_]
+
+
+def shown_by_others(sights: Sequence[Sight]) -> Shown:
+    """Look the points of each segment up in the other pictures.
+
+    Where another camera sees them too, its label says what it took them for. Clouds without intrinsics or
+    pose see nothing of what others do.
     """
     members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
     row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
-    votes = np.zeros((len(members), len(members)))
-    shown = np.ones((len(members), len(members)))
-    views = np.array([view for view, _ in members], dtype=int)
+    most, many = np.zeros((2, len(members), len(members)), bool)
     for at, (view, n) in enumerate(members):
         points = sights[view].segments[n].points
         probes = points[:: max(1, len(points) // _PROBES)]
@@ -35,14 +57,12 @@ def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
             if other == view:
                 continue
             hits = _labels_of(probes, sight)
-            shown[at, views == other] = max(1, len(hits))
             for label, count in zip(*np.unique(hits[hits > 0], return_counts=True), strict=True):
-                if (other, int(label)) in row:
-                    votes[at, row[other, int(label)]] = count
-    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
-    same = (votes > _SAME_SHARE * shown) & (votes >= _FEWEST_SEEN)
-    same &= carrier == carrier[:, None]  # what is flat looks like its table to another camera
-    return _groups(same | same.T, members)
+                there = row.get((other, int(label)))
+                if there is not None and count >= _FEWEST_SEEN:
+                    most[at, there] = count > _SAME_SHARE * len(hits)
+                    many[at, there] = count > _LARGE_SHARE * len(probes)
+    return Shown(members, most, many)
 
 
 def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
@@ -64,7 +84,5 @@ def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
 
 def _groups(same: NDArray[np.bool_], members: Sequence[Member]) -> list[list[Member]]:
     """The connected components of a symmetrical relation (N, N)."""
-    root = np.arange(len(members))
-    for a, b in np.argwhere(same):
-        root[root == root[a]] = root[b]
-    return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in np.unique(root)]
+    count, root = connected_components(same, directed=False)
+    return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in range(count)]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.disputes import settled
 from nodes.perception_node.furniture import with_what_hangs_below
 from nodes.perception_node.fusion import Member, fuse
 from nodes.perception_node.recognition.features import features_of
@@ -52,6 +53,7 @@ def look(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
 
 def look_at(sights: Sequence[Sight], learnt: Learnt) -> Look:
     """The same for clouds that were taken apart already."""
+    sights = settled(sights)
     supports = _supports(sights)
     groups = groups_in(sights)
     parts, chances, members = put_together(
@@ -81,6 +83,7 @@ def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
 
 def things_in(sights: Sequence[Sight]) -> tuple[list[Thing], tuple[NDArray[np.int32], ...]]:
     """What all sights together show, and for each (H, W) whose a pixel is, counted from 1, 0 for none."""
+    sights = settled(sights)
     groups, supports = groups_in(sights), _supports(sights)
     return [_thing(sights, group, supports) for group in groups], _labels(sights, groups)
 

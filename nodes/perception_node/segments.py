@@ -54,7 +54,7 @@ def cut_out(
 ) -> list[Segment]:
     """The segments of one labelled view: `points_map` (H, W, 3), `labels` (H, W) with 0 for background."""
     pixels = np.flatnonzero((labels.ravel() > 0) & np.isfinite(points_map[..., 2]).ravel())
-    owner = labels.ravel()[pixels]
+    owner = labels.ravel()[pixels].astype(np.uint16)  # which is sorted by counting
     order = np.argsort(owner, kind="stable")
     pixels, owner = pixels[order], owner[order]
     at_edge = _labels_at_edge(labels) if cloud.organised else frozenset()

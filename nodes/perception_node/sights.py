@@ -12,6 +12,8 @@ from nodes.perception_node.furniture import with_furniture
 from nodes.perception_node.segmentation import Plane, Segmentation, segment
 from nodes.perception_node.segments import Segment, cut_out, map_points
 
+_EVERY = 4  # pixels are enough to tell how high a plane is
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -20,7 +22,8 @@ class Sight:
     `map_from_camera`: (4, 4); where nobody knows it, the largest plane is taken for the map's floor.
     `points`: (H, W, 3), map frame [m]. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on
     which others may stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of
-    horizontal planes.
+    horizontal planes. `same`: (N, N) how likely segments n + 1 and m + 1 are one all the same, 0 where nobody
+    knows.
     """
 
     cloud: Cloud
@@ -30,6 +33,7 @@ class Sight:
     carriers: frozenset[int]
     planes: NDArray[np.int32]
     supports_m: tuple[float, ...]
+    same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
 
 
@@ -42,7 +46,7 @@ def see(cloud: Cloud) -> Sight:
     if cloud.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
         labels, carriers = with_furniture(segmentation, points)
     heights = _heights(segmentation, points)
-    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights)
+    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
     return labelled(bare, labels, carriers)
 
 
@@ -71,5 +75,6 @@ def _heights(segmentation: Segmentation, points: Floats) -> tuple[float, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
-    heights = [points[..., 2][segmentation.plane_labels == n] for n in level]
+    z, planes = (of[::_EVERY, ::_EVERY] for of in (points[..., 2], segmentation.plane_labels))
+    heights = [z[planes == n] for n in level]
     return tuple(float(np.median(height)) for height in heights if len(height))

@@ -13,10 +13,10 @@ from nodes.perception_node.boxes import Box, Numbers, best_yaw, box_around
 from nodes.perception_node.cloud import Floats
 from nodes.perception_node.segments import Segment
 
-_CELLS_ALONG = 40
+_CELLS_ALONG, _MOST_CELLS = 40, 150
 _CELL_M = (0.004, 0.02)
 _CROWDED = 4.0
-_GAP_CELLS, _MOST_GAPS = 3, 100
+_GAP_CELLS = 3
 _STRAY = 0.06
 _AROUND = np.ones((3, 3, 3))
 _BELOW_M = 0.03
@@ -82,32 +82,40 @@ def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
 
 def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, Numbers | None]:
     """The mean point and colour of each occupied cube; lonely points go where others crowd."""
-    points, colors = _without_strays(points, colors)
-    low = points.min(axis=0)
-    edge = _edge_m(points)
-    key = ((points - low) / edge).astype(np.int64) @ np.array([1 << 40, 1 << 20, 1])
-    _, cell, counts = np.unique(key, return_inverse=True, return_counts=True)
-    keep = counts > (1 if counts.mean() > _CROWDED else 0)
-    means = [np.bincount(cell, points[:, axis])[keep] / counts[keep] for axis in range(3)]
-    if colors is None:
-        return np.stack(means, axis=1), None
-    shade = [np.bincount(cell, colors[:, channel])[keep] / (255.0 * counts[keep]) for channel in range(3)]
-    return np.stack(means, axis=1), np.stack(shade, axis=1)
+    cell, counts, far = _cubes(points)
+    if far.any():
+        keep = ~far[cell]
+        points, colors = points[keep], None if colors is None else colors[keep]
+        cell, counts, _ = _cubes(points)
+    crowded = counts > (1 if counts.mean() > _CROWDED else 0)
+
+    def means(values: NDArray[np.generic]) -> Numbers:
+        sums = [np.bincount(cell, column)[crowded] for column in values.T]
+        return np.stack(sums, axis=1) / counts[crowded, None]
+
+    return means(points), None if colors is None else means(colors) / 255.0
 
 
-def _without_strays(
-    points: Floats, colors: NDArray[np.uint8] | None
-) -> tuple[Floats, NDArray[np.uint8] | None]:
-    """Without the few points far from all others: a thing's outline holds some of what is behind it."""
-    edge = max(_GAP_CELLS * _edge_m(points), float(np.ptp(points, axis=0).max()) / _MOST_GAPS)
-    place = ((points - points.min(axis=0)) / edge).astype(np.int64)
-    full = np.zeros(place.max(axis=0) + 1, bool)
-    full[tuple(place.T)] = True
-    cluster = ndimage.label(full, _AROUND)[0][tuple(place.T)]
-    sizes = np.bincount(cluster)
-    keep = sizes[cluster] >= min(_STRAY * len(points), sizes.max())
-    return points[keep], None if colors is None else colors[keep]
+def _cubes(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """(N,) the number of each point's cube, (C,) how many each holds, and which are far from all others.
 
-
-def _edge_m(points: Floats) -> float:
-    return float(np.clip(np.ptp(points, axis=0).max() / _CELLS_ALONG, *_CELL_M))
+    A thing's outline holds some of what is behind it: these few points are far from the thing.
+    """
+    corners = np.ascontiguousarray(points.T)  # a minimum over long rows is faster
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    longest = (high - low).max()
+    edge = max(np.clip(longest / _CELLS_ALONG, *_CELL_M), longest / _MOST_CELLS)
+    place = ((corners - low[:, None]) / edge).astype(np.int64)
+    shape = place.max(axis=1) + 1
+    key = (place[0] * shape[1] + place[1]) * shape[2] + place[2]
+    filled = np.bincount(key, minlength=int(shape.prod()))
+    used = np.flatnonzero(filled)
+    number = np.zeros(len(filled), np.int64)
+    number[used] = np.arange(len(used))
+    counts = filled[used]
+    coarse = tuple(of // _GAP_CELLS for of in np.unravel_index(used, shape))
+    full = np.zeros([int(of.max()) + 1 for of in coarse], bool)
+    full[coarse] = True
+    cluster = ndimage.label(full, _AROUND)[0][coarse]
+    sizes = np.bincount(cluster, counts)
+    return number[key], counts, sizes[cluster] < min(_STRAY * len(points), sizes.max())

@@ -23,6 +23,7 @@ HANGING = frozenset(_HANGING.split())
 SMALL_M = 0.5
 _ODD = 0.6
 _ODD_SHARE = 0.08
+_USUAL = 0.6  # of the tables are about as high as tables are, and desks as desks
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
 
@@ -105,11 +106,13 @@ def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
 def table_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
     """A table and these things on it; those that find no room are left out."""
     area = (float(rng.uniform(0.7, 1.0)), float(rng.uniform(1.0, 1.5)))
-    height = float(rng.uniform(0.5, 0.85))
+    kind = str(rng.choice(CARRIERS))
+    height = float(rng.uniform(0.5, 0.9))
+    if rng.random() < _USUAL:
+        height = MODELS[kind].size_m[2] * math.exp(rng.normal(0.0, 0.05))
     sizes = [varied_size(kind, rng) for kind in kinds]
     crowded = rng.random() < 0.5
     gap = float(rng.uniform(0.001, 0.02)) if crowded else float(rng.uniform(0.03, 0.08))
-    kind = str(rng.choice(CARRIERS))
     table = Item("table", kind, (*area, height), varied_colour(kind, rng), (0.0, 0.0, 0.0), 0.0)
     return [
         table,

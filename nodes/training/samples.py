@@ -26,7 +26,7 @@ from schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40
-_FOUND = 6
+_FOUND = 2
 _CARRIER_M = 0.45
 _UNIT = np.ones(3)
 NOTHING = ""
@@ -117,7 +117,9 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     labels = np.where(out, owner, 0).astype(np.int32)
     labels[(np.bincount(labels.ravel(), minlength=len(bodies) + 1) < _FEWEST)[labels]] = 0
     carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)
-    bare = Sight(cloud, pose, points, labels, carriers, labels, tuple(sorted({0.0, *bottoms.tolist()})))
+    heights = tuple(sorted({0.0, *bottoms.tolist()}))
+    undisputed = np.zeros((0, 0), np.float32)
+    bare = Sight(cloud, pose, points, labels, carriers, labels, heights, undisputed)
     return labelled(bare, labels, carriers)
 
 

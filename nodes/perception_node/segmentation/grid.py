@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,8 @@ Mask = NDArray[np.bool_]
 WIDTH = 320
 """About how many cells there are across. The pixels of a cell are averaged, which halves a Kinect's noise."""
 
+_BRIGHTEST = np.float32(3 * 255)
+_DARK = 60.0  # colours of what is darker are mostly noise
 _SAME_SURFACE = 0.015  # of the distance: pixels of one cell that lie deeper belong to what is behind
 _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
@@ -26,10 +29,12 @@ class Grid:
     """Cells of the working picture, (h, w), `step` pixels wide and high.
 
     `points`: (h, w, 3), camera frame [m], NaN where nothing was seen: of each cell the nearest surface.
-    `source`: the cloud's points (H, W, 3).
+    `shades`: (h, w, 3) see `shades_of`; NaN where the camera sees no colours. `source`: the cloud's points
+    (H, W, 3).
     """
 
     points: Floats
+    shades: Floats
     source: Floats
     step: int
 
@@ -40,25 +45,49 @@ def grid_of(cloud: Cloud) -> Grid:
     step = max(1, round(source.shape[1] / WIDTH))
     if step == 1:
         points = np.where(source[..., 2:] > 0, source, np.float32(np.nan))
-        return Grid(points, source, step)
-    return Grid(_averaged(source, step), source, step)
-
-
-def _averaged(source: Floats, step: int) -> Floats:
-    """Cells as the mean of those of their points (at most four) that lie on the nearest surface."""
-    height, width = (-(-side // step) for side in source.shape[:2])
-    corners = [source[r::step, c::step] for r in (0, step // 2) for c in (0, step // 2)]
-    planes = np.full((4, 3, height, width), np.nan, np.float32)
-    for corner, plane in zip(corners, planes, strict=True):
-        plane[:, : corner.shape[0], : corner.shape[1]] = np.moveaxis(corner, -1, 0)
+        return Grid(points, _shades(cloud, points.shape, lambda colors: colors), source, step)
+    planes = _corners(source, step)
     z = planes[:, 2]
     nearest = np.fmin(np.fmin(z[0], z[1]), np.fmin(z[2], z[3]))
     nearest[~(nearest > 0)] = np.nan
     front = z <= nearest * np.float32(1 + _SAME_SURFACE)  # NaN is not
-    sums = np.where(front[:, None], planes, np.float32(0)).sum(axis=0)
     count = front.sum(axis=0, dtype=np.float32)
     count[count == 0] = np.nan
-    return np.ascontiguousarray(np.moveaxis(sums / count, 0, -1))
+
+    def averaged(corners: Floats) -> Floats:
+        """Cells as the mean of those of their pixels (at most four) that show the nearest surface."""
+        sums = np.where(front[:, None], corners, np.float32(0)).sum(axis=0)
+        return np.ascontiguousarray(np.moveaxis(sums / count, 0, -1))
+
+    points = averaged(planes)
+    return Grid(points, _shades(cloud, points.shape, lambda c: averaged(_corners(c, step))), source, step)
+
+
+def _corners(picture: NDArray[Any], step: int) -> Floats:
+    """(4, 3, h, w) of a picture (H, W, 3): four pixels of each cell, NaN beyond the picture's edge."""
+    height, width = (-(-side // step) for side in picture.shape[:2])
+    corners = [picture[r::step, c::step] for r in (0, step // 2) for c in (0, step // 2)]
+    planes = np.full((4, 3, height, width), np.nan, np.float32)
+    for corner, plane in zip(corners, planes, strict=True):
+        plane[:, : corner.shape[0], : corner.shape[1]] = np.moveaxis(corner, -1, 0)
+    return planes
+
+
+def _shades(cloud: Cloud, shape: tuple[int, ...], reduce: Callable[[NDArray[Any]], NDArray[Any]]) -> Floats:
+    if cloud.colors is None:
+        return np.full(shape, np.nan, np.float32)
+    return shades_of(reduce(cloud.colors))
+
+
+def shades_of(colors: NDArray[Any]) -> Floats:
+    """Of rgb (..., 3) up to 255: brightness, red against green, and yellow against blue, in about [-1, 1].
+
+    The last two hardly change with the light.
+    """
+    red, green, blue = np.moveaxis(colors.astype(np.float32), -1, 0)
+    total = red + green + blue
+    light = total + np.float32(_DARK)
+    return np.stack([total / _BRIGHTEST, (red - green) / light, (total - 3 * blue) / light], axis=-1)
 
 
 def spread(grid: Grid, labels: Labels) -> Labels:

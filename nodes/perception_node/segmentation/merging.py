@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +18,33 @@ SURE_ENOUGH = 0.5
 _CERTAIN = 0.9  # pairs as sure as this need not wait for one another
 
 
-def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
-    """(P,) for each patch the number of its object, from 1. `of` is used up."""
+class Merged(NamedTuple):
+    """N objects out of P patches.
+
+    `number`: (P,) of each patch's object, from 1. `same`: (N, N) how likely two objects are one all the same,
+    0 where they were not compared.
+    """
+
+    number: NDArray[np.int32]
+    same: NDArray[np.float32]
+
+
+def merge(of: Statistics, judge: Judge) -> Merged:
+    """Put patches together; `of` is used up."""
     count = len(of.inside)
     may = candidates(of)
     score = np.zeros((count, count), np.float32)
     news = np.triu(may)
-    while news.any():
+    while count:
         a, b = np.nonzero(news)
-        score[a, b] = score[b, a] = judge(of, a, b)
+        if a.size:
+            score[a, b] = score[b, a] = judge(of, a, b)
+        pairs = _next(score)
+        if not pairs:
+            break
         news = np.zeros_like(may)
         grown = []
-        for keep, gone in _next(score):
+        for keep, gone in pairs:
             of.merge(keep, gone)
             may[keep] |= may[gone]
             may[:, keep] |= may[:, gone]
@@ -38,7 +54,8 @@ def merge(of: Statistics, judge: Judge) -> NDArray[np.int32]:
             grown.append(keep)
         news[grown] = may[grown]
         news &= ~(news.T & np.tri(count, dtype=bool))  # each pair once
-    return np.unique(of.owner, return_inverse=True)[1].astype(np.int32) + 1
+    left, number = np.unique(of.owner, return_inverse=True)
+    return Merged(number.astype(np.int32) + 1, score[np.ix_(left, left)])
 
 
 def _next(score: NDArray[np.float32]) -> list[tuple[int, int]]:

@@ -11,6 +11,7 @@ RADIUS = 2
 
 _GATE_M = 0.02  # deeper neighbours belong to something else
 _FEWEST = 6
+_SOME = 8  # every so many rows tell how far rays are from one another
 _REACH = np.arange(-RADIUS, RADIUS + 1, dtype=np.float32)
 _DOWN, _ACROSS = (offset.ravel() for offset in np.meshgrid(_REACH, _REACH, indexing="ij"))
 _ONE = np.ones_like(_DOWN)
@@ -25,13 +26,14 @@ def normals(points: Floats, where: Mask) -> Floats:
     """
     out = np.full(points.shape, np.nan, np.float32)
     row, column = np.nonzero(where)
-    z = np.pad(points[..., 2], RADIUS, constant_values=np.nan)
-    width = z.shape[1]
-    middle = (row + RADIUS) * width + column + RADIUS
-    window = z.ravel()[middle[:, None] + (_DOWN * width + _ACROSS).astype(np.int64)]  # (N, 25)
-    deep = z.ravel()[middle]
-    near = np.abs(window - deep[:, None]) < _GATE_M * np.maximum(1, deep**2)[:, None]  # NaN is not
-    inverse = np.where(near, 1 / window - (1 / deep)[:, None], np.float32(0))
+    nearness = np.pad(1 / points[..., 2], RADIUS, constant_values=np.nan)
+    width = nearness.shape[1]
+    middle = ((row + RADIUS) * width + column + RADIUS).astype(np.int32)
+    own = nearness.ravel()[middle]
+    inverse = nearness.ravel()[middle[:, None] + (_DOWN * width + _ACROSS).astype(np.int32)]  # (N, 25)
+    inverse -= own[:, None]
+    near = np.abs(inverse) < _GATE_M * np.maximum(1, own**2)[:, None]  # NaN is not
+    inverse[~near] = 0
     count, x, y, xx, yy, xy = (near.astype(np.float32) @ _MOMENTS).T
     q, xq, yq = (inverse @ _MOMENTS[:, :3]).T
     count = np.maximum(count, 1)
@@ -46,7 +48,7 @@ def normals(points: Floats, where: Mask) -> Floats:
     rays = points[..., :2] / points[..., 2:]
     slope_x, slope_y = across / _pitch(rays[..., 0], axis=1), down / _pitch(rays[..., 1], axis=0)
     ray_x, ray_y = rays[row, column].T
-    rest = 1 / deep + q - across * x - down * y - slope_x * ray_x - slope_y * ray_y
+    rest = own + q - across * x - down * y - slope_x * ray_x - slope_y * ray_y
     found = -np.stack([slope_x, slope_y, rest], axis=-1)
     found /= np.linalg.norm(found, axis=-1, keepdims=True)
     out[row[good], column[good]] = found[good]
@@ -55,6 +57,6 @@ def normals(points: Floats, where: Mask) -> Floats:
 
 def _pitch(rays: Floats, axis: int) -> np.float32:
     """From one cell's ray to the next: (h, w) along `axis`."""
-    steps = np.diff(rays, axis=axis)
+    steps = np.diff(rays[::_SOME] if axis else rays[:, ::_SOME], axis=axis)
     steps = steps[np.isfinite(steps) & (steps != 0)]
     return np.median(steps) if steps.size else np.float32(1)

@@ -18,10 +18,12 @@ NAMES = (
     *("low_small", "tall_small", "low_big", "tall_big", "small_on_big", "big_on_small", "levels"),
     *("tops_apart", "bottoms_apart"),
     *("side_both", "width_both", "tall_both", "filled", "footprint"),
+    *("brighter", "coloured", "brighter_there", "coloured_there", "mottled_small", "mottled_big"),
 )
 """The columns of `features`, in order. `small` and `big` are the two patches, by their cells."""
 
 _SUPPORT_M = 0.02
+_UNKNOWN = -1.0  # lower than any that is known, so that a tree can ask for it
 
 
 def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool_]:
@@ -82,8 +84,23 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
         *(sides.max(axis=1), sides.min(axis=1), high[:, 2] - low[:, 2]),
         (area_big + area_small) / np.maximum(np.prod(sides, axis=1), 1e-6),
         area_small / np.maximum(area_big, 1e-6),
+        *_colours(few, many, border),
     ]
     return np.stack(columns, axis=1).astype(np.float32)
+
+
+def _colours(few: s.Sums, many: s.Sums, border: s.Sums) -> list[s.Sums]:
+    """How unlike the colours are, as a whole and along the border, and how mixed each is; -1 if unknown."""
+    shades = [of[:, s.SHADE] / of[:, s.COUNT, None] for of in (few, many)]
+    turned = np.abs(shades[0] - shades[1])
+    mottled = [
+        np.sqrt(np.maximum(of[:, s.SHADES] / of[:, s.COUNT] - (shade[:, 1:] ** 2).sum(axis=1), 0))
+        for of, shade in zip((few, many), shades, strict=True)
+    ]
+    bends = np.where(border[:, s.BENDS] > 0, border[:, s.BENDS], np.nan)
+    there = [border[:, column] / bends for column in (s.BRIGHTER, s.COLOURED)]
+    known = (turned[:, 0], np.hypot(turned[:, 1], turned[:, 2]), *there, *mottled)
+    return [np.nan_to_num(column, nan=_UNKNOWN) for column in known]
 
 
 def _shape(sums: s.Sums) -> tuple[s.Sums, s.Sums, s.Sums]:

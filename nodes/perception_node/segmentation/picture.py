@@ -45,7 +45,11 @@ def as_picture(cloud: Cloud) -> tuple[Cloud, NDArray[np.int64]]:
     seen = depth <= nearest[target]
     picture = np.full((height, width, 3), np.nan, np.float32)
     picture.reshape(-1, 3)[target[seen]] = points[index[seen]]
-    return replace(cloud, points_camera=picture, colors=None), pixel
+    colors = None
+    if cloud.colors is not None:
+        colors = np.zeros((height, width, 3), np.uint8)
+        colors.reshape(-1, 3)[target[seen]] = cloud.colors.reshape(-1, 3)[index[seen]]
+    return replace(cloud, points_camera=picture, colors=colors), pixel
 
 
 def _pitch(rays: NDArray[np.float32]) -> float:

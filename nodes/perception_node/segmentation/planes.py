@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from nodes.perception_node.cloud import Transform
 from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 
-_SAMPLE = 2000  # points that vote
+_SAMPLE = 2000  # points that a plane is fitted to
+_VOTERS = 500
 _FEWEST_CELLS = 50
 _LEAST_AREA_M2 = 1e-5
 _TRIALS = 120
@@ -26,6 +30,9 @@ _LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or o
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
+_OVER = 0.3  # so much of it is over what is seen of the other, which it may hide itself
+_SMALLER = 0.7  # else it is a shelf above a shelf
+_TALLEST_M = 0.5
 
 
 @dataclass(frozen=True)
@@ -72,14 +79,50 @@ def find_planes(
         if count < max(_FEWEST_CELLS, share * everything):
             break
         free &= ~on
-        sides = _sides(points[on][:: max(1, count // _SAMPLE)], normal)
         kind = _kind(normal, offset, map_from_camera, first=not planes)
+        piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
+        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
         least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
         if kind is None or (planes and sides[1] < least):
             continue
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)
-    return tuple(planes), of_plane
+    if map_from_camera is None:
+        return tuple(planes), of_plane
+    tops = _tops_of_things(planes, of_plane, points, map_from_camera)
+    kept = [n for n in range(1, len(planes) + 1) if n not in tops]
+    number = np.zeros(len(planes) + 1, np.int32)
+    number[kept] = np.arange(1, len(kept) + 1)
+    return tuple(planes[n - 1] for n in kept), number[of_plane]
+
+
+def _tops_of_things(
+    planes: Sequence[Plane], of_plane: Labels, points: Floats, map_from_camera: Transform
+) -> set[int]:
+    """Numbers of the supports that lie on a larger one: they are the tops of what stands there."""
+    pose = map_from_camera.astype(np.float32)
+    boxes = {}
+    for number, plane in enumerate(planes, 1):
+        if plane.kind == "support":
+            own = points[of_plane == number][:: max(1, plane.points // _SAMPLE)]
+            boxes[number] = np.percentile(own @ pose[:3, :3].T + pose[:3, 3], (1, 99), axis=0)
+    found = set()
+    for top, other in permutations(boxes, 2):
+        (low, high), (lowest, highest) = boxes[top], boxes[other]
+        shared = np.clip(np.minimum(high, highest) - np.maximum(low, lowest), 0, None)[:2].prod()
+        over = shared > _OVER * (high - low)[:2].prod()
+        smaller = np.prod(planes[top - 1].sides_m) < _SMALLER * np.prod(planes[other - 1].sides_m)
+        if over and smaller and 0 < (low + high - lowest - highest)[2] / 2 < _TALLEST_M:
+            found.add(top)
+    return found
+
+
+def _largest_piece(on: Mask) -> Mask:
+    """The largest connected part: tops of several things may be level with one another, and are no table."""
+    parts, count = ndimage.label(on)
+    if count < 2:
+        return on
+    return np.asarray(parts == 1 + np.bincount(parts.ravel())[1:].argmax())
 
 
 def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats, np.float32]:
@@ -100,7 +143,8 @@ def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats,
     length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
     normals /= length[:, None]
     offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=1))
-    votes = (np.abs(voters @ normals.T - offsets) < thickness[:, None]).sum(axis=0)
+    off = np.abs(normals @ voters[:_VOTERS].T - offsets[:, None])
+    votes = np.count_nonzero(off < thickness[:_VOTERS], axis=1)
     normal, offset = normals[votes.argmax()], offsets[votes.argmax()]
     for _ in range(2):
         on = voters[np.abs(voters @ normal - offset) < thickness]

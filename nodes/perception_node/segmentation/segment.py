@@ -27,11 +27,13 @@ class Segmentation:
 
     `labels`: (H, W) the number of the object each point belongs to, from 1 without gaps, 0 for background.
     `planes`: the dominant planes. `plane_labels`: (H, W) the number of each point's plane, 0 for none.
+    `same`: (N, N) how likely objects n + 1 and m + 1 are one all the same, 0 where they were not compared.
     """
 
     labels: NDArray[np.int32]
     planes: tuple[Plane, ...]
     plane_labels: NDArray[np.int32]
+    same: NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -52,18 +54,19 @@ def segment(cloud: Cloud, learnt: Judge | None = None) -> Segmentation:
     """The planes and objects of a cloud, organised or not; `learnt` is what ships unless another is given."""
     if not (cloud.points_camera[..., 2] > 0).any():  # NaN is not
         nothing = np.zeros(cloud.points_camera.shape[:2], np.int32)
-        return Segmentation(nothing, (), nothing)
+        return Segmentation(nothing, (), nothing, np.zeros((0, 0), np.float32))
     if not cloud.organised:
         picture, pixel = as_picture(cloud)
         seen = segment(picture, learnt)
         labels, plane_labels = (
             np.append(of.ravel(), np.int32(0))[pixel][None, :] for of in (seen.labels, seen.plane_labels)
         )
-        return Segmentation(labels, seen.planes, plane_labels)
+        return Segmentation(labels, seen.planes, plane_labels, seen.same)
     parts = taken_apart(cloud)
-    objects = np.append(np.int32(0), merge(parts.statistics, learnt or shipped()))[parts.of_patch]
+    merged = merge(parts.statistics, learnt or shipped())
+    objects = np.append(np.int32(0), merged.number)[parts.of_patch]
     both = spread(parts.grid, np.where(objects > 0, objects, -parts.of_plane))
-    return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0))
+    return Segmentation(np.maximum(both, 0), parts.planes, np.maximum(-both, 0), merged.same)
 
 
 def taken_apart(cloud: Cloud) -> Parts:
@@ -77,7 +80,7 @@ def taken_apart(cloud: Cloud) -> Parts:
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
-    known = statistics(of_patch[window], points, surface, _upright(planes))
+    known = statistics(of_patch[window], points, surface, grid.shades[window], _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 
 

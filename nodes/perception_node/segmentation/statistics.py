@@ -13,14 +13,15 @@ Sums = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 # columns of `Statistics.inside`
-COUNT, POINT, SQUARES, NORMAL, HIDDEN = 0, slice(1, 4), slice(4, 10), slice(10, 13), 13
-INSIDE = 14
+COUNT, POINT, SQUARES, NORMAL, SHADE, SHADES = 0, slice(1, 4), slice(4, 10), slice(10, 13), slice(13, 16), 16
+HIDDEN = 17
+INSIDE = 18
 _FIRST, _SECOND = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
 
 # columns of `Statistics.between`, for the ordered pair (a, b)
 TOUCH, STEP, BEFORE, BENDS, BEND, CONCAVE, DEEP, CONVEX, LIKE, WIDE = range(10)
-SIGHT, BLOCKED, OPEN = range(10, 13)
-BETWEEN = 13
+SIGHT, BLOCKED, OPEN, BRIGHTER, COLOURED = range(10, 15)
+BETWEEN = 15
 
 _STEP_M = 0.007
 _SAME_SURFACE_M = 0.02
@@ -70,17 +71,22 @@ class Statistics:
         return Statistics(*(getattr(self, field.name).copy() for field in fields(self)))
 
 
-def statistics(labels: Labels, points: Floats, normals: Floats, upright: Upright) -> Statistics:
-    """Of patches `labels` (h, w), numbered from 1 without gaps."""
+def statistics(
+    labels: Labels, points: Floats, normals: Floats, shades: Floats, upright: Upright
+) -> Statistics:
+    """Of patches `labels` (h, w), numbered from 1 without gaps; `shades` as of `Grid`."""
     count = int(labels.max(initial=0))
     row, column = np.nonzero(labels)
-    order = np.argsort(labels[row, column], kind="stable")
+    owner = labels[row, column].astype(np.uint16)  # which is sorted by counting
+    order = np.argsort(owner, kind="stable")
     row, column = row[order], column[order]
-    starts = np.searchsorted(labels[row, column], np.arange(1, count + 1))
+    starts = np.searchsorted(owner[order], np.arange(1, count + 1))
     p, n = points[row, column], np.nan_to_num(normals[row, column])
     values = np.zeros((len(p), INSIDE))
     values[:, COUNT], values[:, POINT], values[:, NORMAL] = 1, p, n
     values[:, SQUARES] = p[:, _FIRST] * p[:, _SECOND]
+    values[:, SHADE] = shade = shades[row, column]
+    values[:, SHADES] = (shade[:, 1:] ** 2).sum(axis=1)
     placed = p @ upright.axes.T
     inside, low, high = (
         ufunc.reduceat(of, starts, axis=0).astype(np.float64) if count else np.zeros((0, of.shape[1]))
@@ -88,7 +94,7 @@ def statistics(labels: Labels, points: Floats, normals: Floats, upright: Upright
     )
     between = np.zeros((count, count, BETWEEN))
     _touching(between, labels, points)
-    _bending(between, labels, points, normals)
+    _bending(between, labels, points, normals, shades)
     _seen_between(between, labels, points, inside[:, POINT][:, 2])
     inside[:, HIDDEN] = _hidden(labels, points, count)
     return Statistics(inside, low, high, between, np.arange(count), upright.supports)
@@ -119,7 +125,7 @@ def _touching(between: Sums, labels: Labels, points: Floats) -> None:
             between[..., BEFORE] += sums.reshape(count, count)
 
 
-def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats) -> None:
+def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats, shades: Floats) -> None:
     """Cells four apart, which sees past rounded edges and narrow shadows."""
     for shift in ((0, 4), (4, 0), (3, 3), (3, -3)):
         a, b = shifted(labels, *shift)
@@ -130,6 +136,7 @@ def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats) -> 
         apart = q - p
         length = np.maximum(np.linalg.norm(apart, axis=-1), 1e-6)
         bend = ((n - m) * apart).sum(axis=-1) / length
+        turned = np.abs(np.subtract(*(view[where] for view in shifted(shades, *shift))))
         near = np.abs(apart[:, 2]) < _SAME_SURFACE_M * np.maximum(1, p[:, 2] ** 2)
         columns = {
             WIDE: np.ones(len(a)),
@@ -139,6 +146,8 @@ def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats) -> 
             DEEP: near & (bend < -_SINES[1]),
             CONVEX: near & (bend > _SINES[1]),
             LIKE: near * (m * n).sum(axis=-1),
+            BRIGHTER: near * turned[:, 0],
+            COLOURED: near * np.hypot(turned[:, 1], turned[:, 2]),
         }
         _add(between, a, b, columns)
 

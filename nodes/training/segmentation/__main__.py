@@ -16,7 +16,7 @@ from nodes.training.segmentation.teach import learn, lessons, made_up
 def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(prog="python -m nodes.training.segmentation", description=__doc__)
-    parser.add_argument("--piles", type=int, default=300, help="rendered scenes")
+    parser.add_argument("--piles", type=int, default=500, help="rendered scenes")
     parser.add_argument("--recorded", type=Path, metavar="DIR", help="PCD files with a field label")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=SHIPPED)

@@ -65,7 +65,8 @@ def _met(
         best, purity = share.argmax(axis=1), share.max(axis=1)
         one = (best[a] == best[b]) & (best[a] > 0)
         rows = features(known, a, b)
-        met.append(Rows(rows, one, purity[a] * purity[b]))
+        told = (best[a] > 0) | (best[b] > 0)  # what parts of the table are to one another is not asked
+        met.append(Rows(rows, one, purity[a] * purity[b] * told))
         return decide(rows, one).astype(np.float32)
 
     merge(of.statistics.copy(), judge)

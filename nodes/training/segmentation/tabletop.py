@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import product
 
 import mujoco
 import numpy as np
@@ -14,18 +15,26 @@ from nodes.sim_node.models.library import Model
 
 _HIGHEST_M = 0.42  # of a tower
 _PARKED_M = 20.0
+_HIGH_M, _LEG_M = 0.7, 0.06
+_WOOD = (0.7, 0.6, 0.5, 1.0)
 _STEP_M, _FINE_M = 0.02, 0.0005
 
 
 class Tabletop:
-    """A table of 2 x 2 m whose top is z = 0, and things that wait beside it."""
+    """A table whose top is z = 0, and things that wait beside it."""
 
-    def __init__(self, models: list[Model]) -> None:
+    def __init__(self, models: list[Model], half_m: tuple[float, float] = (1.0, 1.0)) -> None:
+        """`half_m`: half the table's extents along x and y."""
+        self._half_m = np.array(half_m)
         spec = mujoco.MjSpec()
         spec.worldbody.add_light(pos=[0.5, -1.0, 3.0])
-        spec.worldbody.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_BOX, size=[1.0, 1.0, 0.02], pos=[0, 0, -0.02], rgba=[0.7, 0.6, 0.5, 1]
-        )
+        x, y = half_m
+        leg = _LEG_M / 2
+        boxes = [((x, y, 0.02), (0.0, 0.0, -0.02))]
+        for at_x, at_y in product((leg - x, x - leg), (leg - y, y - leg)):
+            boxes.append(((leg, leg, _HIGH_M / 2), (at_x, at_y, -_HIGH_M / 2 - 0.02)))
+        for size, pos in boxes:
+            spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=size, pos=pos, rgba=_WOOD)
         for number, model in enumerate(models):
             body = spec.worldbody.add_body(pos=[_PARKED_M + number, 0, 1])
             body.add_freejoint()
@@ -77,7 +86,7 @@ class Tabletop:
     def _lower(self, thing: int, spot: NDArray[np.float64]) -> None:
         pose = self.data.qpos[7 * thing : 7 * thing + 7]
         pose[:2] = spot
-        on_table = abs(spot).max() < 1.0
+        on_table = bool((np.abs(spot) < self._half_m).all())
 
         def at(height: float) -> bool:
             pose[2] = height

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.segmentation.grid import grid_of, spread
+from nodes.perception_node.segmentation.grid import grid_of, shades_of, spread
 from tests.perception_node.segmentation.scenes import boxes_on_table
 
 
@@ -21,6 +21,27 @@ def test_cells_hold_the_nearest_surface():
     np.testing.assert_allclose(grid.points[5, 10], (0.5, 0.5, 1.0))
     np.testing.assert_allclose(grid.points[6, 11], (1.0, 1.0, 2.0))
     assert np.isnan(grid.points[7, 12]).all()
+
+
+def test_shades_do_not_change_with_the_light():
+    bright = np.array([[[200, 100, 50]]], np.uint8)
+    one, other = shades_of(bright)[0, 0], shades_of(bright // 2)[0, 0]
+    assert one[0] == pytest.approx(2 * other[0], rel=0.01)
+    np.testing.assert_allclose(one[1:], other[1:], atol=0.1)
+    assert (one[1:] > 0).all()
+    np.testing.assert_allclose(shades_of(np.array([0, 0, 0])), 0.0)
+
+
+def test_a_cell_has_the_colour_of_what_is_in_front():
+    points = np.ones((480, 640, 3), np.float32)
+    points[..., 2] = 2.0
+    points[10, 20, 2] = 1.0
+    colors = np.full((480, 640, 3), 100, np.uint8)
+    colors[10, 20] = (250, 0, 0)
+    grid = grid_of(Cloud(points, colors))
+    np.testing.assert_allclose(grid.shades[5, 10], shades_of(np.array([250, 0, 0])), atol=1e-6)
+    np.testing.assert_allclose(grid.shades[6, 10, 1:], 0.0, atol=1e-6)
+    assert np.isnan(grid_of(Cloud(points)).shades).all()
 
 
 @pytest.mark.parametrize("shape", [(480, 640), (481, 643), (240, 320), (2, 3), (600, 1300)])

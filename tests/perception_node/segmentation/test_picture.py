@@ -25,6 +25,15 @@ def test_the_pixels_of_a_shuffled_picture_are_found_again():
     np.testing.assert_array_equal(picture.points_camera[found_row, found_column], points[row, column])
 
 
+def test_colours_go_with_their_points():
+    points = SEEN.cloud.points_camera.reshape(-1, 3)
+    points = points[np.isfinite(points[:, 2])]
+    colors = np.random.default_rng(1).integers(0, 256, points.shape).astype(np.uint8)
+    picture, pixel = as_picture(Cloud(points[None], colors[None]))
+    shown = picture.points_camera.reshape(-1, 3)[pixel] == points
+    np.testing.assert_array_equal(picture.colors.reshape(-1, 3)[pixel][shown[:, 2]], colors[shown[:, 2]])
+
+
 def test_a_thinned_cloud_leaves_few_holes():
     points = SEEN.cloud.points_camera.reshape(-1, 3)
     points = points[np.isfinite(points[:, 2])]

@@ -41,6 +41,41 @@ def test_floor_support_and_wall_are_told_apart():
     assert (truth[of_plane == kinds["support"]] == 1).mean() > 0.95
 
 
+POSED = {"pose": camera_pose(eye=(0.0, -1.6, 1.9), target=(0.0, 0.0, 0.8)), "posed": True}
+TABLE = ((-0.6, -0.5, 0.70), (0.6, 0.5, 0.75))
+FLOOR = ((-3, -3, -0.1), (3, 3, 0.0))
+
+
+@pytest.mark.parametrize(
+    "things",
+    [
+        pytest.param((((-0.3, -0.25, 0.75), (0.15, 0.2, 1.05)),), id="one that is as large as a stool"),
+        pytest.param(
+            tuple(((x, y, 0.75), (x + 0.2, y + 0.2, 1.0)) for x in (-0.5, 0.3) for y in (-0.4, 0.2)),
+            id="several of one height",
+        ),
+    ],
+)
+def test_the_tops_of_what_stands_on_a_table_are_no_supports(things):
+    seen = boxes_on_table(TABLE, *things, **POSED, table=FLOOR)
+    planes, of_plane = find_planes(
+        grid_of(seen.cloud).points, seen.cloud.map_from_camera, np.random.default_rng(0)
+    )
+    assert sorted(plane.kind for plane in planes) == ["floor", "support"]
+    assert of_plane.max() == 2
+    support = 1 + [plane.kind for plane in planes].index("support")
+    assert (seen.truth[::2, ::2][of_plane == support] == 1).mean() > 0.9
+
+
+def test_a_shelf_above_a_shelf_is_a_support():
+    shelves = [((-0.5, 0.0, z - 0.02), (0.5, 0.4, z)) for z in (0.7, 1.1)]
+    seen = boxes_on_table(
+        *shelves, pose=camera_pose(eye=(0.0, -1.4, 1.6), target=(0.0, 0.2, 0.9)), posed=True, table=FLOOR
+    )
+    planes, _ = find_planes(grid_of(seen.cloud).points, seen.cloud.map_from_camera, np.random.default_rng(0))
+    assert sorted(plane.kind for plane in planes) == ["floor", "support", "support"]
+
+
 @pytest.mark.parametrize("points", [np.full((8, 8, 3), np.nan), np.ones((8, 8, 3)), np.zeros((40, 40, 3))])
 def test_no_plane_in_what_has_none(points):
     planes, of_plane = find_planes(points.astype(np.float32), None, np.random.default_rng(0))

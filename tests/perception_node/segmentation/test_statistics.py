@@ -20,7 +20,19 @@ UPRIGHT = s.Upright(np.eye(3), np.zeros(1))
 
 
 def of(labels):
-    return s.statistics(labels, POINTS, NORMALS, UPRIGHT)
+    return s.statistics(labels, POINTS, NORMALS, np.full_like(POINTS, np.nan), UPRIGHT)
+
+
+def test_colours_are_compared_where_there_are_any():
+    shades = np.zeros_like(POINTS)
+    shades[LABELS == 2] = (0.5, 0.3, 0.4)
+    known = s.statistics(LABELS, POINTS, NORMALS, shades, UPRIGHT)
+    first, second = np.array([0, 0, 0]), np.array([1, 2, 3])
+    rows = features(known, first, second)
+    coloured, there = NAMES.index("coloured"), NAMES.index("coloured_there")
+    np.testing.assert_allclose(rows[:, coloured], [0.5, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(rows[:, there], [0.5, -1.0, -1.0], atol=1e-6)
+    np.testing.assert_array_equal(features(of(LABELS), first, second)[:, [coloured, there]], -1.0)
 
 
 def test_counts_bounds_and_borders():
