@@ -19,6 +19,9 @@ import pytest
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
 
+# A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 _BIN = Path(sys.executable).parent
 _START_S = 90.0
 PATIENCE_S = 30.0
