@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import threading
 
 import numpy as np
@@ -195,7 +196,8 @@ def test_watch_shows_what_happens(system):
             return '"preferred_reference"' in text and "cup3  gone" in text
 
         until(announced, "watch shows a cup coming and going")
-    reading.join(timeout=10)
+        watching.send_signal(signal.SIGINT)
+        reading.join(timeout=10)  # before its end of the pipe is closed
     assert watching.wait(timeout=10) == 130
 
 
