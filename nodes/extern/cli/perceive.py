@@ -65,7 +65,8 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
 
 def _rows(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
     """A row for each object: what it is taken for, and where the whole of it stands."""
-    rows = table("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
+    columns = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
+    rows = table(*columns, fold=("class", "size [m]"))
     counts = {segment.label: segment.count for segment in sight.segments}
     for label, seen in sorted(told.items()):
         words = [str(label), "?", "", str(counts[label])]

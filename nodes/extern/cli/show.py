@@ -17,6 +17,7 @@ from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 
 _WIDE = 100_000
+_WORDY = ("class", "size [m]", "reference")
 
 
 def console() -> Console:
@@ -27,7 +28,7 @@ def console() -> Console:
 
 def entity_table(entities: Iterable[Entity]) -> Table:
     """One row an entity."""
-    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body")
+    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body", fold=_WORDY)
     for column in rows.columns[2:6]:
         column.justify = "right"
     for e in entities:
@@ -74,9 +75,9 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
 
 def status_table(status: SystemStatus) -> Table:
     """One row a node."""
-    rows = table("node", "state", "pid", "uptime", "heartbeat", "detail", "last error")
-    for column in rows.columns[5:]:
-        column.no_wrap = False
+    worries = ("last error",) if any(n.last_error for n in status.nodes) else ()
+    columns = ("node", "state", "pid", "uptime", "heartbeat", "detail", *worries)
+    rows = table(*columns, fold=("detail", *worries))
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
         rows.add(
@@ -86,7 +87,7 @@ def status_table(status: SystemStatus) -> Table:
             _duration(n.uptime_s),
             f"{n.heartbeat_age_s:.1f} s ago",
             n.detail,
-            n.last_error,
+            *((n.last_error,) if worries else ()),
         )
     return rows
 
@@ -131,7 +132,8 @@ def commit_line(commit: Commit) -> str:
 
 
 def _size(e: Entity) -> str:
-    return "" if e.size_m is None else " x ".join(f"{extent:.3g}" for extent in e.size_m)
+    extents = e.size_m or ()
+    return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
 
 
 def _body(e: Entity) -> str:

@@ -14,7 +14,8 @@ _FEW = 6
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:
     """One row a commit."""
-    rows = table("commit", "time", "by", "why", "sure", "triples", "entities")
+    columns = ("commit", "time", "by", "why", "sure", "triples", "entities")
+    rows = table(*columns, fold=("by", "why", "triples", "entities"))
     rows.columns[0].justify = "right"
     for c in commits:
         names = [*c.changed, *(f"-{name}" for name in c.removed)]

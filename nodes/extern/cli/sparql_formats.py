@@ -22,7 +22,7 @@ _PREFIXES = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
     """One line a row, with prefixed names."""
-    shown = tables.table(*variables, fold=True)
+    shown = tables.table(*variables, fold=variables)
     for row in rows:
         shown.add(*map(spoken, row))
     return shown

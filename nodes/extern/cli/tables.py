@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from rich import box
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
@@ -14,20 +15,34 @@ from schemas.commands import LoggedCommit
 from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
 
+_NARROWEST = 8
+"""Characters: a column that folds keeps so many, if it has them."""
+_BETWEEN = 2
+
 
 class Rows(Table):
-    """A table whose cells are plain text, whatever stands in them."""
+    """A table whose cells are plain text, whatever stands in them, and of which nothing is ever cut off."""
 
     def add(self, *cells: str | Text) -> None:
         """A row. What is no printable character in a string is shown by its escape."""
-        self.add_row(*(printable(cell) if isinstance(cell, str) else cell for cell in cells))
+        texts = [printable(cell) if isinstance(cell, str) else cell for cell in cells]
+        for column, text in zip(self.columns, texts, strict=True):
+            least = min(text.cell_len, text.cell_len if column.no_wrap else _NARROWEST)
+            column.min_width = max(column.min_width or 0, least)
+        self.add_row(*texts)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """As wide as it must be: what is too wide for the terminal is for the terminal to wrap."""
+        least = sum((column.min_width or 0) + _BETWEEN for column in self.columns) + _BETWEEN
+        return super().__rich_console__(console, options.update_width(max(options.max_width, least)))
 
 
-def table(*columns: str, fold: bool = False) -> Rows:
-    """An empty table; with `fold` what is too wide goes on in the next line."""
-    rows = Rows(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        rows.add_column(Text(column), no_wrap=not fold, overflow="fold")
+def table(*columns: str, fold: Collection[str]) -> Rows:
+    """An empty table; in a narrow terminal the columns `fold` go on in the next line, the others do not."""
+    rows = Rows(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for name in columns:
+        least = min(len(name), _NARROWEST) if name in fold else len(name)
+        rows.add_column(Text(name), no_wrap=name not in fold, overflow="fold", min_width=least)
     return rows
 
 
@@ -40,7 +55,7 @@ def card(rows: Mapping[str, str]) -> Table:
     """Names and values, one row each."""
     lines = Table(box=None, show_header=False, pad_edge=False)
     lines.add_column(style="dim", no_wrap=True)
-    lines.add_column()
+    lines.add_column(overflow="fold")
     for key, value in rows.items():
         lines.add_row(key, printable(value))
     return lines
