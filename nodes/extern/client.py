@@ -23,8 +23,9 @@ from typing import Any, Literal
 import zenoh
 
 from nodes import bus
+from nodes.extern.files import read_file
 from nodes.extern.sparql_client import StandingQuery
-from schemas import codec, commands, errors, keys
+from schemas import codec, commands, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
@@ -326,15 +327,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (tuple, list)):
         return tuple(map(_plain, value))
     return value.tolist() if hasattr(value, "tolist") else value
-
-
-def read_file(path: Path) -> bytes:
-    """The content of a file. Raises BadFile in one sentence when there is none to be read."""
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise errors.BadFile(f"there is no file {path}") from None
-    except IsADirectoryError:
-        raise errors.BadFile(f"{path} is a directory, not a file") from None
-    except OSError as error:
-        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None

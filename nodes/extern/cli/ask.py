@@ -12,8 +12,9 @@ import click
 from nodes import bus
 from nodes.extern.cli import show, sparql_formats
 from nodes.extern.cli import sparql as sparql_answers
-from nodes.extern.cli.talking import print_json, print_lines, talks, write_atomically
+from nodes.extern.cli.talking import print_json, print_lines, talks
 from nodes.extern.client import Client
+from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys
 from schemas.entities import Entity
 

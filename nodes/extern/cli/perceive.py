@@ -14,7 +14,7 @@ from rich.table import Table
 
 from nodes.extern.cli.show import console
 from nodes.extern.cli.tables import table
-from nodes.extern.cli.talking import write_atomically
+from nodes.extern.files import write_atomically
 from schemas import errors
 from schemas.perception import Observation
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.talking import given, talks, vector_option, write_atomically
+from nodes.extern.cli.talking import given, talks, vector_option
 from nodes.extern.client import Client
+from nodes.extern.files import write_atomically
 from schemas import errors
 
 

@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from nodes.extern.cli import show, sparql_formats
-from nodes.extern.client import Client, read_file
+from nodes.extern.client import Client
+from nodes.extern.files import read_file
 from schemas import errors
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import json
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import Any
 
 import click
@@ -93,28 +90,6 @@ def given(fields: dict[str, Any]) -> dict[str, Any]:
 def command(kind: type[Any], **fields: Any) -> Any:
     """A command of the options that were given. Raises BadRequest."""
     return codec.convert(given(fields), kind)
-
-
-def write_atomically(file: Path, content: bytes) -> None:
-    """All of `content` under that name, or nothing; into what is no file, such as a pipe, it is just written.
-
-    Raises BadFile.
-    """
-    file = file.resolve()
-    try:
-        if file.exists() and not file.is_file():
-            file.write_bytes(content)
-            return
-        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as temporary:
-            temporary.write(content)
-            temporary.flush()
-            os.fsync(temporary.fileno())
-        Path(temporary.name).chmod(0o644)
-        Path(temporary.name).replace(file)
-    except OSError as error:
-        with contextlib.suppress(OSError, UnboundLocalError):
-            Path(temporary.name).unlink()
-        raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
 
 
 def complain(text: str) -> None:

@@ -1,0 +1,51 @@
+"""Files of whoever asks: read whole or refused in one sentence, written whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from pathlib import Path
+
+from schemas import errors
+
+_LARGEST = 1 << 30
+"""Bytes: some millions of triples, and an end for what has none."""
+
+
+def read_file(path: Path) -> bytes:
+    """The content of a file. Raises BadFile in one sentence when there is none, or no end of it."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST + 1)
+    except FileNotFoundError:
+        raise errors.BadFile(f"there is no file {path}") from None
+    except IsADirectoryError:
+        raise errors.BadFile(f"{path} is a directory, not a file") from None
+    except OSError as error:
+        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
+    if len(content) > _LARGEST:
+        raise errors.BadFile(f"{path} is larger than {_LARGEST >> 20} MiB; load it in parts")
+    return content
+
+
+def write_atomically(file: Path, content: bytes) -> None:
+    """All of `content` under that name, or nothing; into what is no file, such as a pipe, it is just written.
+
+    Raises BadFile.
+    """
+    file = file.resolve()
+    try:
+        if file.exists() and not file.is_file():
+            file.write_bytes(content)
+            return
+        with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as temporary:
+            temporary.write(content)
+            temporary.flush()
+            os.fsync(temporary.fileno())
+        Path(temporary.name).chmod(0o644)
+        Path(temporary.name).replace(file)
+    except OSError as error:
+        with contextlib.suppress(OSError, UnboundLocalError):
+            Path(temporary.name).unlink()
+        raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None

@@ -1,0 +1,27 @@
+"""Files of whoever asks."""
+
+from pathlib import Path
+
+import pytest
+
+from nodes.extern import files
+from schemas import errors
+
+
+def test_a_file_is_read_whole(tmp_path):
+    file = tmp_path / "map.ttl"
+    file.write_bytes(b"x" * 100_000)
+    assert files.read_file(file) == b"x" * 100_000
+
+
+def test_what_cannot_be_read_says_why(tmp_path):
+    with pytest.raises(errors.BadFile, match=r"^there is no file .*/map.ttl$"):
+        files.read_file(tmp_path / "map.ttl")
+    with pytest.raises(errors.BadFile, match="is a directory, not a file"):
+        files.read_file(tmp_path)
+
+
+def test_what_has_no_end_is_refused(monkeypatch):
+    monkeypatch.setattr(files, "_LARGEST", 1 << 20)
+    with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 1 MiB; load it in parts$"):
+        files.read_file(Path("/dev/zero"))
