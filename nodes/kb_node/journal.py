@@ -56,10 +56,7 @@ class Damaged(errors.Refused):
     """A commit is not as it was written. `last_good` is the number of the one before."""
 
     def __init__(self, path: Path, seq: int) -> None:
-        super().__init__(
-            f"{path}: commit {seq} is damaged; the last good one is {seq - 1};"
-            f" go on from there with: semmap repair --data {path.parent} (the damaged file is kept)"
-        )
+        super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {_mend(path)}")
         self.last_good = seq - 1
 
 
@@ -129,7 +126,7 @@ class Journal:
         with self._reading():
             row = self._row(query, (seq,))
         if row is None or _chain(b"", row[0]) != row[1]:
-            raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_ANEW}")
+            raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_mend(self.path)}")
         return bytes(row[0])
 
     def append(
@@ -296,10 +293,7 @@ class Journal:
         except sqlite3.ProgrammingError:
             raise
         except sqlite3.DatabaseError as error:
-            raise errors.Refused(
-                f"{self.path} is damaged: {error}; go on from the last good commit with:"
-                f" semmap repair --data {self.path.parent} (the damaged file is kept)"
-            ) from None
+            raise errors.Refused(f"{self.path} is damaged: {error}; {_mend(self.path)}") from None
 
     @contextmanager
     def _writing(self, what: str) -> Iterator[None]:
@@ -324,6 +318,13 @@ class _Stamp(Struct):
     """The part of a commit that tells when it was made."""
 
     stamp_ns: int
+
+
+def _mend(path: Path) -> str:
+    """How one goes on."""
+    return (
+        f"go on from the last good commit with: semmap repair --data {path.parent} (the damaged file is kept)"
+    )
 
 
 def _chain(before: bytes, body: bytes) -> bytes:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
-from nodes.kb_node import seed
+from nodes.kb_node import rdf_files, seed, tboxes
 from nodes.kb_node.journal import FILENAME, InUse, Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
@@ -15,13 +15,14 @@ from schemas import errors
 _TOLD_EVERY_S = 2.0
 
 
-def repair(data: Path, tell: Callable[[str], None] = lambda text: None) -> str:
+def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox: Path | None = None) -> str:
     """Make the journal of folder `data` sound again, up to its last good commit; say what was done.
 
-    Of long work `tell` is told how far it is.
+    Of long work `tell` is told how far it is. The TBox that the map began with is taken from the file `tbox`
+    where the journal's own cannot be read.
 
-    The damaged one is moved to `data/kept/<time>/`. Raises BadFile when there is none, Refused when it is in
-    use or holds nothing to go on from.
+    The damaged journal is moved to `data/kept/<time>/`. Raises BadFile when there is none, Refused when it is
+    in use or holds nothing to go on from.
     """
     path = data / FILENAME
     if not path.exists():
@@ -32,13 +33,11 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None) -> str:
     except InUse:
         raise
     except errors.Refused as error:
-        raise errors.Refused(
-            f"{error.text.partition('; ')[0]}; start anew with --fresh (it is kept)"
-        ) from None
+        raise errors.Refused(f"{_reason(error)}; start anew with --fresh (it is kept)") from None
     try:
         if _is_sound(damaged, _counting("checked", tell)):
             return f"nothing is damaged: the map goes on from commit {damaged.last}"
-        good, reason = _copy(damaged, new, tell)
+        good, reason = _copy(damaged, new, _first_tbox(damaged, tbox), tell)
     finally:
         damaged.close()
     kept = seed.put_in_place(new, path)
@@ -67,10 +66,30 @@ def _is_sound(journal: Journal, progress: Callable[[], None]) -> bool:
     return journal.is_whole()
 
 
-def _copy(damaged: Journal, new: Path, tell: Callable[[str], None]) -> tuple[int, str]:
+def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
+    """The TBox (N-Triples) that the map began with, or what is there in its place."""
+    try:
+        return damaged.tbox(0)
+    except errors.Refused as error:
+        if instead is None:
+            raise errors.Refused(
+                f"{_reason(error)}: the TBox that the map began with cannot be read; give it anew with"
+                f" --tbox FILE, or start anew with --fresh (the damaged file is kept)"
+            ) from None
+    triples = seed.read_triples(instead, "t")
+    tboxes.compiled(triples, str(instead))
+    return rdf_files.serialise(triples, "ntriples")
+
+
+def _reason(error: errors.Refused) -> str:
+    """What is wrong, without how one goes on."""
+    return error.text.partition("; ")[0]
+
+
+def _copy(damaged: Journal, new: Path, tbox: bytes, tell: Callable[[str], None]) -> tuple[int, str]:
     """A sound journal at `new` with the good commits: the last one's number, and what the next one lacked."""
     seed.remove(new)
-    journal = Journal.create(new, damaged.tbox(0))
+    journal = Journal.create(new, tbox)
     good, reason = 0, "all of them are good"
     progress = _counting("saved", tell)
     try:
@@ -80,7 +99,7 @@ def _copy(damaged: Journal, new: Path, tell: Callable[[str], None]) -> tuple[int
                 good = commit.seq
                 progress()
         except errors.Refused as error:
-            reason = error.text.partition("; ")[0].removeprefix(f"{damaged.path}: ")
+            reason = _reason(error).removeprefix(f"{damaged.path}: ")
         tell(f"the map is rebuilt from {good:,} commits")
         SemanticMap(journal).checkpoint()
     finally:

@@ -112,9 +112,47 @@ def test_a_damaged_tbox_is_where_the_good_commits_end(data):
     with pytest.raises(errors.Refused, match="the TBox in it is damaged"):
         opened(data)
     assert repair(data).startswith("the map goes on from commit 4 (the TBox in it is damaged)")
-    edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
-    with pytest.raises(errors.Refused, match="the TBox in it is damaged; start anew with --fresh"):
+
+
+def damage_a_page_of_the_tbox(path):
+    """After that SQLite cannot read the row at all, and calls the file malformed."""
+    content = bytearray(path.read_bytes())
+    tbox = tbox_of(path)
+    page = content.index(tbox[len(tbox) // 2 :][:64]) // 4096 * 4096
+    content[page : page + 4096] = b"\xff" * 4096
+    path.write_bytes(content)
+
+
+def tbox_of(path):
+    journal = Journal(path)
+    try:
+        return journal.tbox(0)
+    finally:
+        journal.close()
+
+
+@pytest.mark.parametrize("how", ["digest", "pages"])
+def test_a_first_tbox_that_is_lost_can_be_given_anew(data, how, tmp_path_factory):
+    expected = opened(data)
+    tbox = tmp_path_factory.mktemp("tbox") / "tbox.nt"
+    tbox.write_bytes(tbox_of(data / FILENAME))
+    if how == "digest":
+        edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
+    else:
+        damage_a_page_of_the_tbox(data / FILENAME)
+    with pytest.raises(errors.Refused, match="semmap repair --data"):
+        opened(data)
+    with pytest.raises(errors.Refused, match=r"cannot be read; give it anew with --tbox FILE, or start anew"):
         repair(data)
+    with pytest.raises(errors.BadFile, match="is it a TBox"):
+        repair(data, tbox=scene(tbox.with_name("no_tbox.ttl")))
+    assert repair(data, tbox=tbox).startswith("the map goes on from commit 8 (")
+    assert opened(data)[1] == expected[1]
+
+
+def scene(path):
+    path.write_text("<http://x/a> <http://x/b> <http://x/c> .")
+    return path
 
 
 def test_nothing_and_what_is_in_use_are_refused(data, tmp_path_factory):

@@ -115,14 +115,15 @@ def down(data: Path | None, connect: str | None) -> None:
 
 @click.command()
 @click.option("--data", type=_path, default=None, help="Folder of the map; no system may run on it.")
-def repair(data: Path | None) -> None:
+@click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
+def repair(data: Path | None, tbox: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
     from nodes.kb_node.repair import repair as repair_journal
 
     def tell(text: str) -> None:
         click.echo(f"semmap: {text}", err=True)
 
-    click.echo(repair_journal((data or default_data()).resolve(), tell))
+    click.echo(repair_journal((data or default_data()).resolve(), tell, tbox=tbox))
 
 
 @click.command()
