@@ -39,10 +39,14 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tboxes.imports(tbox_triples)]
     notes: list[str] = []
     if abox is not None:
+        said = read_triples(abox, "a")
         try:
-            sorted_out = documents.sort_out(read_triples(abox, "a"), ClassTable(reasoner), skip_unknown=False)
+            sorted_out = documents.sort_out(said, ClassTable(reasoner), skip_unknown=False)
+        except errors.UnknownClass as error:
+            text = error.text.removesuffix(errors.SKIP_UNKNOWN)
+            raise type(error)(f"{abox}: {text}; another map is given with --abox FILE|none") from None
         except errors.BadRequest as error:
-            raise type(error)(f"{abox}: {error.text.removesuffix(errors.SKIP_UNKNOWN)}") from None
+            raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += sorted_out.triples
         notes = sorted_out.notes
     source = abox.name if abox is not None else "nothing"
@@ -59,7 +63,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         size = _make(new, tbox_triples, reasoner, transaction)
         put_in_place(new, path)
         tbox_cache.keep(closed, tbox_triples, data)
-    except errors.SemmapError as error:
+    except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None

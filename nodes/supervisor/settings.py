@@ -55,7 +55,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the recorder streams to Rerun viewers, `host:port`."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError where what perception sees would only be what it said itself."""
+        """Raises ValueError for what is no endpoint, or where perception would see only what it said itself."""
+        for endpoint in (self.listen, *self.connect):
+            if not _is_endpoint(endpoint):
+                raise ValueError(f"'{endpoint}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}")
         if self.perception and self.sim and self.camera_hz and self.truth != "perceived":
             raise ValueError(
                 f"with --truth {self.truth} the simulator's cameras show what the map says already, so"
@@ -85,3 +88,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def reachable(self) -> str:
         """The endpoint at which programs of this machine reach the system."""
         return self.listen.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
+
+
+def _is_endpoint(text: str) -> bool:
+    """Is it a protocol and an address, with a port that there can be, if with one?"""
+    protocol, _, address = text.partition("/")
+    port = address.rpartition(":")[2]
+    return bool(protocol and address) and (not port.isdecimal() or int(port) < 1 << 16)

@@ -24,6 +24,7 @@ _START_TIMEOUT_S = 120.0
 _HANGS_AFTER_S = 30.0
 _STOP_TIMEOUT_S = 4.5
 _LIVE_PORT = 9876
+_COLUMN = max(map(len, keys.NODES))
 
 
 def up(settings: Settings, say: Callable[[str], None]) -> None:
@@ -38,7 +39,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     _require_free(settings.listen)
     if settings.record:
         settings = structs.replace(settings, live_view=_live_view())
-    say(f"map          {supervisor.seed(settings)}")
+    say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
     process = supervisor.start(settings)
     try:
         _Foreground(supervisor, settings, process, say).run()
@@ -105,7 +106,7 @@ class _Foreground:
             if health.state == "ready" and self._pids.get(health.node) != health.pid:
                 again = " again" if health.node in self._pids else ""
                 self._pids[health.node] = health.pid
-                self._say(f"{health.node:<12} ready{again}  pid {health.pid:<7} {health.detail}")
+                self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
 
     def _require_alive(self) -> None:
         """A node that ended with an error which no restart mends ends the start, with its last words."""
@@ -120,7 +121,7 @@ class _Foreground:
     def _restart_what_hangs(self) -> None:
         for node, at in self._heard.items():
             if time.monotonic() - at > _HANGS_AFTER_S:
-                self._say(f"{node:<12} silent for {_HANGS_AFTER_S:g} s: restarting it")
+                self._say(f"{node:<{_COLUMN}} silent for {_HANGS_AFTER_S:g} s: restarting it")
                 self._heard[node] = time.monotonic()
                 self._supervisor.restart(node)
 
@@ -130,14 +131,14 @@ class _Foreground:
             if self._settings.reachable == bus.DEFAULT_ENDPOINT
             else f" --connect {self._settings.reachable}"
         )
-        self._say("")
-        self._say(f"zenoh        {self._settings.reachable}")
-        self._say(f"data         {self._settings.data}")
+        lines = {"zenoh": self._settings.reachable, "data": self._settings.data}
         if self._settings.record:
-            self._say(f"recording    {self._settings.data}/recordings")
-            self._say(f"live view    rerun --connect rerun+http://{self._settings.live_view}/proxy")
-        self._say(f"try          semmap list{connect}")
-        self._say("stop         Ctrl-C")
+            lines["recording"] = f"{self._settings.data}/recordings"
+            lines["live view"] = f"rerun --connect rerun+http://{self._settings.live_view}/proxy"
+        lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
+        self._say("")
+        for what, value in lines.items():
+            self._say(f"{what:<{_COLUMN}} {value}")
 
 
 def _require_free(endpoint: str) -> None:

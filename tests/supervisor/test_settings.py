@@ -45,3 +45,17 @@ def test_perception_does_not_look_at_what_the_map_says_itself():
             settings(perception=True, truth=truth, camera_hz=5.0)
         assert settings(perception=True, truth=truth).perception  # frames of other cameras
     assert settings(perception=True, truth="perceived", camera_hz=5.0).perception
+
+
+@pytest.mark.parametrize("endpoint", ["foo", "tcp/", "/127.0.0.1:7447", "tcp/127.0.0.1:65536", ""])
+def test_what_is_no_endpoint_is_refused(endpoint):
+    for fields in ({"listen": endpoint}, {"connect": ("tcp/10.0.0.1:7447", endpoint)}):
+        with pytest.raises(
+            ValueError, match=f"'{endpoint}' is no Zenoh endpoint, such as tcp/127.0.0.1:7447"
+        ):
+            settings(**fields)
+
+
+@pytest.mark.parametrize("endpoint", ["tcp/[::1]:7447", "unixsock-stream//tmp/a", "tls/robot.local:65535"])
+def test_endpoints_of_any_protocol_are_taken(endpoint):
+    assert settings(listen=endpoint).listen == endpoint

@@ -108,6 +108,7 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--threshold", "-1"), "threshold_m must be"),
         (("--threshold", "nan"), "threshold_m"),
         (("--truth", "god"), "god"),
+        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is no Zenoh endpoint"),
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],
 )
