@@ -55,7 +55,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the recorder streams to Rerun viewers, `host:port`."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for what is no endpoint, or where perception would see only what it said itself."""
+        """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}")

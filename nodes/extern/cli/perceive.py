@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 from rich.table import Table
 
 from nodes.extern.cli.show import console
@@ -39,6 +38,8 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
     0 for background, 1 to n for the objects.
     """
+    import numpy as np  # half of what the command line would take to start
+
     from nodes.perception_node.files.reading import read_frames
     from nodes.perception_node.pipeline import one_by_one, shipped
     from nodes.perception_node.sights import see

@@ -54,6 +54,11 @@ class Models:
 
     def _path(self, name: str) -> Path | None:
         if name.endswith(SUFFIXES):
+            if self.folder is None and not Path(name).is_absolute():
+                raise ModelError(
+                    f"the model file {name} is looked for in the folder of `semmap up --models DIR`,"
+                    " and none was given; or the TBox gives its whole path"
+                )
             return (self.folder or Path()) / name
         candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []
         return next((path for path in candidates if path.is_file()), None)
