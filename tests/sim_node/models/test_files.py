@@ -119,6 +119,13 @@ def test_no_size_makes_a_bad_file_good(folder, name):
         Models(folder)(name, (1.0, 1.0, 1.0))
 
 
+def test_a_file_without_a_folder_says_where_it_belongs():
+    with pytest.raises(
+        ModelError, match=r"vacuum.obj is looked for in the folder of `semmap up --models DIR`"
+    ):
+        Models(None)("vacuum.obj", None)
+
+
 def test_bodies_from_files_stand_beside_others(folder):
     world = World(models=Models(folder))
     spawned = world.spawn(
