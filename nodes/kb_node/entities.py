@@ -120,8 +120,8 @@ def require_name(iri: Term, class_name: str) -> None:
         raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
     if not _NAME.match(v.local_name(iri)):
         raise errors.BadRequest(
-            f"the {class_name} {iri} needs an IRI that ends in a name of letters, digits, '_', '.' and '-',"
-            " not beginning with a digit"
+            f"the {class_name} {iri} needs an IRI that ends in a name of letters a to z, digits, '_', '.'"
+            " and '-', not beginning with a digit"
         )
 
 

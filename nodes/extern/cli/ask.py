@@ -150,6 +150,8 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> No
         if keyexpr != keys.COMMIT.key:
             raise errors.BadRequest("watch takes a key expression or --sparql, not both")
         sparql_answers.watch(client, query, inferred=inferred)
+    if sys.stderr.isatty():
+        print(f"watching {keyexpr}; Ctrl-C ends it", file=sys.stderr)
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:

@@ -95,7 +95,7 @@ def status_table(status: SystemStatus) -> Table:
 def status_line(status: SystemStatus) -> str:
     """The map and the scene in one line."""
     verdicts = {
-        True: "map and scene agree",
+        True: "map and scene agree" + (", but for:" if status.problems else ""),
         False: "map and scene do not agree (yet)",
         None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
     }

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import click
+from msgspec import structs
 
 from nodes import bus
+from nodes.extern.cli.talking import complain
 from nodes.extern.client import CONNECT_VARIABLE
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
@@ -95,6 +97,8 @@ def up(settings: Settings) -> None:
     """Start the whole system in the foreground; Ctrl-C ends it."""
     from nodes.supervisor.up import up as run_up
 
+    if settings.truth == "perceived" and not settings.perception:
+        complain("the map will know only what a perception of yours tells it; ours comes with --perception")
     run_up(settings, say=lambda line: click.echo(line))
 
 
@@ -120,10 +124,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
     from nodes.kb_node.repair import repair as repair_journal
 
-    def tell(text: str) -> None:
-        click.echo(f"semmap: {text}", err=True)
-
-    click.echo(repair_journal((data or default_data()).resolve(), tell, tbox=tbox))
+    click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 
 
 @click.command()
@@ -186,12 +187,20 @@ def _settings(
 
 
 def _settings_before(data: Path) -> Settings | None:
-    """What the map in `data` was last run with, if there is such a map, and its world is still there."""
+    """What the map in `data` was last run with, if there is such a map; what of it is lost is told."""
+    if not (data / JOURNAL).exists():
+        return None
     try:
         settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
-    except (OSError, errors.BadRequest):
+    except OSError:
         return None
-    return settings if (data / JOURNAL).exists() and Path(settings.world).exists() else None
+    except errors.BadRequest:
+        complain(f"{data / SETTINGS} cannot be understood, so --truth and --world are not as before")
+        return None
+    if not Path(settings.world).exists():
+        complain(f"the world {settings.world} is no longer there; the flat's is taken")
+        return structs.replace(settings, world=str(FLAT_WORLD))
+    return settings
 
 
 def _folder(path: Path) -> str:

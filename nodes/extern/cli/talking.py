@@ -94,7 +94,7 @@ def command(kind: type[Any], **fields: Any) -> Any:
 
 def complain(text: str) -> None:
     """What is wrong, in one line on stderr."""
-    print(f"semmap: {text}", file=sys.stderr)
+    print(f"semmap: {' '.join(text.split())}", file=sys.stderr)
 
 
 def _plainly(text: str) -> str:

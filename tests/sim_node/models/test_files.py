@@ -107,13 +107,6 @@ def test_a_bad_file_is_told(folder, name, why):
 
 
 @pytest.mark.parametrize("name", ["broken.stl", "empty.xml", "flat.obj", "light.xml"])
-def test_a_file_without_a_folder_says_where_it_belongs():
-    with pytest.raises(
-        ModelError, match=r"vacuum.obj is looked for in the folder of `semmap up --models DIR`"
-    ):
-        Models(None)("vacuum.obj", None)
-
-
 def test_no_size_makes_a_bad_file_good(folder, name):
     with pytest.raises(ModelError, match=f"{name} cannot be used: (it|a body)"):
         Models(folder)(name, (1.0, 1.0, 1.0))
