@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import os
+import shutil
+import struct
 import subprocess
 import sysconfig
+import tempfile
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +21,11 @@ from nodes.recorder.recording import COMMIT_FIELDS, COMMITS
 from schemas import errors
 from schemas.explanations import Triple
 
+log = logging.getLogger(__name__)
+
 _SIGNATURE = b"RRF"
+_FILE_HEADER_BYTES = 12
+_MESSAGE_HEADER = struct.Struct("<QQ")
 
 
 @dataclass(frozen=True)
@@ -73,14 +81,41 @@ def require_recording(path: Path) -> None:
 def read_commits(path: Path) -> list[RecordedCommit]:
     """All commits in a recording, by number. Raises BadFile.
 
-    It may still be growing, but can be read between two of its messages only: then BadFile is worth a retry.
-    One that was both heard and recalled counts once.
+    One that was both heard and recalled counts once. Where the file ends within a message, because it grows
+    or its writer was killed, the commits up to there are given, and a warning tells how much is left out.
     """
     require_recording(path)
-    return sorted(set(_commits(path)), key=lambda commit: (commit.seq, commit.stamp_ns))
+    try:
+        commits = set(_commits(path, called=path))
+    except errors.BadFile:
+        with tempfile.TemporaryDirectory() as folder:
+            whole = Path(shutil.copyfile(path, Path(folder, path.name)))
+            left_out = _cut_after_last_message(whole)
+            if not left_out:
+                raise
+            commits = set(_commits(whole, called=path))
+        log.warning("%s ends within a message: its last %d bytes are left out", path, left_out)
+    return sorted(commits, key=lambda commit: (commit.seq, commit.stamp_ns))
 
 
-def _commits(path: Path) -> Iterator[RecordedCommit]:
+def _cut_after_last_message(path: Path) -> int:
+    """Shorten the file of a recording to its whole messages: by how many bytes.
+
+    After the file's header, each message has its kind and its length before it.
+    """
+    with path.open("r+b") as file:
+        size, end = file.seek(0, os.SEEK_END), _FILE_HEADER_BYTES
+        while (start := end + _MESSAGE_HEADER.size) <= size:
+            file.seek(end)
+            _, length = _MESSAGE_HEADER.unpack(file.read(_MESSAGE_HEADER.size))
+            if start + length > size:
+                break
+            end = start + length
+        file.truncate(min(end, size))
+    return max(size - end, 0)
+
+
+def _commits(path: Path, *, called: Path) -> Iterator[RecordedCommit]:
     with warnings.catch_warnings():
         # A recording that is not closed, because it grows or its writer was killed, has no footer.
         warnings.filterwarnings("ignore", message=".*no footer")
@@ -89,7 +124,7 @@ def _commits(path: Path) -> Iterator[RecordedCommit]:
                 if chunk.entity_path == f"/{COMMITS}":
                     yield from map(_commit_of, _rows(chunk.to_record_batch()))
         except (RuntimeError, ValueError) as error:
-            raise errors.BadFile(f"cannot read {path}: {error}") from None
+            raise errors.BadFile(f"cannot read {called}: {error}") from None
 
 
 def _rows(batch: Any) -> list[dict[str, Any]]:
