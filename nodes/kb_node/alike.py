@@ -12,7 +12,7 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from nodes.kb_node.classes import ClassTable, Kind
-from nodes.kb_node.entities import require_name
+from nodes.kb_node.entities import entity_of
 from nodes.kb_node.reasoner import Alike, Reasoner, Run
 from ontology import vocabulary as v
 from schemas.entities import REACH_M, Entity, Pose, Provenance
@@ -66,8 +66,6 @@ class Patterns:
 
 def _read(pattern: _Pattern, run: Run, provenance: Provenance) -> Entity | None:
     names, others = list(run.individuals), run.others
-    iri, kind = names[0], pattern.kind
-    require_name(iri, kind.class_name)
     try:
         position = _numbers(pattern.position, others)
         size = _numbers(pattern.size, others)
@@ -81,22 +79,14 @@ def _read(pattern: _Pattern, run: Run, provenance: Provenance) -> Entity | None:
             return None
     except ValueError:
         return None
-    return Entity(
-        name=v.local_name(iri),
-        class_=kind.class_name,
-        iri=v.bare(iri),
-        types=kind.types,
+    return entity_of(
+        names[0],
+        pattern.kind,
+        provenance,
         pose=pose,
         size_m=size,  # type: ignore[arg-type]
-        preferred_reference=min(_texts(pattern.preferred, names, others), default=None),
-        alternative_references=tuple(_texts(pattern.alternatives, names, others)),
-        place=kind.place,
-        fixed=kind.fixed,
-        model=kind.model,
-        provenance=provenance,
-        pose_provenance=provenance,
-        shape_provenance=provenance,
-        reference_provenance=provenance,
+        preferred=_texts(pattern.preferred, names, others),
+        alternatives=_texts(pattern.alternatives, names, others),
     )
 
 

@@ -9,13 +9,13 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node.classes import ClassTable
+from nodes.kb_node.classes import ClassTable, Kind
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
-from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance
+from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size
 from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
@@ -61,18 +61,45 @@ def read_entity(
     said = about(iri)
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
-    require_name(iri, kind.class_name)
-    preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
+    return entity_of(
+        iri,
+        kind,
+        provenance,
+        pose=_pose(about, iri, said.get(v.HAS_POSITION, ())),
+        size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
+        preferred=_references(about, said.get(v.HAS_PREFERRED_REFERENCE, ())),
+        alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
+        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+    )
+
+
+def entity_of(
+    iri: Term,
+    kind: Kind,
+    provenance: Provenance,
+    *,
+    pose: Pose | None,
+    size_m: Size | None,
+    preferred: Iterable[str],
+    alternatives: Iterable[str],
+    conflict: str = "",
+) -> Entity:
+    """The entity of a kind whose star says this, all of it by `provenance`.
+
+    Of several preferred references the first in the alphabet counts. Raises BadRequest for one that cannot
+    be named.
+    """
+    _require_name(iri, kind.class_name)
     return Entity(
         name=v.local_name(iri),
         class_=kind.class_name,
         iri=v.bare(iri),
         types=kind.types,
-        pose=_pose(about, iri, said.get(v.HAS_POSITION, ())),
-        size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
+        pose=pose,
+        size_m=size_m,
         preferred_reference=min(preferred, default=None),
-        alternative_references=tuple(_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ()))),
-        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        alternative_references=tuple(alternatives),
+        conflict=conflict,
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,
@@ -112,7 +139,7 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     )
 
 
-def require_name(iri: Term, class_name: str) -> None:
+def _require_name(iri: Term, class_name: str) -> None:
     """Raises BadRequest for an entity without an IRI (http, https, urn or file) that ends in a name."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
