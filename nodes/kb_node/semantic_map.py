@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import gc
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
-from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node import bodies, effects, entities, fingerprint, placing, rdf_files, tbox_cache, tboxes
+from nodes.kb_node import (
+    bodies,
+    effects,
+    entities,
+    fingerprint,
+    placing,
+    preconditions,
+    rdf_files,
+    tbox_cache,
+    tboxes,
+)
 from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
@@ -23,7 +32,6 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
-_FEW = 64
 
 
 class SemanticMap:
@@ -117,7 +125,7 @@ class SemanticMap:
 
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
-        return any(True for _ in self.reasoner.asserted(*triple))
+        return any(self.reasoner.asserted(*triple))
 
     # Changing
 
@@ -131,8 +139,8 @@ class SemanticMap:
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
         transaction = self._spelled_out(transaction)
-        held = self._held(transaction)
-        self._require(transaction, held)
+        held = preconditions.held(self.reasoner, transaction)
+        preconditions.require(self.reasoner, transaction, held)
         wanted = dict.fromkeys(transaction.insert)
         retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
         inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
@@ -234,31 +242,6 @@ class SemanticMap:
             retract += gone
             insert += come
         return structs.replace(transaction, retract=tuple(retract), insert=tuple(insert))
-
-    def _held(self, transaction: Transaction) -> set[Triple]:
-        """Those of the transaction's triples that are asserted already."""
-        groups = transaction.require, transaction.retract, transaction.insert
-        known = self.reasoner.mentioned({s for triples in groups for s, _, _ in triples})
-        held: set[Triple] = set()
-        many: set[Term] = set()
-        for subject in known:
-            said = list(islice(self.reasoner.asserted(subject), _FEW))
-            held.update(said)
-            if len(said) == _FEW:
-                many.add(subject)
-        named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
-        return {t for t in named if t in held or (t[0] in many and self.has(t))}
-
-    def _is_subject(self, term: Term) -> bool:
-        return any(True for _ in self.reasoner.asserted(term))
-
-    def _require(self, transaction: Transaction, held: Container[Triple]) -> None:
-        for triple in transaction.require:
-            if triple not in held:
-                raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
-        for term in transaction.vacant:
-            if self._is_subject(term):
-                raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")
 
     def _replay(self, start: Checkpoint) -> None:
         self.reasoner.apply(insert=start.triples)

@@ -1,0 +1,40 @@
+"""Whether a transaction still fits the map as it stands, and which of its triples are there already."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from itertools import islice
+
+from nodes.kb_node.reasoner import Reasoner
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Transaction
+from schemas.explanations import Term, Triple
+
+_FEW = 64
+"""Triples of one subject: so many are looked through together, and of more each by itself."""
+
+
+def held(reasoner: Reasoner, transaction: Transaction) -> set[Triple]:
+    """Those of the transaction's triples that are asserted already."""
+    groups = transaction.require, transaction.retract, transaction.insert
+    known = reasoner.mentioned({s for triples in groups for s, _, _ in triples})
+    found: set[Triple] = set()
+    many: set[Term] = set()
+    for subject in known:
+        said = list(islice(reasoner.asserted(subject), _FEW))
+        found.update(said)
+        if len(said) == _FEW:
+            many.add(subject)
+    named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
+    return {t for t in named if t in found or (t[0] in many and any(reasoner.asserted(*t)))}
+
+
+def require(reasoner: Reasoner, transaction: Transaction, held: Container[Triple]) -> None:
+    """Raises PreconditionFailed for a triple that is not `held` any more, NameTaken for a name that is."""
+    for triple in transaction.require:
+        if triple not in held:
+            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
+    for term in transaction.vacant:
+        if any(reasoner.asserted(term)):
+            raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")

@@ -1,0 +1,39 @@
+"""What a transaction requires, held against the map as it stands."""
+
+import pytest
+
+from nodes.kb_node import preconditions
+from nodes.kb_node.reasoner import Reasoner
+from ontology import vocabulary as v
+from schemas import errors
+from tests.kb_node.home import transaction
+
+CUP, NEW = v.entity_iri("cup1"), v.entity_iri("cup2")
+TYPE = (CUP, v.RDF_TYPE, v.dm("Cup"))
+MANY = [(CUP, v.dm("touches"), v.entity_iri(f"table{i}")) for i in range(200)]
+ABSENT = (CUP, v.dm("touches"), v.entity_iri("table999"))
+
+
+@pytest.fixture(params=[0, 62, 63, 200], ids="{} more".format)
+def reasoner(request):
+    """A reasoner with one cup, of which few or many things are said."""
+    reasoner = Reasoner([(v.dm("Cup"), v.RDF_TYPE, v.OWL_CLASS)])
+    reasoner.apply(insert=[TYPE, *MANY[: request.param]])
+    return reasoner
+
+
+def test_what_is_there_is_held_wherever_it_is_named(reasoner):
+    said = set(reasoner.asserted()).intersection(MANY)
+    for where in ("require", "retract", "insert"):
+        asked = transaction(1, **{where: (TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))})
+        assert preconditions.held(reasoner, asked) == {TYPE, *said}
+
+
+def test_what_is_required_must_be_held():
+    reasoner = Reasoner([(v.dm("Cup"), v.RDF_TYPE, v.OWL_CLASS)])
+    reasoner.apply(insert=[TYPE])
+    preconditions.require(reasoner, transaction(1, require=(TYPE,), vacant=(NEW,)), {TYPE})
+    with pytest.raises(errors.PreconditionFailed, match="no longer holds that cup1"):
+        preconditions.require(reasoner, transaction(1, require=(TYPE, ABSENT)), {TYPE})
+    with pytest.raises(errors.NameTaken, match="the name 'cup1' is taken"):
+        preconditions.require(reasoner, transaction(1, vacant=(NEW, CUP)), set())
