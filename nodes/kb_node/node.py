@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import gc
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TypeVar
 
-from nodes import bus
 from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal, NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.loop import Node, open_node
-from schemas import codec, errors, keys
+from schemas import errors, keys, wording
 from schemas.bridge import (
     BRIDGE,
     LoadDocument,
@@ -69,9 +69,7 @@ class KnowledgeBase:
         self._past = past.Past(journal)
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
-        self._commits = bus.publisher(node.session, keys.COMMIT)
-        self._entities_are_watched = bus.watched(node.session, keys.ENTITY)
-        self._published = {entity.name: entity.types for entity in self.map.entities()}
+        self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
         functions = {
@@ -110,7 +108,8 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk takes no commits")
 
     def _spread(self, commit: Commit) -> None:
-        self._publish(commit)
+        self._announcer.announce(commit)
+        self._node.describe(self._summary())
         self._sparql.follow(commit)
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
@@ -277,32 +276,9 @@ class KnowledgeBase:
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
 
-    def _publish(self, commit: Commit) -> None:
-        """The commit, and under each of its classes the entity or, where it is no more, a delete."""
-        self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
-        if self._entities_are_watched():
-            for gone in commit.removed:
-                self._unpublish(gone.name, self._published.get(gone.name, gone.types))
-            for entity in commit.changed:
-                self._publish_entity(entity)
-        for gone in commit.removed:
-            self._published.pop(gone.name, None)
-        self._published.update((entity.name, entity.types) for entity in commit.changed)
-        self._node.describe(self._summary())
-
-    def _publish_entity(self, entity: Entity) -> None:
-        lost = set(self._published.get(entity.name, ())).difference(entity.types)
-        self._unpublish(entity.name, sorted(lost))
-        payload, encoding = codec.encode(entity), codec.encoding_of(entity)
-        for class_name in entity.types:
-            self._node.session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
-
-    def _unpublish(self, name: str, class_names: Iterable[str]) -> None:
-        for class_name in class_names:
-            self._node.session.delete(keys.entity_key(class_name, name))
-
     def _summary(self) -> str:
-        return f"{len(self.map)} entities, {len(self.map.reasoner)} triples, commit {self.map.seq}"
+        entities = wording.entities(len(self.map))
+        return f"{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
 
 
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:

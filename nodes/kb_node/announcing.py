@@ -1,0 +1,46 @@
+"""What the knowledge base tells everybody: its commits, and the entities under their classes' keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import zenoh
+
+from nodes import bus
+from schemas import codec, keys
+from schemas.commits import Commit
+from schemas.entities import Entity
+
+
+class Announcer:
+    """Publishes each commit, and under each of its classes an entity or, where it is no more, a delete."""
+
+    def __init__(self, session: zenoh.Session, entities: Iterable[Entity]) -> None:
+        """`entities` are those that are in the map already."""
+        self._session = session
+        self._commits = bus.publisher(session, keys.COMMIT)
+        self._entities_are_watched = bus.watched(session, keys.ENTITY)
+        self._types = {entity.name: entity.types for entity in entities}
+
+    def announce(self, commit: Commit) -> None:
+        """Tell of the commit; of its entities only if somebody follows them."""
+        self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
+        if self._entities_are_watched():
+            for gone in commit.removed:
+                self._delete(gone.name, self._types.get(gone.name, gone.types))
+            for entity in commit.changed:
+                self._put(entity)
+        for gone in commit.removed:
+            self._types.pop(gone.name, None)
+        self._types.update((entity.name, entity.types) for entity in commit.changed)
+
+    def _put(self, entity: Entity) -> None:
+        lost = set(self._types.get(entity.name, ())).difference(entity.types)
+        self._delete(entity.name, sorted(lost))
+        payload, encoding = codec.encode(entity), codec.encoding_of(entity)
+        for class_name in entity.types:
+            self._session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
+
+    def _delete(self, name: str, class_names: Iterable[str]) -> None:
+        for class_name in class_names:
+            self._session.delete(keys.entity_key(class_name, name))
