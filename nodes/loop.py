@@ -122,11 +122,11 @@ class Node:
         self._idle.append(handle)
 
     def ask(
-        self, prefix: str, verb: str, message: Any, kind: Any, *, beating: bool = False, **limits: float
+        self, prefix: str, verb: str, message: Any, kind: Any, *, timeout_s: float, beating: bool = False
     ) -> Any:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
-        return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
+        return bus.ask(self.session, prefix, verb, message, kind, timeout_s=timeout_s, meanwhile=meanwhile)
 
     def ask_later(
         self, prefix: str, verb: str, message: Any, kind: Any, *, patience_s: float = 0.0, **limits: float
