@@ -221,9 +221,9 @@ class Client:
         classes: tuple[ClassInfo, ...] = self.send(commands.Classes())
         return classes
 
-    def status(self) -> commands.SystemStatus:
-        """The nodes and the map."""
-        status: commands.SystemStatus = self.send(commands.Status())
+    def status(self, *, timeout_s: float = _LONG_S) -> commands.SystemStatus:
+        """The nodes and the map. Raises NoAnswer when the coordinator has no time for it that long."""
+        status: commands.SystemStatus = self.send(commands.Status(), timeout_s=timeout_s)
         return status
 
     def history(

@@ -22,6 +22,8 @@ _format = functools.partial(click.option, "--format", "format")
 _as_of = click.option(
     "--as-of", metavar="COMMIT|TIME", help="As it was after a commit, or at a time (ISO 8601)."
 )
+_STATUS_S = 20.0
+"""Seconds: whoever asks how things stand is told of a system that is too busy to say."""
 
 
 @click.command("list")
@@ -112,7 +114,7 @@ def classes(client: Client, format: str) -> None:
 @talks
 def status(client: Client, format: str) -> None:
     """The nodes and the map."""
-    status = client.status()
+    status = client.status(timeout_s=_STATUS_S)
     if format == "json":
         print_json(status)
         return
