@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TypeVar
@@ -144,14 +144,10 @@ class KnowledgeBase:
 
     def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
         sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
-        transaction = Transaction(
-            id=load.id,
-            source=load.source,
-            agent=load.agent,
-            verb="load",
-            reason=load.reason,
-            retract=tuple(self.map.abox()) if load.replace else (),
-            insert=tuple(t for t in sorted_out.triples if t not in self.map.tbox),
+        transaction = _loading(
+            load,
+            retract=self.map.abox() if load.replace else (),
+            insert=(t for t in sorted_out.triples if t not in self.map.tbox),
         )
         commit = self._commit(transaction)
         return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
@@ -236,14 +232,10 @@ class KnowledgeBase:
         """Another TBox, in one commit."""
         tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
-        transaction = Transaction(
-            id=load.id,
-            source=load.source,
-            agent=load.agent,
-            verb="load",
-            reason=load.reason,
-            retract=tuple(t for t in before if t not in imports and self.map.has(t)),
-            insert=tuple(t for t in imports if not self.map.has(t)),
+        transaction = _loading(
+            load,
+            retract=(t for t in before if t not in imports and self.map.has(t)),
+            insert=(t for t in imports if not self.map.has(t)),
         )
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
@@ -279,6 +271,20 @@ class KnowledgeBase:
     def _summary(self) -> str:
         entities = wording.entities(len(self.map))
         return f"{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
+
+
+def _loading(
+    load: LoadDocument | LoadTBox, *, retract: Iterable[Triple], insert: Iterable[Triple]
+) -> Transaction:
+    return Transaction(
+        id=load.id,
+        source=load.source,
+        agent=load.agent,
+        verb="load",
+        reason=load.reason,
+        retract=tuple(retract),
+        insert=tuple(insert),
+    )
 
 
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:

@@ -27,7 +27,7 @@ APPLICATION = "semmap"
 COMMITS = "commits"
 COMMIT_LOG = "commits/log"
 COMMIT_FIELDS = "semmap.Commit"
-"""The archetype that holds a commit's fields for programs; `replay.read_commits` reads them."""
+"""The archetype that holds a commit's fields for programs; `reading.read_commits` reads them."""
 
 _LATENCY_S = 0.5
 """What a kill can lose, and how far a live viewer lags."""

@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from nodes.recorder.figures import Figure
+from nodes.recorder.reading import read_commits
 from nodes.recorder.recording import free_to_serve, open_recording
-from nodes.recorder.replay import read_commits, replay
+from nodes.recorder.replay import replay
 from ontology import vocabulary as v
 from schemas import errors
 from tests.recorder.files import column, log, positions, timelines
@@ -51,27 +52,6 @@ def test_commits_come_back_in_order_whatever_they_hold(tmp_path):
             recording.at(seq, START_NS, None)
             recording.commit(commit(seq, inserted=full if seq == 2 else ()))
     assert [(c.seq, c.inserted) for c in read_commits(path)] == [(1, ()), (2, full), (3, ())]
-
-
-def test_what_is_whole_of_a_recording_that_is_cut_is_read(tmp_path, caplog):
-    path, cut = tmp_path / "a.rrd", tmp_path / "cut.rrd"
-    with open_recording(path, None) as recording:
-        for seq in (1, 2, 3):
-            recording.at(seq, START_NS, None)
-            recording.commit(commit(seq))
-            recording._stream.flush()  # each in a message of its own
-    content = path.read_bytes()
-    found = []
-    for size in range(700, len(content), 397):
-        cut.write_bytes(content[:size])
-        found.append([c.seq for c in read_commits(cut)])
-        assert cut.read_bytes() == content[:size]
-    assert "cut.rrd ends within a message: its last " in caplog.text
-    assert found == sorted(found)
-    assert {tuple(seqs) for seqs in found} == {(), (1,), (1, 2), (1, 2, 3)}
-    cut.write_bytes(content[:20])
-    with pytest.raises(errors.BadFile, match=f"cannot read {cut}"):
-        read_commits(cut)
 
 
 def test_a_recording_without_commits_is_one(tmp_path):
