@@ -6,19 +6,22 @@ import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.table import Table
 
 from nodes.extern.cli.show import console
 from nodes.extern.cli.tables import table
+from nodes.extern.cli.talking import print_json
 from nodes.extern.files import write_atomically
 from schemas import errors
 from schemas.perception import Observation
 
 if TYPE_CHECKING:
     from nodes.perception_node.sights import Sight
+
+_FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the camera above its origin"}
 
 
 @click.command()
@@ -32,7 +35,8 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Of the camera that took pictures: fx, fy, cx, cy [pixel]; depth_scale [m], map_from_camera.",
 )
-def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None) -> None:
+@click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
+def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None, format: str) -> None:
     """Find the objects in FILE...: PCD or PLY clouds, or a colour and a depth picture (PNG).
 
     Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
@@ -49,26 +53,46 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
         raise errors.BadRequest(f"--labels takes one frame, and these are {len(frames)}")
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
+    records = []
     for file, cloud in frames:
         sight = see(cloud)
         told = one_by_one(sight, shipped())
-        known = cloud.map_from_camera is not None
-        frame = "map frame" if known else "frame: the largest plane is z = 0, the camera above its origin"
-        console().print(f"{file}: {len(told)} objects; {frame}")
-        if told:
-            console().print(_rows(sight, told))
+        frame = "plane" if cloud.map_from_camera is None else "map"
+        if format == "json":
+            records.append({"file": str(file), "frame": frame, "objects": _records(sight, told)})
+        else:
+            objects = f"{len(told)} {'object' if len(told) == 1 else 'objects'}"
+            console().print(f"{file}: {objects}; {_FRAMES[frame]}")
+            if told:
+                console().print(_rows(sight, told))
         if labels is not None:
             buffer = io.BytesIO()
             np.save(buffer, np.where(np.isin(sight.labels, list(sight.carriers)), 0, sight.labels))
             write_atomically(labels, buffer.getvalue())
-            print(f"wrote {labels}")
+            if format == "table":
+                print(f"wrote {labels}")
+    if format == "json":
+        print_json(records)
+
+
+def _counts(sight: Sight) -> dict[int, int]:
+    """How many points each label has."""
+    return {segment.label: segment.count for segment in sight.segments}
+
+
+def _records(sight: Sight, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
+    """Each object for programs: its label, its points, and the observation; null for clutter."""
+    counts = _counts(sight)
+    return [
+        {"label": label, "points": counts[label], "observation": seen} for label, seen in sorted(told.items())
+    ]
 
 
 def _rows(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
     """A row for each object: what it is taken for, and where the whole of it stands."""
     columns = ("object", "class", "probability", "points", "x", "y", "z", "yaw", "size [m]")
     rows = table(*columns, fold=("class", "size [m]"))
-    counts = {segment.label: segment.count for segment in sight.segments}
+    counts = _counts(sight)
     for label, seen in sorted(told.items()):
         words = [str(label), "?", "", str(counts[label])]
         if seen is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -32,6 +34,19 @@ def test_labels_have_the_shape_of_the_cloud(tmp_path, capsys, organised):
     for box in (1, 2):
         assert np.bincount(SEEN.truth.ravel()[labels.ravel() == box]).argmax() > 0
     assert "2 objects" in capsys.readouterr().out
+
+
+def test_json_is_for_programs(tmp_path, capsys):
+    cloud = write_cloud(tmp_path / "boxes.pcd")
+    assert execute(["perceive", cloud, "--format", "json", "--labels", str(tmp_path / "labels.npy")]) == 0
+    (frame,) = json.loads(capsys.readouterr().out)
+    assert (frame["file"], frame["frame"]) == (cloud, "plane")
+    labels = np.load(tmp_path / "labels.npy")
+    assert [thing["label"] for thing in frame["objects"]] == [1, 2]
+    assert [thing["points"] for thing in frame["objects"]] == [(labels == label).sum() for label in (1, 2)]
+    for thing in frame["objects"]:
+        assert 0.0 < thing["observation"]["probability"] <= 1.0
+        assert len(thing["observation"]["pose"]["position_m"]) == 3
 
 
 @pytest.mark.parametrize(
