@@ -100,5 +100,5 @@ def _rows(sight: Sight, told: Mapping[int, Observation | None]) -> Table:
             words += [f"{value:.3f}" for value in seen.pose.position_m]
             words += [f"{math.degrees(seen.pose.yaw_rad):.0f}°"]
             words += [" x ".join(f"{side:.3f}" for side in seen.size_m)]
-        rows.add_row(*words)
+        rows.add(*words, *[""] * (len(columns) - len(words)))
     return rows
