@@ -15,12 +15,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# On a busy machine the clock says nothing of the code: no deadlines, and input may take its time to be made.
+settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("busy")
 
 _BIN = Path(sys.executable).parent
 _START_S = 90.0
