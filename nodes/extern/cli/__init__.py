@@ -1,1 +1,4 @@
-"""The command line: `app.py` gathers the verbs, `talking.py` is what they share, `show.py` the looks."""
+"""The command line: it begins in `app.py`; `verbs.py` gathers the verbs.
+
+`talking.py` is what they share, `show.py` the looks.
+"""
