@@ -198,6 +198,20 @@ def test_so_is_an_error(network, prefix, verb, error):
         bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), commands.Done)
 
 
+def test_who_is_to_reply_may_come_late(network):
+    _, client = network
+    late = "semmap/late"
+
+    def serve():
+        time.sleep(0.5)
+        bus.serve(client, late, lambda request: request.reply(commands.Done(text="here")))
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    assert bus.ask(client, PREFIX, "explain", asking_for(late, "get"), commands.Done).text == "here"
+    thread.join()
+
+
 def test_somebody_who_comes_late_is_waited_for(network):
     node, client = network
     served: list[Future] = []
