@@ -183,7 +183,17 @@ def _settings(
     try:
         return codec.convert(values, Settings)
     except errors.BadRequest as error:
-        raise errors.BadRequest(error.text.removeprefix("malformed message: ")) from None
+        field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
+        raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _option_of(field: str) -> str:
+    """The word of the command line that a setting comes from, if it begins a complaint: `threshold_m`."""
+    name = field.removesuffix(":")
+    if name not in Settings.__struct_fields__:
+        return field
+    option = name.removesuffix("_m").removesuffix("_deg").replace("_", "-")
+    return f"--{option}{field[len(name) :]}"
 
 
 def _settings_before(data: Path) -> Settings | None:
