@@ -50,7 +50,7 @@ class Each(NamedTuple):
     """
 
     sums: s.Sums
-    count: s.Sums
+    cells: s.Sums
     middle: s.Sums
     spread: s.Sums
     normal: s.Sums
@@ -72,7 +72,7 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     each = _each(of)  # there are fewer patches than pairs
     small, big = (Each._make(column[rows] for column in each) for rows in (first, second))
     border, back = of.between[first, second].T, of.between[second, first].T
-    root = np.sqrt(small.count)
+    root = np.sqrt(small.cells)
     touch, wide, bends, sight = np.maximum(border[[s.TOUCH, s.WIDE, s.BENDS, s.SIGHT]], 1)
     spread_both = _spread(small.sums + big.sums)
     apart = big.middle - small.middle
@@ -83,7 +83,7 @@ def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     tall_small, tall_big = (of.high[:, 2] - of.low[:, 2] for of in (small, big))
     area_small, area_big = (np.prod(of.high[:, :2] - of.low[:, :2], axis=1) for of in (small, big))
     columns = [
-        *(np.log(small.count), np.log(big.count), small.count / big.count),
+        *(np.log(small.cells), np.log(big.cells), small.cells / big.cells),
         *(border[s.TOUCH] / root, border[s.STEP] / touch, border[s.BEFORE] / touch, back[s.BEFORE] / touch),
         *(border[s.WIDE] / root, border[s.BENDS] / wide),
         *(border[[s.BEND, s.CONCAVE, s.DEEP, s.CONVEX, s.LIKE]] / bends),
@@ -114,7 +114,7 @@ def _each(of: Statistics) -> Each:
     shade = sums[:, s.SHADE] / count[:, None]
     return Each(
         sums=sums,
-        count=count,
+        cells=count,
         middle=sums[:, s.POINT] / count[:, None],
         spread=_spread(sums),
         normal=normal,

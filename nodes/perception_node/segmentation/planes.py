@@ -50,9 +50,8 @@ class Plane:
     sides_m: tuple[float, float]
 
     def height_m(self, points: Floats) -> Floats:
-        """How far points (..., 3) are on the camera's side of it."""
-        height: Floats = points @ self.normal.astype(np.float32) - np.float32(self.offset_m)
-        return height
+        """How far points (3, ...) are on the camera's side of it."""
+        return _height(points, self.normal.astype(np.float32), np.float32(self.offset_m))
 
 
 def thickness_m(distance_m: Floats) -> Floats:
@@ -60,12 +59,17 @@ def thickness_m(distance_m: Floats) -> Floats:
     return np.asarray(np.maximum(0.009, 0.006 * distance_m**2), np.float32)
 
 
+def _height(points: Floats, normal: Floats, offset: np.float32) -> Floats:
+    x, y, z = points
+    return np.asarray(normal[0] * x + normal[1] * y + normal[2] * z - offset)
+
+
 def find_planes(
     points: Floats, map_from_camera: Transform | None, rng: np.random.Generator
 ) -> tuple[tuple[Plane, ...], Labels]:
-    """The planes of a picture (h, w, 3), and of each cell the number of its plane from 1, 0 for none."""
-    of_plane = np.zeros(points.shape[:2], np.int32)
-    thickness = thickness_m(points[..., 2])
+    """The planes of a picture (3, h, w), and of each cell the number of its plane from 1, 0 for none."""
+    of_plane = np.zeros(points.shape[1:], np.int32)
+    thickness = thickness_m(points[2])
     free = np.isfinite(thickness)
     everything = int(free.sum())
     share = _LEAST_SHARE_UNKNOWN if map_from_camera is None else _LEAST_SHARE
@@ -74,14 +78,14 @@ def find_planes(
         if free.sum() < max(_FEWEST_CELLS, share * everything):
             break
         normal, offset = _best(points, free, rng)
-        on = free & (np.abs(points @ normal - offset) < thickness)
+        on = free & (np.abs(_height(points, normal, offset)) < thickness)
         count = int(on.sum())
         if count < max(_FEWEST_CELLS, share * everything):
             break
         free &= ~on
         kind = _kind(normal, offset, map_from_camera, first=not planes)
         piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
-        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
+        sides = _sides(_some(points, piece, count), normal)
         least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
         if kind is None or (planes and sides[1] < least):
             continue
@@ -104,8 +108,8 @@ def _tops_of_things(
     boxes = {}
     for number, plane in enumerate(planes, 1):
         if plane.kind == "support":
-            own = points[of_plane == number][:: max(1, plane.points // _SAMPLE)]
-            boxes[number] = np.percentile(own @ pose[:3, :3].T + pose[:3, 3], (1, 99), axis=0)
+            own = _some(points, of_plane == number, plane.points)
+            boxes[number] = np.percentile(pose[:3, :3] @ own + pose[:3, 3:], (1, 99), axis=1)
     found = set()
     for top, other in permutations(boxes, 2):
         (low, high), (lowest, highest) = boxes[top], boxes[other]
@@ -115,6 +119,12 @@ def _tops_of_things(
         if over and smaller and 0 < (low + high - lowest - highest)[2] / 2 < _TALLEST_M:
             found.add(top)
     return found
+
+
+def _some(points: Floats, where: Mask, count: int) -> Floats:
+    """(3, N) of points (3, h, w) in a place of at most `count` cells: not many more than a sample."""
+    cells = np.flatnonzero(where)[:: max(1, count // _SAMPLE)]
+    return points.reshape(3, -1).take(cells, axis=1)
 
 
 def _largest_piece(on: Mask) -> Mask:
@@ -129,31 +139,32 @@ def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats,
     """The plane with most points, fitted to a sample of them: normal (3,) towards the camera, offset."""
     cells = np.flatnonzero(free)
     cells = cells[rng.integers(len(cells), size=_SAMPLE)]
-    voters = points.reshape(-1, 3)[cells]
-    thickness = thickness_m(voters[:, 2])
+    voters = points.reshape(3, -1).take(cells, axis=1)
+    thickness = thickness_m(voters[2])
     row, column = np.divmod(cells[:_TRIALS], free.shape[1])
-    corners = [voters[:_TRIALS]]
+    corners = [voters[:, :_TRIALS]]
     for _ in range(2):
         near = rng.integers(-_REACH_CELLS, _REACH_CELLS + 1, size=(2, _TRIALS))
         r = np.clip(row + near[0], 0, free.shape[0] - 1)
         c = np.clip(column + near[1], 0, free.shape[1] - 1)
-        corners.append(np.where(free[r, c, None], points[r, c], voters[rng.integers(_SAMPLE, size=_TRIALS)]))
-    normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    length = np.linalg.norm(normals, axis=1)
+        any_other = voters[:, rng.integers(_SAMPLE, size=_TRIALS)]
+        corners.append(np.where(free[r, c], points[:, r, c], any_other))
+    normals = np.cross(corners[1] - corners[0], corners[2] - corners[0], axis=0)
+    length = np.sqrt((normals * normals).sum(axis=0))
     length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
-    normals /= length[:, None]
-    offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=1))
-    off = np.abs(normals @ voters[:_VOTERS].T - offsets[:, None])
+    normals /= length
+    offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=0))
+    off = np.abs(normals.T @ voters[:, :_VOTERS] - offsets[:, None])
     votes = np.count_nonzero(off < thickness[:_VOTERS], axis=1)
-    normal, offset = normals[votes.argmax()], offsets[votes.argmax()]
+    normal, offset = normals[:, votes.argmax()], offsets[votes.argmax()]
     for _ in range(2):
-        on = voters[np.abs(voters @ normal - offset) < thickness]
-        if len(on) < 3:
+        on = voters[:, np.abs(_height(voters, normal, offset)) < thickness]
+        if on.shape[1] < 3:
             break
-        middle = on.mean(axis=0)
+        middle = on.mean(axis=1)
         # a plane's error in depth grows with the square of the distance, so near points count more
-        spread = (on - middle) / np.maximum(on[:, 2:], np.float32(0.3))
-        normal = np.linalg.eigh(spread.T @ spread)[1][:, 0].astype(np.float32)
+        spread = (on - middle[:, None]) / np.maximum(on[2], np.float32(0.3))
+        normal = np.linalg.eigh(spread @ spread.T)[1][:, 0].astype(np.float32)
         offset = np.float32(middle @ normal)
     return (normal, offset) if offset <= 0 else (-normal, -offset)
 
@@ -172,11 +183,11 @@ def _kind(
 
 
 def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
-    """Extent along the longer and the shorter axis within the plane, without the outermost points."""
+    """Extent of points (3, N) along the longer and the shorter axis within the plane, but for a few."""
     axes = np.linalg.svd(normal[None, :])[2][1:]
-    flat = points @ axes.T
-    flat = flat - flat.mean(axis=0)
-    main = np.linalg.eigh(flat.T @ flat)[1]
-    low, high = np.percentile(flat @ main, (2, 98), axis=0)
+    flat = axes @ points
+    flat -= flat.mean(axis=1, keepdims=True)
+    main = np.linalg.eigh(flat @ flat.T)[1]
+    low, high = np.percentile(main.T @ flat, (2, 98), axis=1)
     sides = high - low
     return float(sides.max()), float(sides.min())

@@ -42,10 +42,10 @@ class Trees:
 
     @cached_property
     def _asked(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint16]]:
-        """Each tree's first question, each one's second, and so on: feature (Q, T), threshold (Q, T, 1), and
-        the leaves that a *no* rules out (Q, T, 1); a tree that has no more asks its last one again.
+        """The trees' first questions, their second ones, and so on, since bits of many are joined at once.
 
-        Bits of many trees and rows are joined at once, which is several times as fast as tree by tree.
+        Feature (Q, T), threshold (Q, T, 1), and the leaves that a *no* rules out (Q, T, 1); a tree that has
+        no more questions asks its last one again.
         """
         count = np.diff(self.first, append=len(self.feature))
         at = self.first + np.minimum(np.arange(count.max(initial=0))[:, None], count - 1)

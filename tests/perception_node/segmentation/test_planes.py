@@ -76,7 +76,7 @@ def test_a_shelf_above_a_shelf_is_a_support():
     assert sorted(plane.kind for plane in planes) == ["floor", "support", "support"]
 
 
-@pytest.mark.parametrize("points", [np.full((8, 8, 3), np.nan), np.ones((8, 8, 3)), np.zeros((40, 40, 3))])
+@pytest.mark.parametrize("points", [np.full((3, 8, 8), np.nan), np.ones((3, 8, 8)), np.zeros((3, 40, 40))])
 def test_no_plane_in_what_has_none(points):
     planes, of_plane = find_planes(points.astype(np.float32), None, np.random.default_rng(0))
     assert planes == ()
