@@ -20,23 +20,24 @@ _BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
-_EVERY = 4
+EVERY = 4
+"""Of so many rows and columns one is enough to tell how high and how wide a plane is."""
 
 
-def with_furniture(
-    segmentation: Segmentation, points_map: Floats
-) -> tuple[NDArray[np.int32], frozenset[int]]:
+def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np.int32], frozenset[int]]:
     """Labels (H, W) in which such planes are things too, and the numbers of these.
 
-    `points_map`: (H, W, 3) [m].
+    `thin`: (H / EVERY, W / EVERY, 3) of every so many rows and columns the points, map frame [m].
     """
     labels, planes = segmentation.labels.copy(), segmentation.plane_labels
+    thin_planes = planes[::EVERY, ::EVERY]
     sides = [
         number
         for number, plane in enumerate(segmentation.planes, 1)
-        if plane.kind == "support" or (plane.kind == "wall" and _stands_free(points_map, planes == number))
+        if plane.kind == "support"
+        or (plane.kind == "wall" and _stands_free(thin[thin_planes == number], planes == number))
     ]
-    boxes = [_box(points_map[::_EVERY, ::_EVERY][planes[::_EVERY, ::_EVERY] == number]) for number in sides]
+    boxes = [_box(thin[thin_planes == number]) for number in sides]
     first = int(labels.max(initial=0)) + 1
     body = [first + n for n in _touching(boxes)]
     for n, own_label in zip(sides, body, strict=True):
@@ -79,11 +80,11 @@ def _box(points: Floats) -> Corners:
     return low, high
 
 
-def _stands_free(points_map: Floats, mask: NDArray[np.bool_]) -> bool:
+def _stands_free(points: Floats, mask: NDArray[np.bool_]) -> bool:
     """Whether an upright plane ends within the picture and below a room's height."""
     if mask[0].any() or mask[:, 0].any() or mask[:, -1].any():
         return False
-    low, high = _box(points_map[mask][::_EVERY])
+    low, high = _box(points)
     return bool(high[2] < _ROOM_M and np.hypot(*(high - low)[:2]) < _ROOM_M)
 
 
