@@ -20,6 +20,8 @@ _BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
+_HIGHEST = 0.99  # what is higher may be a few stray points
+
 EVERY = 4
 """Of so many rows and columns one is enough to tell how high and how wide a plane is."""
 
@@ -48,15 +50,15 @@ def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np
 def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
     """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
     clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
-    boxes = [_box(points) for points in clouds]
+    highest = [float(np.quantile(points[:, 2], _HIGHEST)) for points in clouds]
     tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
     joined = {n: [n] for n in range(len(groups))}
-    for n, (_, highest) in enumerate(boxes):
+    for n, own in enumerate(highest):
         if n in tops:
             continue
         for top in tops:
-            high = boxes[top][1][2]
-            reaches = _HANGING * high < highest[2] < high + 0.5 * _NEAR_M
+            high = highest[top]
+            reaches = _HANGING * high < own < high + 0.5 * _NEAR_M
             if reaches and _share_beneath(clouds[n], clouds[top]) > _BENEATH:
                 joined[top] += joined.pop(n)
                 break
@@ -76,7 +78,7 @@ def _box(points: Floats) -> Corners:
     """The map's lowest and highest coordinates (3,) of points (N, 3), a few stray ones apart."""
     if not len(points):
         return np.full(3, np.inf, np.float32), np.full(3, -np.inf, np.float32)
-    low, high = np.quantile(points, [0.01, 0.99], axis=0).astype(np.float32)
+    low, high = np.quantile(points, [1 - _HIGHEST, _HIGHEST], axis=0).astype(np.float32)
     return low, high
 
 
