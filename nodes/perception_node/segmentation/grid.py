@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -31,14 +30,34 @@ class Grid:
     """Cells of the working picture, (h, w), `step` pixels wide and high.
 
     `points`: (3, h, w) x, y and z, since long rows are computed with faster, camera frame [m], NaN where
-    nothing was seen: of each cell the nearest surface. `shades`: (3, h, w) see `shades_of`; NaN where the
-    camera sees no colours. `depth`: (H, W) how deep the cloud's points are, not above 0 for none.
+    nothing was seen: of each cell the nearest surface. `weights`: (N, h, w) the shares of its pixels in that.
+    `depth`: (H, W) how deep the cloud's points are, not above 0 for none. `colors`: the cloud's.
     """
 
     points: Floats
-    shades: Floats
+    weights: Floats
     depth: Floats
+    colors: NDArray[np.uint8] | None
     step: int
+
+    def shades(self, where: Mask) -> Floats:
+        """(3, h, w) the colours of the cells in `where`, see `shades_of`; NaN elsewhere and if unknown."""
+        out = np.full(self.points.shape, np.nan, np.float32)
+        if self.colors is None:
+            return out
+        cells = np.flatnonzero(where)
+        row, column = np.divmod(cells, where.shape[1])
+        height, width = self.depth.shape
+        mean = np.zeros((len(cells), 3), np.float32)
+        for weight, (down, right) in zip(self.weights, _offsets(self.step), strict=True):
+            # beyond the picture's edge the weight is 0
+            r, c = (
+                np.minimum(row * self.step + down, height - 1),
+                np.minimum(column * self.step + right, width - 1),
+            )
+            mean += weight.ravel()[cells, None] * self.colors.reshape(-1, 3).take(r * width + c, axis=0)
+        out.reshape(3, -1)[:, cells] = shades_of(mean.T)
+        return out
 
 
 def grid_of(cloud: Cloud) -> Grid:
@@ -47,17 +66,23 @@ def grid_of(cloud: Cloud) -> Grid:
     # NaN times 0 would be NaN
     axes = [np.fmax(cloud.points_camera[..., axis], _LOWEST) for axis in range(3)]
     weights = _weights(axes[2], step)
-    points = _averaged(axes, weights, step)
-    if cloud.colors is None:
-        return Grid(points, np.full(points.shape, np.nan, np.float32), axes[2], step)
-    colors = _averaged([cloud.colors[..., channel] for channel in range(3)], weights, step)
-    return Grid(points, shades_of(colors), axes[2], step)
+    points = np.zeros((3, *weights.shape[1:]), np.float32)
+    for cells, picture in zip(points, axes, strict=True):
+        for weight, corner in zip(weights, _corners(picture, step), strict=True):
+            height, width = corner.shape
+            cells[:height, :width] += weight[:height, :width] * corner
+    return Grid(points, weights, axes[2], cloud.colors, step)
 
 
-def _corners(picture: NDArray[Any], step: int) -> list[NDArray[Any]]:
-    """Views of a picture (H, W): the same pixel of each cell, at most four of them."""
-    offsets = sorted({0, step // 2})
-    return [picture[r::step, c::step] for r, c in product(offsets, offsets)]
+def _offsets(step: int) -> list[tuple[int, int]]:
+    """Which pixels of a cell are looked at: at most four."""
+    sides = sorted({0, step // 2})
+    return list(product(sides, sides))
+
+
+def _corners(picture: Floats, step: int) -> list[Floats]:
+    """Views of a picture (H, W): the same pixel of each cell."""
+    return [picture[r::step, c::step] for r, c in _offsets(step)]
 
 
 def _weights(depth: Floats, step: int) -> Floats:
@@ -67,26 +92,13 @@ def _weights(depth: Floats, step: int) -> Floats:
     """
     corners = _corners(depth, step)
     z = np.full((len(corners), *corners[0].shape), np.inf, np.float32)
-    for of, corner in zip(z, corners, strict=True):
-        inner = of[
-            : corner.shape[0], : corner.shape[1]
-        ]  # a cell at the picture's edge may have no such pixel
-        np.copyto(inner, corner, where=corner > 0)
+    for of, corner in zip(z, corners, strict=True):  # a cell at the picture's edge may lack some
+        np.copyto(of[: corner.shape[0], : corner.shape[1]], corner, where=corner > 0)
     nearest = z.min(axis=0)
     nearest[np.isinf(nearest)] = np.nan
     front = z <= nearest * np.float32(1 + _SAME_SURFACE)  # NaN is not
     with np.errstate(invalid="ignore"):
         return np.asarray(front / front.sum(axis=0, dtype=np.float32))
-
-
-def _averaged(pictures: Sequence[NDArray[Any]], weights: Floats, step: int) -> Floats:
-    """(P, h, w) of P pictures (H, W)."""
-    cells = np.zeros((len(pictures), *weights.shape[1:]), np.float32)
-    for cell, picture in zip(cells, pictures, strict=True):
-        for weight, corner in zip(weights, _corners(picture, step), strict=True):
-            height, width = corner.shape
-            cell[:height, :width] += weight[:height, :width] * corner
-    return cells
 
 
 def shades_of(colors: NDArray[Any]) -> Floats:

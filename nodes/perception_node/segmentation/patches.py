@@ -71,20 +71,21 @@ def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
     """Labels spread over cells of `where` without one, each to the label of the nearest cell at its side."""
     padded = np.pad(labels, 1)
     flat, width = padded.ravel(), padded.shape[1]
+    around = np.array([[1], [-1], [width], [-width]])
     z = np.pad(points[2], 1, constant_values=np.nan).ravel()
-    free = np.flatnonzero(np.pad(where & (labels == 0), 1))
-    sides = free + np.array([[1], [-1], [width], [-width]])
-    off = np.abs(z[sides] - z[free])
-    off[~(off <= _STEP_M * np.maximum(z[free], z[free] ** 2))] = np.inf
+    free = np.pad(where & (labels == 0), 1).ravel()
+    cells = np.flatnonzero(free)
     for _ in range(_GROWTH):
-        offered = np.where(flat[sides] > 0, off, np.float32(np.inf))
-        best = offered.argmin(axis=0)
-        index = np.arange(len(free))
-        takes = np.isfinite(offered[best, index])
-        if not takes.any():
-            break
-        flat[free[takes]] = flat[sides[best, index][takes]]
-        free, sides, off = free[~takes], sides[:, ~takes], off[:, ~takes]
+        sides, own = cells + around, z[cells]
+        off = np.abs(z[sides] - own)
+        off[~(off <= _STEP_M * np.maximum(own, own * own)) | (flat[sides] == 0)] = np.inf
+        best = off.argmin(axis=0), np.arange(len(cells))
+        takes = np.isfinite(off[best])
+        new = cells[takes]
+        flat[new] = flat[sides[best][takes]]
+        free[new] = False
+        cells = (new + around).ravel()  # only beside these there is something new
+        cells = cells[free[cells]]
     return padded[1:-1, 1:-1]
 
 

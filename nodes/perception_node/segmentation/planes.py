@@ -27,6 +27,7 @@ _LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
 _LEAST_SHARE_UNKNOWN = 0.2  # where gravity is unknown, and a box's side might be meant
 _LEAST_SIDE_M = 0.35
 _LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or of several in a row
+_STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
@@ -84,10 +85,12 @@ def find_planes(
             break
         free &= ~on
         kind = _kind(normal, offset, map_from_camera, first=not planes)
+        if kind is None:
+            continue
         piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
         sides = _sides(_some(points, piece, count), normal)
         least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
-        if kind is None or (planes and sides[1] < least):
+        if planes and sides[1] < least:
             continue
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)
@@ -188,6 +191,7 @@ def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
     flat = axes @ points
     flat -= flat.mean(axis=1, keepdims=True)
     main = np.linalg.eigh(flat @ flat.T)[1]
-    low, high = np.percentile(main.T @ flat, (2, 98), axis=1)
-    sides = high - low
+    along = np.sort(main.T @ flat, axis=1)
+    stray = round(_STRAY * along.shape[1])
+    sides = along[:, -1 - stray] - along[:, stray]
     return float(sides.max()), float(sides.min())

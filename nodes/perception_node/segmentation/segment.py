@@ -76,10 +76,11 @@ def taken_apart(cloud: Cloud) -> Parts:
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
     window = _window(where)
-    points, shades = (of[:, *window] for of in (grid.points, grid.shades))
+    points = grid.points[:, *window]
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
+    shades = grid.shades(of_patch > 0)[:, *window]
     known = statistics(of_patch[window], points, surface, shades, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 

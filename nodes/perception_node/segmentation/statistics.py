@@ -28,7 +28,6 @@ _STEP_M = 0.007
 _SAME_SURFACE_M = 0.02
 _SAMPLES = 12
 _FAR = 4
-_APART = ((0, _FAR), (_FAR, 0), (3, 3), (3, -3))
 _SINES = np.sin(np.radians((20, 45)))
 
 
@@ -105,45 +104,46 @@ def statistics(
 class _Cells:
     """The N cells of all patches: rows of values instead of pictures, since most cells are in none.
 
-    `row`, `column`, `owner`: (N,), patches from 0. `points`, `normals`, `shades`: (3, N). `number`: (h, w) of
-    each cell, -1 for those in no patch, with a margin of `_FAR` on all sides.
+    `place`: (N,) the cell's number in the picture, `owner`: (N,) its patch, from 0. `points`, `normals`,
+    `shades`: (3, N). `number`: (h, w) each cell's number among these, -1 for those in no patch, with a margin
+    of `_FAR` on all sides.
     """
 
-    row: Indices
-    column: Indices
+    place: Indices
     owner: Indices
     points: Floats
     normals: Floats
     shades: Floats
     number: Indices
 
-    def pairs(self, rows: int, columns: int) -> tuple[Indices, Indices]:
+    def pairs(self, *shifts: tuple[int, int]) -> tuple[Indices, Indices]:
         """The numbers of cells, and of those that are so far down and right of them in another patch."""
         width = self.number.shape[1]
-        place = (self.row + _FAR + rows) * width + self.column + _FAR + columns
-        other = self.number.ravel()[place]
-        first = np.flatnonzero((other >= 0) & (self.owner[other] != self.owner))
-        return first, other[first]
+        middle = np.flatnonzero(self.number >= 0)
+        places = np.concatenate([middle + rows * width + columns for rows, columns in shifts])
+        other, own = self.number.ravel()[places], np.tile(self.owner, len(shifts))
+        found = np.flatnonzero((other >= 0) & (self.owner[other] != own))
+        return found % len(middle), other[found]
 
 
 def _cells_of(labels: Labels, points: Floats, normals: Floats, shades: Floats) -> _Cells:
-    row, column = np.nonzero(labels)
-    number = np.full([side + 2 * _FAR for side in labels.shape], -1)
-    number[row + _FAR, column + _FAR] = np.arange(len(row))
-    own, p, n, shade = labels[row, column], *(of[:, row, column] for of in (points, normals, shades))
-    return _Cells(row, column, own.astype(np.int64) - 1, p, np.nan_to_num(n), shade, number)
+    place = np.flatnonzero(labels)
+    number = np.full(labels.shape, -1)
+    number.ravel()[place] = np.arange(len(place))
+    p, n, shade = (of.reshape(3, -1).take(place, axis=1) for of in (points, normals, shades))
+    owner = labels.ravel()[place].astype(np.int64) - 1
+    return _Cells(place, owner, p, np.nan_to_num(n), shade, np.pad(number, _FAR, constant_values=-1))
 
 
 def _hides(cells: _Cells, labels: Labels, depth: Floats) -> Sums:
     """(N,) at how many sides of cells something else is nearer: the patch may go on behind it."""
     hidden = np.zeros(len(cells.owner))
     z, label = np.pad(depth, 1, constant_values=np.nan), np.pad(labels, 1)
-    own, far = cells.owner + 1, cells.points[2]
-    for rows, columns in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-        place = cells.row + 1 + rows, cells.column + 1 + columns
-        near = z[place]
-        step = _STEP_M * np.maximum(near, near**2)
-        hidden += (label[place] != own) & (far - near > step)
+    middle = np.flatnonzero(label)
+    for side in (1, -1, z.shape[1], -z.shape[1]):
+        near, other = z.ravel()[middle + side], label.ravel()[middle + side]
+        step = _STEP_M * np.maximum(near, near * near)
+        hidden += (other != cells.owner + 1) & (cells.points[2] - near > step)
     return hidden
 
 
@@ -160,7 +160,7 @@ def _sums(count: int, a: Indices, b: Indices, values: NDArray[np.generic]) -> Su
 
 def _touching(between: Sums, cells: _Cells) -> None:
     """Cells side by side."""
-    i, j = np.concatenate([cells.pairs(0, 1), cells.pairs(1, 0)], axis=1)
+    i, j = cells.pairs((0, 1), (1, 0))
     a, b, z, far = cells.owner[i], cells.owner[j], cells.points[2, i], cells.points[2, j]
     step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
     _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step})
@@ -170,13 +170,14 @@ def _touching(between: Sums, cells: _Cells) -> None:
 
 def _bending(between: Sums, cells: _Cells) -> None:
     """Cells four apart, which sees past rounded edges and narrow shadows."""
-    i, j = np.concatenate([cells.pairs(*shift) for shift in _APART], axis=1)
-    p, q = cells.points[:, i], cells.points[:, j]
-    m, n = cells.normals[:, i], cells.normals[:, j]
+    i, j = cells.pairs((0, _FAR), (_FAR, 0), (3, 3), (3, -3))
+    (p, q), (m, n), shades = (
+        (of.take(i, axis=1), of.take(j, axis=1)) for of in (cells.points, cells.normals, cells.shades)
+    )
     apart = q - p
     length = np.maximum(np.sqrt((apart * apart).sum(axis=0)), np.float32(1e-6))
     bend = ((n - m) * apart).sum(axis=0) / length
-    brighter, *coloured = np.abs(cells.shades[:, i] - cells.shades[:, j])
+    brighter, *coloured = np.abs(np.subtract(*shades))
     near = np.abs(apart[2]) < _SAME_SURFACE_M * np.maximum(1, p[2] ** 2)
     columns = {
         WIDE: np.ones(len(i)),
@@ -197,7 +198,8 @@ def _seen_between(between: Sums, cells: _Cells, labels: Labels, depth: Floats) -
     count = len(between)
     size = np.bincount(cells.owner, minlength=count)
     row, column, mean = (
-        np.bincount(cells.owner, of, count) / size for of in (cells.row, cells.column, cells.points[2])
+        np.bincount(cells.owner, of, count) / size
+        for of in (*np.divmod(cells.place, labels.shape[1]), cells.points[2])
     )
     a, b = np.triu_indices(count, 1)
     t = ((np.arange(_SAMPLES) + 0.5) / _SAMPLES)[:, None]

@@ -38,10 +38,13 @@ def test_a_cell_has_the_colour_of_what_is_in_front():
     points[10, 20, 2] = 1.0
     colors = np.full((480, 640, 3), 100, np.uint8)
     colors[10, 20] = (250, 0, 0)
-    grid = grid_of(Cloud(points, colors))
-    np.testing.assert_allclose(grid.shades[:, 5, 10], shades_of(np.array([250, 0, 0])), atol=1e-6)
-    np.testing.assert_allclose(grid.shades[1:, 6, 10], 0.0, atol=1e-6)
-    assert np.isnan(grid_of(Cloud(points)).shades).all()
+    where = np.zeros((240, 320), dtype=bool)
+    where[5:7, 10] = True
+    shades = grid_of(Cloud(points, colors)).shades(where)
+    np.testing.assert_allclose(shades[:, 5, 10], shades_of(np.array([250, 0, 0])), atol=1e-6)
+    np.testing.assert_allclose(shades[1:, 6, 10], 0.0, atol=1e-6)
+    np.testing.assert_array_equal(np.isfinite(shades[0]), where)
+    assert np.isnan(grid_of(Cloud(points)).shades(where)).all()
 
 
 @pytest.mark.parametrize("shape", [(480, 640), (481, 643), (240, 320), (2, 3), (600, 1300)])
