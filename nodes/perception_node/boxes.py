@@ -49,7 +49,7 @@ def in_frame(points: Numbers, yaw_rad: float) -> Numbers:
 
 def best_yaw(points: Numbers) -> float:
     """The yaw [rad], to a degree and a quarter turn, of the smallest upright box around points (N, 3)."""
-    xy = points[:, :2]
+    xy = np.ascontiguousarray(points[:, :2].T)
     rough = _COARSE_RAD[np.argmin(_areas(xy, _COARSE_RAD))]
     fine = rough + _FINE_RAD
     return float(fine[np.argmin(_areas(xy, fine))])
@@ -57,7 +57,7 @@ def best_yaw(points: Numbers) -> float:
 
 def _areas(xy: Numbers, yaws_rad: Numbers) -> Numbers:
     c, s = np.cos(yaws_rad), np.sin(yaws_rad)
-    along_across = np.stack([np.concatenate([c, -s]), np.concatenate([s, c])], axis=1) @ xy.T
+    along_across = np.stack([np.concatenate([c, -s]), np.concatenate([s, c])], axis=1) @ xy
     return np.asarray(np.ptp(along_across, axis=1).reshape(2, -1).prod(axis=0))
 
 

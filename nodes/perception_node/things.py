@@ -108,7 +108,7 @@ def _cubes(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArra
     place = ((corners - low[:, None]) / edge).astype(np.int64)
     shape = place.max(axis=1) + 1
     key = (place[0] * shape[1] + place[1]) * shape[2] + place[2]
-    any_point = np.full(int(shape.prod()), -1)  # in each cube
+    any_point = np.full(int(shape.prod()), -1, np.int32)  # in each cube
     any_point[key] = np.arange(len(key))
     used = np.flatnonzero(any_point >= 0)
     coarse = tuple(place.take(any_point[used], axis=1) // _GAP_CELLS)

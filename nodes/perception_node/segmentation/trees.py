@@ -37,7 +37,8 @@ class Trees:
         answers = np.ascontiguousarray(features.T)[feature] > threshold
         left = ~np.bitwise_or.reduce(answers * rules_out, axis=0)
         leaf = _LOWEST_BIT[left & -left]
-        total = np.take_along_axis(self.value, leaf, axis=1).sum(axis=0) + np.float32(self.bias)
+        value = self.value.ravel().take(leaf + LEAVES * np.arange(len(leaf))[:, None])
+        total = value.sum(axis=0) + np.float32(self.bias)
         return np.asarray(1 / (1 + np.exp(-total)), np.float32)
 
     @cached_property
