@@ -27,14 +27,16 @@ def clustered(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
 def _dbscan(sight: Sight) -> Sight:
     import open3d
 
-    thin = sight.points[::_EVERY, ::_EVERY]
+    thin = sight.cloud.points_camera[::_EVERY, ::_EVERY]
     out = np.isfinite(thin[..., 2]) & (sight.planes[::_EVERY, ::_EVERY] == 0)
     points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(thin[out].astype(float)))
     small = np.zeros(out.shape, np.int32)
     small[out] = np.asarray(points.cluster_dbscan(_NEAR_M, _FEWEST), np.int32) + 1
     labels = np.repeat(np.repeat(small, _EVERY, axis=0), _EVERY, axis=1)
     labels = labels[: sight.planes.shape[0], : sight.planes.shape[1]]
-    labels = np.where((sight.planes == 0) & np.isfinite(sight.points[..., 2]), labels, 0).astype(np.int32)
+    labels = np.where((sight.planes == 0) & np.isfinite(sight.cloud.points_camera[..., 2]), labels, 0).astype(
+        np.int32
+    )
     labels[(np.bincount(labels.ravel()) < _LEAST)[labels]] = 0
     return labelled(sight, labels, frozenset())
 

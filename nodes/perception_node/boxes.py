@@ -49,7 +49,7 @@ def in_frame(points: Numbers, yaw_rad: float) -> Numbers:
 
 def best_yaw(points: Numbers) -> float:
     """The yaw [rad], to a degree and a quarter turn, of the smallest upright box around points (N, 3)."""
-    xy = points[:, :2]
+    xy = np.ascontiguousarray(points[:, :2].T)
     rough = _COARSE_RAD[np.argmin(_areas(xy, _COARSE_RAD))]
     fine = rough + _FINE_RAD
     return float(fine[np.argmin(_areas(xy, fine))])
@@ -57,13 +57,13 @@ def best_yaw(points: Numbers) -> float:
 
 def _areas(xy: Numbers, yaws_rad: Numbers) -> Numbers:
     c, s = np.cos(yaws_rad), np.sin(yaws_rad)
-    along, across = np.column_stack([c, s]) @ xy.T, np.column_stack([-s, c]) @ xy.T
-    return np.asarray(np.ptp(along, axis=1) * np.ptp(across, axis=1))
+    along_across = np.stack([np.concatenate([c, -s]), np.concatenate([s, c])], axis=1) @ xy
+    return np.asarray(np.ptp(along_across, axis=1).reshape(2, -1).prod(axis=0))
 
 
 def box_around(points: Numbers, yaw_rad: float, bottom_m: float) -> Box:
     """The upright box of this yaw around map points (N, 3), down to `bottom_m`."""
-    turned = in_frame(points, yaw_rad)
-    low, high = turned.min(axis=0), turned.max(axis=0)
+    turned = np.ascontiguousarray(in_frame(points, yaw_rad).T)  # a minimum over long rows is faster
+    low, high = turned.min(axis=1), turned.max(axis=1)
     low[2] = bottom_m
     return Box(low, np.maximum(high, low + _LEAST_M), yaw_rad)

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from nodes.perception_node.fusion import shown_by_others
-from nodes.perception_node.segments import Segment
+from nodes.perception_node.segments import Segment, in_map
 from nodes.perception_node.sights import Sight, labelled
 
 _APART = 0.06
@@ -60,10 +60,11 @@ def _divided(
     group: NDArray[np.int32],
 ) -> NDArray[np.int32]:
     """Labels (H, W) in which the points of one label go to the groups of parts that they are nearest to."""
-    pixels = np.flatnonzero((sight.labels == label).ravel() & np.isfinite(sight.points[..., 2]).ravel())
+    pixels = np.flatnonzero(sight.labels == label)
+    points = in_map(sight.cloud.points_camera.reshape(-1, 3)[pixels], sight.map_from_camera)
     whose = np.repeat(group, [len(part.points) for part in parts])
     tree = KDTree(np.concatenate([part.points for part in parts]))
-    nearest = whose[tree.query(sight.points.reshape(-1, 3)[pixels])[1]]
+    nearest = whose[tree.query(points)[1]]
     divided, free = labels.copy(), int(labels.max()) + 1
     for number in range(1, int(group.max()) + 1):
         own = pixels[nearest == number]

@@ -20,23 +20,26 @@ _BENEATH = 0.5
 _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
-_EVERY = 4
+_HIGHEST = 0.99  # what is higher may be a few stray points
+
+EVERY = 4
+"""Of so many rows and columns one is enough to tell how high and how wide a plane is."""
 
 
-def with_furniture(
-    segmentation: Segmentation, points_map: Floats
-) -> tuple[NDArray[np.int32], frozenset[int]]:
+def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np.int32], frozenset[int]]:
     """Labels (H, W) in which such planes are things too, and the numbers of these.
 
-    `points_map`: (H, W, 3) [m].
+    `thin`: (H / EVERY, W / EVERY, 3) of every so many rows and columns the points, map frame [m].
     """
     labels, planes = segmentation.labels.copy(), segmentation.plane_labels
+    thin_planes = planes[::EVERY, ::EVERY]
     sides = [
         number
         for number, plane in enumerate(segmentation.planes, 1)
-        if plane.kind == "support" or (plane.kind == "wall" and _stands_free(points_map, planes == number))
+        if plane.kind == "support"
+        or (plane.kind == "wall" and _stands_free(thin[thin_planes == number], planes == number))
     ]
-    boxes = [_box(points_map[::_EVERY, ::_EVERY][planes[::_EVERY, ::_EVERY] == number]) for number in sides]
+    boxes = [_box(thin[thin_planes == number]) for number in sides]
     first = int(labels.max(initial=0)) + 1
     body = [first + n for n in _touching(boxes)]
     for n, own_label in zip(sides, body, strict=True):
@@ -47,15 +50,15 @@ def with_furniture(
 def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
     """Which groups of segments are one thing: a top, and what is below it and reaches up to near it."""
     clouds = [np.concatenate([segment.points for segment in group]) for group in groups]
-    boxes = [_box(points) for points in clouds]
+    highest = [float(np.quantile(points[:, 2], _HIGHEST)) for points in clouds]
     tops = [n for n, group in enumerate(groups) if any(segment.carrier for segment in group)]
     joined = {n: [n] for n in range(len(groups))}
-    for n, (_, highest) in enumerate(boxes):
+    for n, own in enumerate(highest):
         if n in tops:
             continue
         for top in tops:
-            high = boxes[top][1][2]
-            reaches = _HANGING * high < highest[2] < high + 0.5 * _NEAR_M
+            high = highest[top]
+            reaches = _HANGING * high < own < high + 0.5 * _NEAR_M
             if reaches and _share_beneath(clouds[n], clouds[top]) > _BENEATH:
                 joined[top] += joined.pop(n)
                 break
@@ -75,15 +78,15 @@ def _box(points: Floats) -> Corners:
     """The map's lowest and highest coordinates (3,) of points (N, 3), a few stray ones apart."""
     if not len(points):
         return np.full(3, np.inf, np.float32), np.full(3, -np.inf, np.float32)
-    low, high = np.quantile(points, [0.01, 0.99], axis=0).astype(np.float32)
+    low, high = np.quantile(points, [1 - _HIGHEST, _HIGHEST], axis=0).astype(np.float32)
     return low, high
 
 
-def _stands_free(points_map: Floats, mask: NDArray[np.bool_]) -> bool:
+def _stands_free(points: Floats, mask: NDArray[np.bool_]) -> bool:
     """Whether an upright plane ends within the picture and below a room's height."""
     if mask[0].any() or mask[:, 0].any() or mask[:, -1].any():
         return False
-    low, high = _box(points_map[mask][::_EVERY])
+    low, high = _box(points)
     return bool(high[2] < _ROOM_M and np.hypot(*(high - low)[:2]) < _ROOM_M)
 
 

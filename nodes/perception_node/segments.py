@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import Cloud, Floats
+from nodes.perception_node.cloud import Cloud, Floats, Transform
 
 MOST_POINTS = 3000
 """A segment of more points is thinned: what is learnt from it does not get better with more."""
-
 
 _LEAST_M = 0.005
 """What measures less is no thing, but one point seen again and again."""
@@ -35,11 +34,16 @@ class Segment:
     carrier: bool = False
 
 
-def map_points(cloud: Cloud, map_from_camera: NDArray[np.float64]) -> Floats:
+def map_points(cloud: Cloud, map_from_camera: Transform) -> Floats:
     """(H, W, 3) the cloud's points in the map frame [m]."""
+    return in_map(cloud.points_camera, map_from_camera)
+
+
+def in_map(points_camera: Floats, map_from_camera: Transform) -> Floats:
+    """(..., 3) points of a camera's frame in the map frame [m]."""
     pose = map_from_camera.astype(np.float32)
-    x, y, z = np.moveaxis(cloud.points_camera, -1, 0)
-    points = np.empty_like(cloud.points_camera)
+    x, y, z = np.moveaxis(points_camera, -1, 0)
+    points = np.empty_like(points_camera)
     for axis in range(3):  # a matrix product takes ten times as long for three columns
         points[..., axis] = pose[axis, 0] * x + pose[axis, 1] * y + pose[axis, 2] * z + pose[axis, 3]
     return points
@@ -47,29 +51,29 @@ def map_points(cloud: Cloud, map_from_camera: NDArray[np.float64]) -> Floats:
 
 def cut_out(
     cloud: Cloud,
-    points_map: Floats,
+    map_from_camera: Transform,
     labels: NDArray[np.int32],
-    eye: NDArray[np.float64],
     carriers: frozenset[int] = frozenset(),
 ) -> list[Segment]:
-    """The segments of one labelled view: `points_map` (H, W, 3), `labels` (H, W) with 0 for background."""
-    pixels = np.flatnonzero((labels.ravel() > 0) & np.isfinite(points_map[..., 2]).ravel())
-    owner = labels.ravel()[pixels].astype(np.uint16)  # which is sorted by counting
-    order = np.argsort(owner, kind="stable")
-    pixels, owner = pixels[order], owner[order]
+    """The segments of one labelled view: `labels` (H, W), 0 for background and where nothing was seen."""
+    flat = labels.ravel().astype(np.uint16)  # of which more are compared at once
+    points_camera = cloud.points_camera.reshape(-1, 3)
     at_edge = _labels_at_edge(labels) if cloud.organised else frozenset()
     found = []
-    for own in np.split(pixels, np.flatnonzero(np.diff(owner)) + 1) if len(pixels) else ():
-        label = int(labels.ravel()[own[0]])
-        thin = own[:: max(1, -(-len(own) // MOST_POINTS))]
-        if np.ptp(points_map.reshape(-1, 3)[thin], axis=0).max() < _LEAST_M:
+    for label in range(1, int(labels.max(initial=0)) + 1):
+        own = np.flatnonzero(flat == label)
+        if not own.size:
+            continue
+        thin = own[:: -(-len(own) // MOST_POINTS)]
+        points = in_map(points_camera.take(thin, axis=0), map_from_camera)
+        if max(np.ptp(points[:, axis]) for axis in range(3)) < _LEAST_M:
             continue
         found.append(
             Segment(
-                points=points_map.reshape(-1, 3)[thin],
-                colors=None if cloud.colors is None else cloud.colors.reshape(-1, 3)[thin],
+                points=points,
+                colors=None if cloud.colors is None else cloud.colors.reshape(-1, 3).take(thin, axis=0),
                 label=label,
-                eye=eye,
+                eye=map_from_camera[:3, 3],
                 cut=label in at_edge,
                 count=len(own),
                 carrier=label in carriers,

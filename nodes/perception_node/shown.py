@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.pipeline import Look
-from nodes.perception_node.segments import map_points
+from nodes.perception_node.segments import in_map
 from schemas.perception import SegmentedCloud
 
 MOST_POINTS = 20_000
@@ -33,7 +33,7 @@ def _thinned(
     cloud: Cloud, labels: NDArray[np.int32], step: int
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.int32]]:
     pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
-    points = map_points(cloud, pose).reshape(-1, 3)[::step]
+    points = in_map(cloud.points_camera.reshape(-1, 3)[::step], pose)
     seen = np.isfinite(points[:, 2])
     grey = np.full((len(points), 3), 128, np.uint8)
     colors = grey if cloud.colors is None else cloud.colors.reshape(-1, 3)[::step]

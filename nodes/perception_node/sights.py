@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud, Floats
-from nodes.perception_node.furniture import with_furniture
+from nodes.perception_node.furniture import EVERY, with_furniture
 from nodes.perception_node.segmentation import Plane, Segmentation, segment
-from nodes.perception_node.segments import Segment, cut_out, map_points
-
-_EVERY = 4  # pixels are enough to tell how high a plane is
+from nodes.perception_node.segments import Segment, cut_out, in_map
 
 
 @dataclass(frozen=True)
@@ -20,15 +18,13 @@ class Sight:
     """A cloud in the map, with its segments.
 
     `map_from_camera`: (4, 4); where nobody knows it, the largest plane is taken for the map's floor.
-    `points`: (H, W, 3), map frame [m]. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on
-    which others may stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of
-    horizontal planes. `same`: (N, N) how likely segments n + 1 and m + 1 are one all the same, 0 where nobody
-    knows.
+    `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: on which others may stand. `planes`:
+    (H, W) the plane of each pixel, 0 for none. `supports_m`: heights of horizontal planes. `same`: (N, N) how
+    likely segments n + 1 and m + 1 are one all the same, 0 where nobody knows.
     """
 
     cloud: Cloud
     map_from_camera: NDArray[np.float64]
-    points: Floats
     labels: NDArray[np.int32]
     carriers: frozenset[int]
     planes: NDArray[np.int32]
@@ -41,18 +37,18 @@ def see(cloud: Cloud) -> Sight:
     """Take a cloud apart."""
     segmentation = segment(cloud)
     pose = _standing_on(segmentation.planes) if cloud.map_from_camera is None else cloud.map_from_camera
-    points = map_points(cloud, pose)
+    thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
     if cloud.map_from_camera is not None:  # else the largest plane is taken for the floor, whatever it is
-        labels, carriers = with_furniture(segmentation, points)
-    heights = _heights(segmentation, points)
-    bare = Sight(cloud, pose, points, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
+        labels, carriers = with_furniture(segmentation, thin)
+    heights = _heights(segmentation, thin)
+    bare = Sight(cloud, pose, labels, carriers, segmentation.plane_labels, heights, segmentation.same)
     return labelled(bare, labels, carriers)
 
 
 def labelled(sight: Sight, labels: NDArray[np.int32], carriers: frozenset[int]) -> Sight:
     """The same cloud cut up by other labels (H, W)."""
-    segments = cut_out(sight.cloud, sight.points, labels, sight.map_from_camera[:3, 3], carriers)
+    segments = cut_out(sight.cloud, sight.map_from_camera, labels, carriers)
     return replace(sight, labels=labels, carriers=carriers, segments=tuple(segments))
 
 
@@ -71,10 +67,10 @@ def _standing_on(planes: tuple[Plane, ...]) -> NDArray[np.float64]:
     return pose
 
 
-def _heights(segmentation: Segmentation, points: Floats) -> tuple[float, ...]:
+def _heights(segmentation: Segmentation, thin: Floats) -> tuple[float, ...]:
     level = [
         n for n, plane in enumerate(segmentation.planes, 1) if plane.kind in ("floor", "support", "plane")
     ]
-    z, planes = (of[::_EVERY, ::_EVERY] for of in (points[..., 2], segmentation.plane_labels))
-    heights = [z[planes == n] for n in level]
+    planes = segmentation.plane_labels[::EVERY, ::EVERY]
+    heights = [thin[planes == n, 2] for n in level]
     return tuple(float(np.median(height)) for height in heights if len(height))

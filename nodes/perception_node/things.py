@@ -75,7 +75,7 @@ def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
         cells=cells,
         colors=shade,
         box=box_around(cells, best_yaw(cells), support),
-        eyes=np.unique([segment.eye for segment in segments], axis=0),
+        eyes=np.array(sorted({tuple(segment.eye.tolist()) for segment in segments})),
         lifted_m=lowest - support,
     )
 
@@ -90,8 +90,8 @@ def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, N
     crowded = counts > (1 if counts.mean() > _CROWDED else 0)
 
     def means(values: NDArray[np.generic]) -> Numbers:
-        sums = [np.bincount(cell, column)[crowded] for column in values.T]
-        return np.stack(sums, axis=1) / counts[crowded, None]
+        sums = np.array([np.bincount(cell, column)[crowded] for column in values.T])
+        return np.asarray((sums / counts[crowded]).T)
 
     return means(points), None if colors is None else means(colors) / 255.0
 
@@ -108,14 +108,15 @@ def _cubes(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArra
     place = ((corners - low[:, None]) / edge).astype(np.int64)
     shape = place.max(axis=1) + 1
     key = (place[0] * shape[1] + place[1]) * shape[2] + place[2]
-    filled = np.bincount(key, minlength=int(shape.prod()))
-    used = np.flatnonzero(filled)
-    number = np.zeros(len(filled), np.int64)
-    number[used] = np.arange(len(used))
-    counts = filled[used]
-    coarse = tuple(of // _GAP_CELLS for of in np.unravel_index(used, shape))
-    full = np.zeros([int(of.max()) + 1 for of in coarse], bool)
+    any_point = np.full(int(shape.prod()), -1, np.int32)  # in each cube
+    any_point[key] = np.arange(len(key))
+    used = np.flatnonzero(any_point >= 0)
+    coarse = tuple(place.take(any_point[used], axis=1) // _GAP_CELLS)
+    any_point[used] = np.arange(len(used))  # from here on the cube's number
+    cell = any_point[key]
+    counts = np.bincount(cell)
+    full = np.zeros(shape // _GAP_CELLS + 1, bool)
     full[coarse] = True
     cluster = ndimage.label(full, _AROUND)[0][coarse]
     sizes = np.bincount(cluster, counts)
-    return number[key], counts, sizes[cluster] < min(_STRAY * len(points), sizes.max())
+    return cell, counts, sizes[cluster] < min(_STRAY * len(points), sizes.max())

@@ -119,7 +119,7 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     carriers = frozenset(n for n, body in enumerate(bodies, 1) if max(body.size_m[:2]) > _CARRIER_M)
     heights = tuple(sorted({0.0, *bottoms.tolist()}))
     undisputed = np.zeros((0, 0), np.float32)
-    bare = Sight(cloud, pose, points, labels, carriers, labels, heights, undisputed)
+    bare = Sight(cloud, pose, labels, carriers, labels, heights, undisputed)
     return labelled(bare, labels, carriers)
 
 

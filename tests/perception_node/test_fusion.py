@@ -9,7 +9,7 @@ def truly_cut():
     """Both views of the scene, cut up as the truth has it; a label is the number of a body."""
     sights = [see(cloud) for cloud in shot().clouds]
     return [
-        labelled(sight, np.where(np.isfinite(sight.points[..., 2]), owner, 0), frozenset())
+        labelled(sight, np.where(np.isfinite(sight.cloud.points_camera[..., 2]), owner, 0), frozenset())
         for sight, owner in zip(sights, shot().owners, strict=True)
     ]
 

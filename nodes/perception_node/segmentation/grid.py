@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ WIDTH = 320
 _BRIGHTEST = np.float32(3 * 255)
 _DARK = 60.0  # colours of what is darker are mostly noise
 _SAME_SURFACE = 0.015  # of the distance: pixels of one cell that lie deeper belong to what is behind
+_LOWEST = np.float32(-1e6)
 _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
@@ -28,66 +29,87 @@ _AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (
 class Grid:
     """Cells of the working picture, (h, w), `step` pixels wide and high.
 
-    `points`: (h, w, 3), camera frame [m], NaN where nothing was seen: of each cell the nearest surface.
-    `shades`: (h, w, 3) see `shades_of`; NaN where the camera sees no colours. `source`: the cloud's points
-    (H, W, 3).
+    `points`: (3, h, w) x, y and z, since long rows are computed with faster, camera frame [m], NaN where
+    nothing was seen: of each cell the nearest surface. `weights`: (N, h, w) the shares of its pixels in that.
+    `depth`: (H, W) how deep the cloud's points are, not above 0 for none. `colors`: the cloud's.
     """
 
     points: Floats
-    shades: Floats
-    source: Floats
+    weights: Floats
+    depth: Floats
+    colors: NDArray[np.uint8] | None
     step: int
+
+    def shades(self, where: Mask) -> Floats:
+        """(3, h, w) the colours of the cells in `where`, see `shades_of`; NaN elsewhere and if unknown."""
+        out = np.full(self.points.shape, np.nan, np.float32)
+        if self.colors is None:
+            return out
+        cells = np.flatnonzero(where)
+        row, column = np.divmod(cells, where.shape[1])
+        height, width = self.depth.shape
+        mean = np.zeros((len(cells), 3), np.float32)
+        for weight, (down, right) in zip(self.weights, _offsets(self.step), strict=True):
+            # beyond the picture's edge the weight is 0
+            r, c = (
+                np.minimum(row * self.step + down, height - 1),
+                np.minimum(column * self.step + right, width - 1),
+            )
+            mean += weight.ravel()[cells, None] * self.colors.reshape(-1, 3).take(r * width + c, axis=0)
+        out.reshape(3, -1)[:, cells] = shades_of(mean.T)
+        return out
 
 
 def grid_of(cloud: Cloud) -> Grid:
     """The working picture of an organised cloud."""
-    source = cloud.points_camera
-    step = max(1, round(source.shape[1] / WIDTH))
-    if step == 1:
-        points = np.where(source[..., 2:] > 0, source, np.float32(np.nan))
-        return Grid(points, _shades(cloud, points.shape, lambda colors: colors), source, step)
-    planes = _corners(source, step)
-    z = planes[:, 2]
-    nearest = np.fmin(np.fmin(z[0], z[1]), np.fmin(z[2], z[3]))
-    nearest[~(nearest > 0)] = np.nan
+    step = max(1, round(cloud.points_camera.shape[1] / WIDTH))
+    # NaN times 0 would be NaN
+    axes = [np.fmax(cloud.points_camera[..., axis], _LOWEST) for axis in range(3)]
+    weights = _weights(axes[2], step)
+    points = np.zeros((3, *weights.shape[1:]), np.float32)
+    for cells, picture in zip(points, axes, strict=True):
+        for weight, corner in zip(weights, _corners(picture, step), strict=True):
+            height, width = corner.shape
+            cells[:height, :width] += weight[:height, :width] * corner
+    return Grid(points, weights, axes[2], cloud.colors, step)
+
+
+def _offsets(step: int) -> list[tuple[int, int]]:
+    """Which pixels of a cell are looked at: at most four."""
+    sides = sorted({0, step // 2})
+    return list(product(sides, sides))
+
+
+def _corners(picture: Floats, step: int) -> list[Floats]:
+    """Views of a picture (H, W): the same pixel of each cell."""
+    return [picture[r::step, c::step] for r, c in _offsets(step)]
+
+
+def _weights(depth: Floats, step: int) -> Floats:
+    """(N, h, w) for each of a cell's pixels that show its nearest surface the same, 0 for the others.
+
+    NaN where none shows anything.
+    """
+    corners = _corners(depth, step)
+    z = np.full((len(corners), *corners[0].shape), np.inf, np.float32)
+    for of, corner in zip(z, corners, strict=True):  # a cell at the picture's edge may lack some
+        np.copyto(of[: corner.shape[0], : corner.shape[1]], corner, where=corner > 0)
+    nearest = z.min(axis=0)
+    nearest[np.isinf(nearest)] = np.nan
     front = z <= nearest * np.float32(1 + _SAME_SURFACE)  # NaN is not
-    count = front.sum(axis=0, dtype=np.float32)
-    count[count == 0] = np.nan
-
-    def averaged(corners: Floats) -> Floats:
-        """Cells as the mean of those of their pixels (at most four) that show the nearest surface."""
-        sums = np.where(front[:, None], corners, np.float32(0)).sum(axis=0)
-        return np.ascontiguousarray(np.moveaxis(sums / count, 0, -1))
-
-    points = averaged(planes)
-    return Grid(points, _shades(cloud, points.shape, lambda c: averaged(_corners(c, step))), source, step)
-
-
-def _corners(picture: NDArray[Any], step: int) -> Floats:
-    """(4, 3, h, w) of a picture (H, W, 3): four pixels of each cell, NaN beyond the picture's edge."""
-    height, width = (-(-side // step) for side in picture.shape[:2])
-    corners = [picture[r::step, c::step] for r in (0, step // 2) for c in (0, step // 2)]
-    planes = np.full((4, 3, height, width), np.nan, np.float32)
-    for corner, plane in zip(corners, planes, strict=True):
-        plane[:, : corner.shape[0], : corner.shape[1]] = np.moveaxis(corner, -1, 0)
-    return planes
-
-
-def _shades(cloud: Cloud, shape: tuple[int, ...], reduce: Callable[[NDArray[Any]], NDArray[Any]]) -> Floats:
-    if cloud.colors is None:
-        return np.full(shape, np.nan, np.float32)
-    return shades_of(reduce(cloud.colors))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(front / front.sum(axis=0, dtype=np.float32))
 
 
 def shades_of(colors: NDArray[Any]) -> Floats:
-    """Of rgb (..., 3) up to 255: brightness, red against green, and yellow against blue, in about [-1, 1].
+    """Of rgb (3, ...) up to 255: brightness, red against green, and yellow against blue, in about [-1, 1].
 
     The last two hardly change with the light.
     """
-    red, green, blue = np.moveaxis(colors.astype(np.float32), -1, 0)
+    red, green, blue = colors.astype(np.float32)
     total = red + green + blue
     light = total + np.float32(_DARK)
-    return np.stack([total / _BRIGHTEST, (red - green) / light, (total - 3 * blue) / light], axis=-1)
+    return np.stack([total / _BRIGHTEST, (red - green) / light, (total - 3 * blue) / light])
 
 
 def spread(grid: Grid, labels: Labels) -> Labels:
@@ -95,33 +117,37 @@ def spread(grid: Grid, labels: Labels) -> Labels:
 
     A point that is not on its cell's surface has the label of the cell around whose surface it is nearest to.
     """
-    height, width = grid.source.shape[:2]
-    z = grid.source[..., 2]
+    height, width = grid.depth.shape
     out = _enlarged(labels, grid.step, height, width)
-    out[~(z > 0)] = 0
-    if grid.step == 1:
-        return out
+    row, column = np.nonzero(_borders(labels))
+    inside = np.arange(grid.step)
+    row = (row * grid.step + inside[:, None])[:, None]  # (step, step, N) of the cells' pixels
+    column = (column * grid.step + inside[:, None])[None]
+    within = (row < height) & (column < width)
+    pixel, cell_width = (row * width + column)[within], labels.shape[1] + 2
+    cell = ((row // grid.step + 1) * cell_width + column // grid.step + 1)[within]
+    cell_z = np.pad(grid.points[2], 1, constant_values=np.nan).ravel()
+    deep = grid.depth.ravel()[pixel]
+    doubtful = np.abs(deep - cell_z[cell]) > _SAME_SURFACE / 2 * deep
+    pixel, cell, deep = pixel[doubtful], cell[doubtful], deep[doubtful]
+    around = cell + np.array([r * cell_width + c for r, c in _AROUND])[:, None]
+    off = np.abs(cell_z[around] - deep)
+    off[np.isnan(off)] = np.inf
+    nearest = off.argmin(axis=0)
+    chosen = around[nearest, np.arange(len(pixel))]
+    out.ravel()[pixel] = np.pad(labels, 1).ravel()[chosen]
+    out[~(grid.depth > 0)] = 0
+    return out
+
+
+def _borders(labels: Labels) -> Mask:
+    """(h, w) cells beside which there is another label."""
     border = np.zeros(labels.shape, dtype=bool)
     for shift in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        here, there = shifted(labels, *shift)
-        differs = here != there
+        differs = np.not_equal(*shifted(labels, *shift))
         for side in shifted(border, *shift):
             side |= differs
-    row, column = np.nonzero(_enlarged(border, grid.step, height, width))
-    cell_row, cell_column = row // grid.step, column // grid.step
-    deep = z[row, column]
-    doubtful = np.abs(deep - grid.points[cell_row, cell_column, 2]) > _SAME_SURFACE / 2 * deep
-    row, column, deep = row[doubtful], column[doubtful], deep[doubtful]
-    padded_z = np.pad(grid.points[..., 2], 1, constant_values=np.nan)
-    padded = np.pad(labels, 1)
-    best = np.full(len(row), np.inf, np.float32)
-    for dr, dc in _AROUND:
-        r, c = row // grid.step + 1 + dr, column // grid.step + 1 + dc
-        off = np.abs(padded_z[r, c] - deep)
-        closer = off < best  # NaN is not
-        best[closer] = off[closer]
-        out[row[closer], column[closer]] = padded[r[closer], c[closer]]
-    return out
+    return border
 
 
 def _enlarged(picture: NDArray[Any], step: int, height: int, width: int) -> NDArray[Any]:
@@ -130,7 +156,7 @@ def _enlarged(picture: NDArray[Any], step: int, height: int, width: int) -> NDAr
 
 
 def shifted(picture: NDArray[Any], rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Two views of a picture: its pixels, and those `rows` down and `columns` to the right of each."""
-    height, width = picture.shape[:2]
+    """Two views of a picture (h, w): cells, and those `rows` down and `columns` to the right of each."""
+    height, width = picture.shape
     left, right = max(0, -columns), width - max(0, columns)
     return picture[: height - rows, left:right], picture[rows:, left + columns : right + columns]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +25,7 @@ NAMES = (
 """The columns of `features`, in order. `small` and `big` are the two patches, by their cells."""
 
 _SUPPORT_M = 0.02
+_MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where the squares xx, yy, zz, xy, xz, yz go
 _UNKNOWN = -1.0  # lower than any that is known, so that a tree can ask for it
 
 
@@ -37,88 +40,117 @@ def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool
     return may
 
 
+class Each(NamedTuple):
+    """What of N patches goes into the features of pairs.
+
+    `middle`, `low`, `high`: (N, 3) [m]. `spread`: (N, 3) standard deviations along the main axes from the
+    least [m]. `normal`, `unit`: (N, 3) the mean normal, and of length 1; `straight`: (N,) how long it was.
+    `above`: (N,) how far the lowest point is above what carries things [m]. `shade`: (N, 3) mean colour,
+    `mottled`: (N,) how mixed it is, both NaN if unknown.
+    """
+
+    sums: s.Sums
+    cells: s.Sums
+    middle: s.Sums
+    spread: s.Sums
+    normal: s.Sums
+    unit: s.Sums
+    straight: s.Sums
+    low: s.Sums
+    high: s.Sums
+    above: s.Sums
+    hidden: s.Sums
+    shade: s.Sums
+    mottled: s.Sums
+
+
 def features(of: Statistics, a: Indices, b: Indices) -> NDArray[np.float32]:
     """(N, len(NAMES)) of the pairs of patches (a, b), the same whichever stands first."""
-    count_a, count_b = of.inside[a, s.COUNT], of.inside[b, s.COUNT]
-    swap = (count_a < count_b) | ((count_a == count_b) & (a > b))
-    big, small = np.where(swap, b, a), np.where(swap, a, b)
-    many, few = of.inside[big], of.inside[small]
-    count_big, count_small = many[:, s.COUNT], few[:, s.COUNT]
-    border, back = of.between[small, big], of.between[big, small]
-    root = np.sqrt(count_small)
-    touch = np.maximum(border[:, s.TOUCH], 1)
-    bends = np.maximum(border[:, s.BENDS], 1)
-    sight = np.maximum(border[:, s.SIGHT], 1)
-    middle_big, spread_big, normal_big = _shape(many)
-    middle_small, spread_small, normal_small = _shape(few)
-    _, spread_both, _ = _shape(many + few)
-    apart = middle_big - middle_small
+    counts = of.inside[:, s.COUNT]
+    swap = (counts[a] < counts[b]) | ((counts[a] == counts[b]) & (a > b))
+    first, second = np.where(swap, a, b), np.where(swap, b, a)
+    each = _each(of)  # there are fewer patches than pairs
+    small, big = (Each._make(column[rows] for column in each) for rows in (first, second))
+    border, back = of.between[first, second].T, of.between[second, first].T
+    root = np.sqrt(small.cells)
+    touch, wide, bends, sight = np.maximum(border[[s.TOUCH, s.WIDE, s.BENDS, s.SIGHT]], 1)
+    spread_both = _spread(small.sums + big.sums)
+    apart = big.middle - small.middle
     distance = np.maximum(np.linalg.norm(apart, axis=1), 1e-6)
-    straight_big = np.maximum(np.linalg.norm(normal_big, axis=1), 1e-6)
-    straight_small = np.maximum(np.linalg.norm(normal_small, axis=1), 1e-6)
-    unit_big, unit_small = normal_big / straight_big[:, None], normal_small / straight_small[:, None]
-    low = np.minimum(of.low[big], of.low[small])
-    high = np.maximum(of.high[big], of.high[small])
-    sides = high[:, :2] - low[:, :2]
-    area_big = np.prod(of.high[big, :2] - of.low[big, :2], axis=1)
-    area_small = np.prod(of.high[small, :2] - of.low[small, :2], axis=1)
+    low, high = np.minimum(small.low, big.low), np.maximum(small.high, big.high)
+    sides = high - low
+    footprint = sides[:, 0] * sides[:, 1]
+    tall_small, tall_big = (of.high[:, 2] - of.low[:, 2] for of in (small, big))
+    area_small, area_big = (np.prod(of.high[:, :2] - of.low[:, :2], axis=1) for of in (small, big))
     columns = [
-        *(np.log(count_small), np.log(count_big), count_small / count_big),
-        *(border[:, s.TOUCH] / root, border[:, s.STEP] / touch),
-        *(border[:, s.BEFORE] / touch, back[:, s.BEFORE] / touch),
-        *(border[:, s.WIDE] / root, border[:, s.BENDS] / np.maximum(border[:, s.WIDE], 1)),
-        *(border[:, s.BEND] / bends, border[:, s.CONCAVE] / bends, border[:, s.DEEP] / bends),
-        *(border[:, s.CONVEX] / bends, border[:, s.LIKE] / bends),
-        *(spread_small[:, 0], spread_big[:, 0], spread_both[:, 0]),
-        *(spread_both[:, 0] - np.maximum(spread_small[:, 0], spread_big[:, 0]), spread_both[:, 2]),
-        *(straight_small, straight_big, (unit_big * unit_small).sum(axis=1)),
-        *((unit_big * apart).sum(axis=1), -(unit_small * apart).sum(axis=1)),
-        ((normal_big - normal_small) * apart).sum(axis=1) / distance,
-        *(border[:, s.SIGHT], border[:, s.BLOCKED] / sight, border[:, s.OPEN] / sight),
-        *(few[:, s.HIDDEN] / root, many[:, s.HIDDEN] / np.sqrt(count_big), distance),
-        *(_above_support(of, small), of.high[small, 2] - of.low[small, 2]),
-        *(_above_support(of, big), of.high[big, 2] - of.low[big, 2]),
-        *(of.low[small, 2] - of.high[big, 2], of.low[big, 2] - of.high[small, 2]),
-        np.minimum(of.high[small, 2], of.high[big, 2]) - np.maximum(of.low[small, 2], of.low[big, 2]),
-        *(np.abs(of.high[small, 2] - of.high[big, 2]), np.abs(of.low[small, 2] - of.low[big, 2])),
-        *(sides.max(axis=1), sides.min(axis=1), high[:, 2] - low[:, 2]),
-        (area_big + area_small) / np.maximum(np.prod(sides, axis=1), 1e-6),
-        area_small / np.maximum(area_big, 1e-6),
-        *_colours(few, many, border),
+        *(np.log(small.cells), np.log(big.cells), small.cells / big.cells),
+        *(border[s.TOUCH] / root, border[s.STEP] / touch, border[s.BEFORE] / touch, back[s.BEFORE] / touch),
+        *(border[s.WIDE] / root, border[s.BENDS] / wide),
+        *(border[[s.BEND, s.CONCAVE, s.DEEP, s.CONVEX, s.LIKE]] / bends),
+        *(small.spread[:, 0], big.spread[:, 0], spread_both[:, 0]),
+        *(spread_both[:, 0] - np.maximum(small.spread[:, 0], big.spread[:, 0]), spread_both[:, 2]),
+        *(small.straight, big.straight, (big.unit * small.unit).sum(axis=1)),
+        *((big.unit * apart).sum(axis=1), -(small.unit * apart).sum(axis=1)),
+        ((big.normal - small.normal) * apart).sum(axis=1) / distance,
+        *(border[s.SIGHT], border[s.BLOCKED] / sight, border[s.OPEN] / sight),
+        *(small.hidden, big.hidden, distance),
+        *(small.above, tall_small, big.above, tall_big),
+        *(small.low[:, 2] - big.high[:, 2], big.low[:, 2] - small.high[:, 2]),
+        np.minimum(small.high[:, 2], big.high[:, 2]) - np.maximum(small.low[:, 2], big.low[:, 2]),
+        *(np.abs(small.high[:, 2] - big.high[:, 2]), np.abs(small.low[:, 2] - big.low[:, 2])),
+        *(np.maximum(sides[:, 0], sides[:, 1]), np.minimum(sides[:, 0], sides[:, 1]), sides[:, 2]),
+        *((area_big + area_small) / np.maximum(footprint, 1e-6), area_small / np.maximum(area_big, 1e-6)),
+        *_colours(small, big, border),
     ]
-    return np.stack(columns, axis=1).astype(np.float32)
+    return np.stack(columns, axis=1, dtype=np.float32, casting="same_kind")
 
 
-def _colours(few: s.Sums, many: s.Sums, border: s.Sums) -> list[s.Sums]:
+def _each(of: Statistics) -> Each:
+    """Of all patches."""
+    sums = of.inside
+    count = sums[:, s.COUNT]
+    normal = sums[:, s.NORMAL] / count[:, None]
+    straight = np.maximum(np.linalg.norm(normal, axis=1), 1e-6)
+    shade = sums[:, s.SHADE] / count[:, None]
+    return Each(
+        sums=sums,
+        cells=count,
+        middle=sums[:, s.POINT] / count[:, None],
+        spread=_spread(sums),
+        normal=normal,
+        unit=normal / straight[:, None],
+        straight=straight,
+        low=of.low,
+        high=of.high,
+        above=_above_support(of),
+        hidden=sums[:, s.HIDDEN] / np.sqrt(count),
+        shade=shade,
+        mottled=np.sqrt(np.maximum(sums[:, s.SHADES] / count - (shade[:, 1:] ** 2).sum(axis=1), 0)),
+    )
+
+
+def _colours(small: Each, big: Each, border: s.Sums) -> list[s.Sums]:
     """How unlike the colours are, as a whole and along the border, and how mixed each is; -1 if unknown."""
-    shades = [of[:, s.SHADE] / of[:, s.COUNT, None] for of in (few, many)]
-    turned = np.abs(shades[0] - shades[1])
-    mottled = [
-        np.sqrt(np.maximum(of[:, s.SHADES] / of[:, s.COUNT] - (shade[:, 1:] ** 2).sum(axis=1), 0))
-        for of, shade in zip((few, many), shades, strict=True)
-    ]
-    bends = np.where(border[:, s.BENDS] > 0, border[:, s.BENDS], np.nan)
-    there = [border[:, column] / bends for column in (s.BRIGHTER, s.COLOURED)]
-    known = (turned[:, 0], np.hypot(turned[:, 1], turned[:, 2]), *there, *mottled)
-    return [np.nan_to_num(column, nan=_UNKNOWN) for column in known]
+    turned = np.abs(small.shade - big.shade)
+    bends = np.where(border[s.BENDS] > 0, border[s.BENDS], np.nan)
+    there = border[[s.BRIGHTER, s.COLOURED]] / bends
+    known = (turned[:, 0], np.hypot(turned[:, 1], turned[:, 2]), *there, small.mottled, big.mottled)
+    return [np.where(np.isnan(column), _UNKNOWN, column) for column in known]
 
 
-def _shape(sums: s.Sums) -> tuple[s.Sums, s.Sums, s.Sums]:
-    """Middle [m], standard deviations along the main axes from the least [m], mean normal: (N, 3) each."""
-    count = sums[:, s.COUNT, None]
-    middle = sums[:, s.POINT] / count
-    xx, yy, zz, xy, xz, yz = (sums[:, s.SQUARES] / count).T
-    squares = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
-    covariance = squares - middle[:, :, None] * middle[:, None, :]
-    spread = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance), 1e-10))
-    return middle, spread, sums[:, s.NORMAL] / count
+def _spread(sums: s.Sums) -> s.Sums:
+    """(N, 3) standard deviations along the main axes, from the least [m]."""
+    means = sums / sums[:, s.COUNT, None]
+    middle = means[:, s.POINT]
+    covariance = means[:, s.SQUARES][:, _MATRIX] - middle[:, :, None] * middle[:, None, :]
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(covariance), 1e-10)))
 
 
-def _above_support(of: Statistics, patches: Indices) -> s.Sums:
-    """(N,) how far the lowest points of patches are above what carries things beneath them [m]."""
+def _above_support(of: Statistics) -> s.Sums:
+    """(P,) how far the lowest points of patches are above what carries things beneath them [m]."""
+    low = of.low[:, 2]
     if not of.supports.size:
-        return np.zeros(len(patches))
-    low = of.low[patches, 2]
+        return np.zeros(len(low))
     beneath = np.searchsorted(of.supports, low + _SUPPORT_M) - 1
     above: s.Sums = low - of.supports[np.maximum(beneath, 0)]
     return above

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy import ndimage
 
@@ -36,25 +38,29 @@ def patches(points: Floats, normals: Floats, where: Mask) -> Labels:
 
 def _cuts(points: Floats, normals: Floats, where: Mask) -> Mask:
     """Cells at which two sides meet."""
-    cut: Mask = ~np.isfinite(normals[..., 0])
-    p, n = (np.ascontiguousarray(np.moveaxis(of, -1, 0)) for of in (points, normals))  # (3, h, w) is faster
+    cut: Mask = ~np.isfinite(normals[0])
     height, width = cut.shape
     for rows, columns in _ACROSS:
-        end = (height - rows, width - columns)
-        apart = p[:, rows:, columns:] - p[:, : end[0], : end[1]]
-        turn = n[:, rows:, columns:] - n[:, : end[0], : end[1]]
+        apart, turn = (
+            [there - here for here, there in (shifted(axis, rows, columns) for axis in of)]
+            for of in (points, normals)
+        )
         # sine of the bend times the distance, positive where convex: the normals turn away from one another
-        bend = (turn * apart).sum(axis=0)
-        length = np.sqrt((apart * apart).sum(axis=0))
+        bend = _dot(turn, apart)
+        length = np.sqrt(_dot(apart, apart))
         middle = cut[rows // 2 : height - rows // 2, columns // 2 : width - columns // 2]
         middle |= (bend < -_CONCAVE * length) | (bend > _CONVEX * length)
     for rows, columns in ((0, 1), (1, 0)):
-        z, far = shifted(points[..., 2], rows, columns)
+        z, far = shifted(points[2], rows, columns)
         here, there = shifted(cut, rows, columns)
         step = _step(z, far)
         here |= step & (z > far)  # the farther of the two, whose surface goes on behind
         there |= step & (far >= z)
     return cut & where
+
+
+def _dot(a: Sequence[Floats], b: Sequence[Floats]) -> Floats:
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
 def _step(z: Floats, other: Floats) -> Mask:
@@ -64,29 +70,28 @@ def _step(z: Floats, other: Floats) -> Mask:
 def grown(labels: Labels, points: Floats, where: Mask) -> Labels:
     """Labels spread over cells of `where` without one, each to the label of the nearest cell at its side."""
     padded = np.pad(labels, 1)
-    width = padded.shape[1]
-    z = np.pad(points[..., 2], 1, constant_values=np.nan).ravel()
-    flat = padded.ravel()
-    free = np.flatnonzero(np.pad(where & (labels == 0), 1))
+    flat, width = padded.ravel(), padded.shape[1]
+    around = np.array([[1], [-1], [width], [-width]])
+    z = np.pad(points[2], 1, constant_values=np.nan).ravel()
+    free = np.pad(where & (labels == 0), 1).ravel()
+    cells = np.flatnonzero(free)
     for _ in range(_GROWTH):
-        sides = free[:, None] + np.array([1, -1, width, -width])
-        deep = z[free][:, None]
-        off = np.where(flat[sides] > 0, np.abs(z[sides] - deep), np.float32(np.inf))
-        off[~(off <= _STEP_M * np.maximum(deep, deep * deep))] = np.inf
-        best = off.argmin(axis=1)
-        index = np.arange(len(free))
-        takes = np.isfinite(off[index, best])
-        if not takes.any():
-            break
-        flat[free[takes]] = flat[sides[index, best][takes]]
-        free = free[~takes]
+        sides, own = cells + around, z[cells]
+        off = np.abs(z[sides] - own)
+        off[~(off <= _STEP_M * np.maximum(own, own * own)) | (flat[sides] == 0)] = np.inf
+        best = off.argmin(axis=0), np.arange(len(cells))
+        takes = np.isfinite(off[best])
+        new = cells[takes]
+        flat[new] = flat[sides[best][takes]]
+        free[new] = False
+        cells = (new + around).ravel()  # only beside these there is something new
+        cells = cells[free[cells]]
     return padded[1:-1, 1:-1]
 
 
 def _numbered(labels: Labels) -> Labels:
     """The same with numbers from 1 without gaps."""
-    used = np.unique(labels)
-    used = used[used > 0]
-    number = np.zeros(labels.max(initial=0) + 1, np.int32)
-    number[used] = np.arange(1, len(used) + 1)
+    used = np.bincount(labels.ravel()) > 0
+    used[0] = False
+    number = np.where(used, np.cumsum(used), 0).astype(np.int32)
     return number[labels]

@@ -16,17 +16,18 @@ from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 
-_SAMPLE = 2000  # points that a plane is fitted to
-_VOTERS = 500
+_SAMPLE = 3000  # points that planes are fitted to
+_VOTERS = 600  # of them tell which of the hypotheses is best
 _FEWEST_CELLS = 50
 _LEAST_AREA_M2 = 1e-5
-_TRIALS = 120
+_TRIALS = 240
 _REACH_CELLS = 60  # the three points of a hypothesis lie this near one another
 _MOST_PLANES = 6
 _LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
 _LEAST_SHARE_UNKNOWN = 0.2  # where gravity is unknown, and a box's side might be meant
 _LEAST_SIDE_M = 0.35
 _LEAST_WALL_M = 1.0  # of its shorter side; else it is the side of a thing, or of several in a row
+_STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
 _FLOOR_BELOW_M = 0.06
@@ -50,9 +51,8 @@ class Plane:
     sides_m: tuple[float, float]
 
     def height_m(self, points: Floats) -> Floats:
-        """How far points (..., 3) are on the camera's side of it."""
-        height: Floats = points @ self.normal.astype(np.float32) - np.float32(self.offset_m)
-        return height
+        """How far points (3, ...) are on the camera's side of it."""
+        return _height(points, self.normal.astype(np.float32), np.float32(self.offset_m))
 
 
 def thickness_m(distance_m: Floats) -> Floats:
@@ -60,30 +60,39 @@ def thickness_m(distance_m: Floats) -> Floats:
     return np.asarray(np.maximum(0.009, 0.006 * distance_m**2), np.float32)
 
 
+def _height(points: Floats, normal: Floats, offset: Floats | np.float32) -> Floats:
+    x, y, z = points
+    return np.asarray(normal[0] * x + normal[1] * y + normal[2] * z - offset)
+
+
 def find_planes(
     points: Floats, map_from_camera: Transform | None, rng: np.random.Generator
 ) -> tuple[tuple[Plane, ...], Labels]:
-    """The planes of a picture (h, w, 3), and of each cell the number of its plane from 1, 0 for none."""
-    of_plane = np.zeros(points.shape[:2], np.int32)
-    thickness = thickness_m(points[..., 2])
+    """The planes of a picture (3, h, w), and of each cell the number of its plane from 1, 0 for none."""
+    of_plane = np.zeros(points.shape[1:], np.int32)
+    thickness = thickness_m(points[2])
     free = np.isfinite(thickness)
     everything = int(free.sum())
     share = _LEAST_SHARE_UNKNOWN if map_from_camera is None else _LEAST_SHARE
+    least = max(_FEWEST_CELLS, share * everything)
+    if everything < least:
+        return (), of_plane
+    search = _Search(points, free, rng)
     planes: list[Plane] = []
     for _ in range(_MOST_PLANES):
-        if free.sum() < max(_FEWEST_CELLS, share * everything):
-            break
-        normal, offset = _best(points, free, rng)
-        on = free & (np.abs(points @ normal - offset) < thickness)
+        normal, offset = search.best()
+        on = free & (np.abs(_height(points, normal, offset)) < thickness)
         count = int(on.sum())
-        if count < max(_FEWEST_CELLS, share * everything):
+        if count < least:
             break
         free &= ~on
+        search.leave_out(on)
         kind = _kind(normal, offset, map_from_camera, first=not planes)
+        if kind is None:
+            continue
         piece = on if kind == "floor" else _largest_piece(on)  # of a floor, things leave islands
-        sides = _sides(points[piece][:: max(1, count // _SAMPLE)], normal)
-        least = _LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M
-        if kind is None or (planes and sides[1] < least):
+        sides = _sides(_some(points, piece, count), normal)
+        if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
             continue
         planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
         of_plane[on] = len(planes)
@@ -104,8 +113,8 @@ def _tops_of_things(
     boxes = {}
     for number, plane in enumerate(planes, 1):
         if plane.kind == "support":
-            own = points[of_plane == number][:: max(1, plane.points // _SAMPLE)]
-            boxes[number] = np.percentile(own @ pose[:3, :3].T + pose[:3, 3], (1, 99), axis=0)
+            own = _some(points, of_plane == number, plane.points)
+            boxes[number] = np.percentile(pose[:3, :3] @ own + pose[:3, 3:], (1, 99), axis=1)
     found = set()
     for top, other in permutations(boxes, 2):
         (low, high), (lowest, highest) = boxes[top], boxes[other]
@@ -117,6 +126,12 @@ def _tops_of_things(
     return found
 
 
+def _some(points: Floats, where: Mask, count: int) -> Floats:
+    """(3, N) of points (3, h, w) in a place of at most `count` cells: not many more than a sample."""
+    cells = np.flatnonzero(where)[:: max(1, count // _SAMPLE)]
+    return points.reshape(3, -1).take(cells, axis=1)
+
+
 def _largest_piece(on: Mask) -> Mask:
     """The largest connected part: tops of several things may be level with one another, and are no table."""
     parts, count = ndimage.label(on)
@@ -125,37 +140,52 @@ def _largest_piece(on: Mask) -> Mask:
     return np.asarray(parts == 1 + np.bincount(parts.ravel())[1:].argmax())
 
 
-def _best(points: Floats, free: Mask, rng: np.random.Generator) -> tuple[Floats, np.float32]:
-    """The plane with most points, fitted to a sample of them: normal (3,) towards the camera, offset."""
-    cells = np.flatnonzero(free)
-    cells = cells[rng.integers(len(cells), size=_SAMPLE)]
-    voters = points.reshape(-1, 3)[cells]
-    thickness = thickness_m(voters[:, 2])
-    row, column = np.divmod(cells[:_TRIALS], free.shape[1])
-    corners = [voters[:_TRIALS]]
-    for _ in range(2):
-        near = rng.integers(-_REACH_CELLS, _REACH_CELLS + 1, size=(2, _TRIALS))
-        r = np.clip(row + near[0], 0, free.shape[0] - 1)
-        c = np.clip(column + near[1], 0, free.shape[1] - 1)
-        corners.append(np.where(free[r, c, None], points[r, c], voters[rng.integers(_SAMPLE, size=_TRIALS)]))
-    normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    length = np.linalg.norm(normals, axis=1)
-    length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
-    normals /= length[:, None]
-    offsets = np.where(np.isinf(length), np.float32(np.inf), (normals * corners[0]).sum(axis=1))
-    off = np.abs(normals @ voters[:_VOTERS].T - offsets[:, None])
-    votes = np.count_nonzero(off < thickness[:_VOTERS], axis=1)
-    normal, offset = normals[votes.argmax()], offsets[votes.argmax()]
-    for _ in range(2):
-        on = voters[np.abs(voters @ normal - offset) < thickness]
-        if len(on) < 3:
-            break
-        middle = on.mean(axis=0)
-        # a plane's error in depth grows with the square of the distance, so near points count more
-        spread = (on - middle) / np.maximum(on[:, 2:], np.float32(0.3))
-        normal = np.linalg.eigh(spread.T @ spread)[1][:, 0].astype(np.float32)
-        offset = np.float32(middle @ normal)
-    return (normal, offset) if offset <= 0 else (-normal, -offset)
+class _Search:
+    """Hypotheses about all planes of a picture, and points that vote for them: those that are left."""
+
+    def __init__(self, points: Floats, free: Mask, rng: np.random.Generator) -> None:
+        """`free`: (h, w) cells of which at least one must be."""
+        cells = np.flatnonzero(free)
+        self._cells = cells[rng.integers(len(cells), size=_SAMPLE)]
+        self._points = points.reshape(3, -1).take(self._cells, axis=1)
+        self._thickness = thickness_m(self._points[2])
+        self._left = np.ones(_SAMPLE, bool)
+        row, column = np.divmod(self._cells[:_TRIALS], free.shape[1])
+        first, sides = self._points[:, :_TRIALS], []
+        for _ in range(2):
+            down, right = rng.integers(-_REACH_CELLS, _REACH_CELLS + 1, size=(2, _TRIALS))
+            r, c = np.clip(row + down, 0, free.shape[0] - 1), np.clip(column + right, 0, free.shape[1] - 1)
+            any_other = self._points[:, rng.integers(_SAMPLE, size=_TRIALS)]
+            sides.append(np.where(free[r, c], points[:, r, c], any_other) - first)
+        normals = np.cross(sides[0], sides[1], axis=0)
+        length = np.sqrt((normals * normals).sum(axis=0))
+        length[length < _LEAST_AREA_M2] = np.inf  # three points in a line say nothing
+        self._normals = normals / length
+        self._offsets = np.where(np.isinf(length), np.float32(np.inf), (self._normals * first).sum(axis=0))
+        off = np.abs(
+            _height(self._points[:, None, :_VOTERS], self._normals[..., None], self._offsets[:, None])
+        )
+        self._votes = (off < self._thickness[:_VOTERS]).astype(np.float32)
+
+    def leave_out(self, on: Mask) -> None:
+        """Cells (h, w) no longer vote."""
+        self._left &= ~on.ravel()[self._cells]
+
+    def best(self) -> tuple[Floats, np.float32]:
+        """The plane that most points left are on, fitted to these: normal (3,) towards the camera, offset."""
+        votes = np.einsum("tv,v->t", self._votes, self._left[:_VOTERS].astype(np.float32))
+        normal, offset = self._normals[:, votes.argmax()], self._offsets[votes.argmax()]
+        for _ in range(2):
+            near = self._left & (np.abs(_height(self._points, normal, offset)) < self._thickness)
+            on = self._points[:, near]
+            if on.shape[1] < 3:
+                break
+            middle = on.mean(axis=1)
+            # a plane's error in depth grows with the square of the distance, so near points count more
+            spread = (on - middle[:, None]) / np.maximum(on[2], np.float32(0.3))
+            normal = np.linalg.eigh(spread @ spread.T)[1][:, 0].astype(np.float32)
+            offset = np.float32(middle @ normal)
+        return (normal, offset) if offset <= 0 else (-normal, -offset)
 
 
 def _kind(
@@ -172,11 +202,12 @@ def _kind(
 
 
 def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
-    """Extent along the longer and the shorter axis within the plane, without the outermost points."""
+    """Extent of points (3, N) along the longer and the shorter axis within the plane, but for a few."""
     axes = np.linalg.svd(normal[None, :])[2][1:]
-    flat = points @ axes.T
-    flat = flat - flat.mean(axis=0)
-    main = np.linalg.eigh(flat.T @ flat)[1]
-    low, high = np.percentile(flat @ main, (2, 98), axis=0)
-    sides = high - low
+    flat = axes @ points
+    flat -= flat.mean(axis=1, keepdims=True)
+    main = np.linalg.eigh(flat @ flat.T)[1]
+    along = np.sort(main.T @ flat, axis=1)
+    stray = round(_STRAY * along.shape[1])
+    sides = along[:, -1 - stray] - along[:, stray]
     return float(sides.max()), float(sides.min())

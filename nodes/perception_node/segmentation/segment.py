@@ -76,11 +76,12 @@ def taken_apart(cloud: Cloud) -> Parts:
     planes, of_plane = find_planes(grid.points, cloud.map_from_camera, rng)
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
     window = _window(where)
-    points = grid.points[window]
+    points = grid.points[:, *window]
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)
     of_patch[window] = patches(points, surface, where[window])
-    known = statistics(of_patch[window], points, surface, grid.shades[window], _upright(planes))
+    shades = grid.shades(of_patch > 0)[:, *window]
+    known = statistics(of_patch[window], points, surface, shades, _upright(planes))
     return Parts(grid, planes, of_plane, of_patch, known)
 
 
@@ -96,7 +97,7 @@ def _candidates(
     points: Floats, planes: tuple[Plane, ...], of_plane: NDArray[np.int32], *, known: bool
 ) -> Mask:
     """Cells that may be of objects: on no plane, and above a support where nobody knows what is up."""
-    where: Mask = np.isfinite(points[..., 2]) & (of_plane == 0)
+    where: Mask = np.isfinite(points[2]) & (of_plane == 0)
     if planes and not known:
         height = planes[0].height_m(points)
         where &= (height > LOWEST_M) & (height < HIGHEST_M)

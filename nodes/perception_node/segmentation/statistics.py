@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.segmentation.grid import Floats, Labels, shifted
+from nodes.perception_node.segmentation.grid import Floats, Labels
 
 Sums = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -16,7 +17,7 @@ Indices = NDArray[np.int64]
 COUNT, POINT, SQUARES, NORMAL, SHADE, SHADES = 0, slice(1, 4), slice(4, 10), slice(10, 13), slice(13, 16), 16
 HIDDEN = 17
 INSIDE = 18
-_FIRST, _SECOND = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
+_FIRST, _SECOND = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
 
 # columns of `Statistics.between`, for the ordered pair (a, b)
 TOUCH, STEP, BEFORE, BENDS, BEND, CONCAVE, DEEP, CONVEX, LIKE, WIDE = range(10)
@@ -26,6 +27,7 @@ BETWEEN = 15
 _STEP_M = 0.007
 _SAME_SURFACE_M = 0.02
 _SAMPLES = 12
+_FAR = 4
 _SINES = np.sin(np.radians((20, 45)))
 
 
@@ -74,115 +76,138 @@ class Statistics:
 def statistics(
     labels: Labels, points: Floats, normals: Floats, shades: Floats, upright: Upright
 ) -> Statistics:
-    """Of patches `labels` (h, w), numbered from 1 without gaps; `shades` as of `Grid`."""
+    """Of patches `labels` (h, w), numbered from 1 without gaps; points, normals and shades (3, h, w)."""
     count = int(labels.max(initial=0))
-    row, column = np.nonzero(labels)
-    owner = labels[row, column].astype(np.uint16)  # which is sorted by counting
-    order = np.argsort(owner, kind="stable")
-    row, column = row[order], column[order]
-    starts = np.searchsorted(owner[order], np.arange(1, count + 1))
-    p, n = points[row, column], np.nan_to_num(normals[row, column])
-    values = np.zeros((len(p), INSIDE))
-    values[:, COUNT], values[:, POINT], values[:, NORMAL] = 1, p, n
-    values[:, SQUARES] = p[:, _FIRST] * p[:, _SECOND]
-    values[:, SHADE] = shade = shades[row, column]
-    values[:, SHADES] = (shade[:, 1:] ** 2).sum(axis=1)
-    placed = p @ upright.axes.T
-    inside, low, high = (
-        ufunc.reduceat(of, starts, axis=0).astype(np.float64) if count else np.zeros((0, of.shape[1]))
-        for ufunc, of in ((np.add, values), (np.minimum, placed), (np.maximum, placed))
+    cells = _cells_of(labels, points, normals, shades)
+    p = cells.points
+    values = (
+        *(np.ones(len(cells.owner)), *p, *(p[_FIRST] * p[_SECOND]), *cells.normals, *cells.shades),
+        (cells.shades[1:] ** 2).sum(axis=0),
+        _hides(cells, labels, points[2]),
+    )
+    inside = np.stack([np.bincount(cells.owner, of, count) for of in values], axis=1, dtype=np.float64)
+    order = np.argsort(cells.owner.astype(np.uint16), kind="stable")  # of which sorting is counting
+    placed = (upright.axes @ p)[:, order]
+    starts = np.cumsum(inside[:, COUNT], dtype=np.int64) - inside[:, COUNT].astype(np.int64)
+    low, high = (
+        ufunc.reduceat(placed, starts, axis=1).T if count else np.zeros((0, 3))
+        for ufunc in (np.minimum, np.maximum)
     )
     between = np.zeros((count, count, BETWEEN))
-    _touching(between, labels, points)
-    _bending(between, labels, points, normals, shades)
-    _seen_between(between, labels, points, inside[:, POINT][:, 2])
-    inside[:, HIDDEN] = _hidden(labels, points, count)
+    _touching(between, cells)
+    _bending(between, cells)
+    _seen_between(between, cells, labels, points[2])
     return Statistics(inside, low, high, between, np.arange(count), upright.supports)
 
 
-def _add(between: Sums, a: Labels, b: Labels, columns: dict[int, NDArray[np.generic]]) -> None:
-    """Sums of `columns` over pairs of cells with labels a and b, in both directions."""
-    count = between.shape[0]
-    key = (a - 1) * count + (b - 1)
+@dataclass(frozen=True)
+class _Cells:
+    """The N cells of all patches: rows of values instead of pictures, since most cells are in none.
+
+    `place`: (N,) the cell's number in the picture, `owner`: (N,) its patch, from 0. `points`, `normals`,
+    `shades`: (3, N). `number`: (h, w) each cell's number among these, -1 for those in no patch, with a margin
+    of `_FAR` on all sides.
+    """
+
+    place: Indices
+    owner: Indices
+    points: Floats
+    normals: Floats
+    shades: Floats
+    number: Indices
+
+    def pairs(self, *shifts: tuple[int, int]) -> tuple[Indices, Indices]:
+        """The numbers of cells, and of those that are so far down and right of them in another patch."""
+        width = self.number.shape[1]
+        middle = np.flatnonzero(self.number >= 0)
+        places = np.concatenate([middle + rows * width + columns for rows, columns in shifts])
+        other, own = self.number.ravel()[places], np.tile(self.owner, len(shifts))
+        found = np.flatnonzero((other >= 0) & (self.owner[other] != own))
+        return found % len(middle), other[found]
+
+
+def _cells_of(labels: Labels, points: Floats, normals: Floats, shades: Floats) -> _Cells:
+    place = np.flatnonzero(labels)
+    number = np.full(labels.shape, -1)
+    number.ravel()[place] = np.arange(len(place))
+    p, n, shade = (of.reshape(3, -1).take(place, axis=1) for of in (points, normals, shades))
+    owner = labels.ravel()[place].astype(np.int64) - 1
+    return _Cells(place, owner, p, np.nan_to_num(n), shade, np.pad(number, _FAR, constant_values=-1))
+
+
+def _hides(cells: _Cells, labels: Labels, depth: Floats) -> Sums:
+    """(N,) at how many sides of cells something else is nearer: the patch may go on behind it."""
+    hidden = np.zeros(len(cells.owner))
+    z, label = np.pad(depth, 1, constant_values=np.nan), np.pad(labels, 1)
+    middle = np.flatnonzero(label)
+    for side in (1, -1, z.shape[1], -z.shape[1]):
+        near, other = z.ravel()[middle + side], label.ravel()[middle + side]
+        step = _STEP_M * np.maximum(near, near * near)
+        hidden += (other != cells.owner + 1) & (cells.points[2] - near > step)
+    return hidden
+
+
+def _add(between: Sums, a: Indices, b: Indices, columns: Mapping[int, NDArray[np.generic]]) -> None:
+    """Sums of `columns` over pairs of cells of the patches a and b, in both directions."""
     for column, values in columns.items():
-        sums = np.bincount(key, weights=values, minlength=count * count).reshape(count, count)
-        between[..., column] += sums + sums.T
+        sums = _sums(len(between), a, b, values)
+        between[..., column] = sums + sums.T
 
 
-def _touching(between: Sums, labels: Labels, points: Floats) -> None:
+def _sums(count: int, a: Indices, b: Indices, values: NDArray[np.generic]) -> Sums:
+    return np.asarray(np.bincount(a * count + b, values, count * count).reshape(count, count), np.float64)
+
+
+def _touching(between: Sums, cells: _Cells) -> None:
     """Cells side by side."""
-    count = between.shape[0]
-    for shift in ((0, 1), (1, 0)):
-        a, b = shifted(labels, *shift)
-        where = (a != b) & (a > 0) & (b > 0)
-        a, b = a[where], b[where]
-        z, far = (view[where] for view in shifted(points[..., 2], *shift))
-        step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
-        _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step})
-        for first, second, front in ((a, b, step & (z < far)), (b, a, step & (far < z))):
-            key = (first - 1) * count + (second - 1)
-            sums = np.bincount(key, weights=front, minlength=count * count)
-            between[..., BEFORE] += sums.reshape(count, count)
+    i, j = cells.pairs((0, 1), (1, 0))
+    a, b, z, far = cells.owner[i], cells.owner[j], cells.points[2, i], cells.points[2, j]
+    step = np.abs(z - far) > _STEP_M * np.maximum(z, z * z)
+    _add(between, a, b, {TOUCH: np.ones(len(a)), STEP: step})
+    for first, second, front in ((a, b, step & (z < far)), (b, a, step & (far < z))):
+        between[..., BEFORE] += _sums(len(between), first, second, front)
 
 
-def _bending(between: Sums, labels: Labels, points: Floats, normals: Floats, shades: Floats) -> None:
+def _bending(between: Sums, cells: _Cells) -> None:
     """Cells four apart, which sees past rounded edges and narrow shadows."""
-    for shift in ((0, 4), (4, 0), (3, 3), (3, -3)):
-        a, b = shifted(labels, *shift)
-        where = (a != b) & (a > 0) & (b > 0)
-        a, b = a[where], b[where]
-        p, q = (view[where] for view in shifted(points, *shift))
-        m, n = (np.nan_to_num(view[where]) for view in shifted(normals, *shift))
-        apart = q - p
-        length = np.maximum(np.linalg.norm(apart, axis=-1), 1e-6)
-        bend = ((n - m) * apart).sum(axis=-1) / length
-        turned = np.abs(np.subtract(*(view[where] for view in shifted(shades, *shift))))
-        near = np.abs(apart[:, 2]) < _SAME_SURFACE_M * np.maximum(1, p[:, 2] ** 2)
-        columns = {
-            WIDE: np.ones(len(a)),
-            BENDS: near,
-            BEND: near * bend,
-            CONCAVE: near & (bend < -_SINES[0]),
-            DEEP: near & (bend < -_SINES[1]),
-            CONVEX: near & (bend > _SINES[1]),
-            LIKE: near * (m * n).sum(axis=-1),
-            BRIGHTER: near * turned[:, 0],
-            COLOURED: near * np.hypot(turned[:, 1], turned[:, 2]),
-        }
-        _add(between, a, b, columns)
-
-
-def _seen_between(between: Sums, labels: Labels, points: Floats, depth_sums: Sums) -> None:
-    """What stands in the line between the middles of two patches: something nearer, or open space."""
-    count = between.shape[0]
-    size = np.bincount(labels.ravel(), minlength=count + 1)[1:]
-    row, column = np.nonzero(labels)
-    label = labels[row, column]
-    middle = np.stack(
-        [np.bincount(label, weights=of, minlength=count + 1)[1:] / size for of in (row, column)], axis=1
+    i, j = cells.pairs((0, _FAR), (_FAR, 0), (3, 3), (3, -3))
+    (p, q), (m, n), shades = (
+        (of.take(i, axis=1), of.take(j, axis=1)) for of in (cells.points, cells.normals, cells.shades)
     )
-    depth = depth_sums / size
+    apart = q - p
+    length = np.maximum(np.sqrt((apart * apart).sum(axis=0)), np.float32(1e-6))
+    bend = ((n - m) * apart).sum(axis=0) / length
+    brighter, *coloured = np.abs(np.subtract(*shades))
+    near = np.abs(apart[2]) < _SAME_SURFACE_M * np.maximum(1, p[2] ** 2)
+    columns = {
+        WIDE: np.ones(len(i)),
+        BENDS: near,
+        BEND: near * bend,
+        CONCAVE: near & (bend < -_SINES[0]),
+        DEEP: near & (bend < -_SINES[1]),
+        CONVEX: near & (bend > _SINES[1]),
+        LIKE: near * (m * n).sum(axis=0),
+        BRIGHTER: near * brighter,
+        COLOURED: near * np.hypot(*coloured),
+    }
+    _add(between, cells.owner[i], cells.owner[j], columns)
+
+
+def _seen_between(between: Sums, cells: _Cells, labels: Labels, depth: Floats) -> None:
+    """What stands in the line between the middles of two patches: something nearer, or open space."""
+    count = len(between)
+    size = np.bincount(cells.owner, minlength=count)
+    row, column, mean = (
+        np.bincount(cells.owner, of, count) / size
+        for of in (*np.divmod(cells.place, labels.shape[1]), cells.points[2])
+    )
     a, b = np.triu_indices(count, 1)
-    t = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    place = middle[a, None] * (1 - t[:, None]) + middle[b, None] * t[:, None]
-    r, c = place[..., 0].astype(np.int64), place[..., 1].astype(np.int64)
-    there = labels[r, c] - 1
-    other = (there != a[:, None]) & (there != b[:, None])
-    line = depth[a, None] * (1 - t) + depth[b, None] * t
-    z = points[r, c, 2]
+    t = ((np.arange(_SAMPLES) + 0.5) / _SAMPLES)[:, None]
+    r, c, line = (of[a] * (1 - t) + of[b] * t for of in (row, column, mean))
+    place = r.astype(np.int64) * labels.shape[1] + c.astype(np.int64)
+    there, z = labels.ravel()[place] - 1, depth.ravel()[place]
+    other = (there != a) & (there != b)
     blocked = other & (z < line - _SAME_SURFACE_M)
     open_ = other & (z > line + _SAME_SURFACE_M)  # where nothing is seen may be a shadow
     for column_, values in ((SIGHT, other), (BLOCKED, blocked), (OPEN, open_)):
-        between[a, b, column_] = between[b, a, column_] = values.sum(axis=1)
-
-
-def _hidden(labels: Labels, points: Floats, count: int) -> Sums:
-    """(P,) cells at whose side something else is nearer: the patch may go on behind it."""
-    hidden = np.zeros(count + 1)
-    for shift in ((0, 1), (1, 0)):
-        a, b = shifted(labels, *shift)
-        z, far = shifted(points[..., 2], *shift)
-        step = _STEP_M * np.maximum(z, z * z)
-        for mine, behind in ((b, far - z > step), (a, z - far > step)):
-            hidden += np.bincount(mine[(a != b) & behind], minlength=count + 1)
-    return hidden[1:]
+        between[a, b, column_] = between[b, a, column_] = values.sum(axis=0)

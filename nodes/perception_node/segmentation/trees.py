@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +33,24 @@ class Trees:
 
     def probability(self, features: NDArray[np.float32]) -> NDArray[np.float32]:
         """(N,) of rows (N, F)."""
-        no = features[:, self.feature] > self.threshold
-        left = np.bitwise_and.reduceat(np.where(no, self.keeps, np.uint16(0xFFFF)), self.first, axis=1)
+        feature, threshold, rules_out = self._asked
+        answers = np.ascontiguousarray(features.T)[feature] > threshold
+        left = ~np.bitwise_or.reduce(answers * rules_out, axis=0)
         leaf = _LOWEST_BIT[left & -left]
-        total = self.value[np.arange(len(self.value)), leaf].sum(axis=1) + np.float32(self.bias)
+        value = self.value.ravel().take(leaf + LEAVES * np.arange(len(leaf))[:, None])
+        total = value.sum(axis=0) + np.float32(self.bias)
         return np.asarray(1 / (1 + np.exp(-total)), np.float32)
+
+    @cached_property
+    def _asked(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint16]]:
+        """The trees' first questions, their second ones, and so on, since bits of many are joined at once.
+
+        Feature (Q, T), threshold (Q, T, 1), and the leaves that a *no* rules out (Q, T, 1); a tree that has
+        no more questions asks its last one again.
+        """
+        count = np.diff(self.first, append=len(self.feature))
+        at = self.first + np.minimum(np.arange(count.max(initial=0))[:, None], count - 1)
+        return self.feature[at], self.threshold[at][..., None], ~self.keeps[at][..., None]
 
 
 _LOWEST_BIT = np.zeros(1 << 16, np.uint8)

@@ -32,10 +32,10 @@ def test_each_patch_is_of_one_box_and_together_they_are_all(boxes):
 
 def test_nothing_outside_what_is_asked_for():
     seen = boxes_on_table(*SCENES["apart"])
-    points = seen.cloud.points_camera[::2, ::2]
-    where = np.zeros(points.shape[:2], dtype=bool)
+    points = np.moveaxis(seen.cloud.points_camera[::2, ::2], -1, 0)
+    where = np.zeros(points.shape[1:], dtype=bool)
     assert not patches(points, np.full_like(points, np.nan), where).any()
     where[100:140, 100:140] = True
-    labels = patches(points, np.broadcast_to(np.float32([0, 0, -1]), points.shape), where)
+    labels = patches(points, np.broadcast_to(np.float32([[[0]], [[0]], [[-1]]]), points.shape), where)
     assert set(np.unique(labels[where])) <= set(range(labels.max() + 1))
     assert not labels[~where].any()

@@ -10,10 +10,10 @@ from nodes.perception_node.segmentation.pairs import NAMES, candidates, features
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.taken_apart import apart
 
-POINTS = np.moveaxis(np.mgrid[0:30, 0:40, 1:2][..., 0] * 0.01, 0, -1)[..., [1, 0, 2]].astype(np.float32)
-POINTS[..., 2] = 1.0
-POINTS[10:20, 30:] -= np.float32([0, 0, 0.2])
-NORMALS = np.broadcast_to(np.float32([0, 0, -1]), POINTS.shape)
+POINTS = np.ones((3, 30, 40), np.float32)
+POINTS[1], POINTS[0] = np.mgrid[0:30, 0:40] * 0.01
+POINTS[2, 10:20, 30:] -= 0.2
+NORMALS = np.broadcast_to(np.float32([[[0]], [[0]], [[-1]]]), POINTS.shape)
 LABELS = np.zeros((30, 40), np.int32)
 LABELS[:10, :30], LABELS[10:20, :30], LABELS[20:, :30], LABELS[10:20, 30:] = 1, 2, 3, 4
 UPRIGHT = s.Upright(np.eye(3), np.zeros(1))
@@ -25,7 +25,7 @@ def of(labels):
 
 def test_colours_are_compared_where_there_are_any():
     shades = np.zeros_like(POINTS)
-    shades[LABELS == 2] = (0.5, 0.3, 0.4)
+    shades[:, LABELS == 2] = [[0.5], [0.3], [0.4]]
     known = s.statistics(LABELS, POINTS, NORMALS, shades, UPRIGHT)
     first, second = np.array([0, 0, 0]), np.array([1, 2, 3])
     rows = features(known, first, second)
