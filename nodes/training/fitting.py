@@ -27,7 +27,7 @@ def classifier(
     """Scores (N, classes) from inputs (N, D); a class that `target` (N,) never names gets a very low one."""
     machine = MLPClassifier(
         hidden_layer_sizes=hidden,
-        alpha=3e-2,
+        alpha=0.3,
         batch_size=256,
         learning_rate_init=2e-3,
         max_iter=rounds,

@@ -21,10 +21,12 @@ _PICKS = np.random.default_rng(0).random((2, _PAIRS))
 _HUES = 12
 _GREYS = 4
 _BANDS = 4
+_TRIMMED = np.array([0.01, 0.03, 0.08, 0.2])
+_LEAST_M = 1e-3
 
 
 def features_of(things: Sequence[Thing]) -> list[Numbers]:
-    """For each voter (N, its own number) what it looks at: geometry, shape, colour."""
+    """Geometry, shape and colour of each thing: (N, their own number) each."""
     inside = [_normalised(thing) for thing in things]
     return [
         np.array([look(thing, where) for thing, where in zip(things, inside, strict=True)])
@@ -57,6 +59,7 @@ def geometry(thing: Thing, inside: Numbers) -> Numbers:
             float((to_eye[:, 2] / distance).max()),
             float(not thing.whole),
             np.log(thing.count),
+            *_trimmed(inside, np.array([long, short, z])),
         ]
     )
 
@@ -108,6 +111,16 @@ def _normalised(thing: Thing) -> Numbers:
     turned = in_frame(thing.cells, thing.box.yaw_rad)
     inside = np.clip((turned - thing.box.low) / thing.box.size_m, 0.0, 1.0)
     return inside if thing.box.size_m[0] >= thing.box.size_m[1] else inside[:, [1, 0, 2]]
+
+
+def _trimmed(inside: Numbers, size_m: Numbers) -> Numbers:
+    """(16,) logs of what a thing measures but for so much at each end, and how low it begins then.
+
+    Where things touch, a scrap of the neighbour makes the box a good deal larger.
+    """
+    low, high = np.quantile(inside, [_TRIMMED, 1.0 - _TRIMMED], axis=0)
+    extents = np.column_stack([high[:, :2] - low[:, :2], high[:, 2]]) * size_m
+    return np.concatenate([np.log(np.maximum(extents, _LEAST_M)).ravel(), low[:, 2]])
 
 
 def _spans(offset: Numbers, level: NDArray[np.int64]) -> Numbers:

@@ -12,17 +12,23 @@ from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
-    """(N, K) probabilities of the leaves; `features`: for each voter (N, its own number).
+    """(N, K) probabilities of the leaves; `features`: of each sort (N, its own number).
 
-    The votes are independent evidence, so their logarithms add up, each with the weight that calibration on
-    scenes apart gave it.
+    The votes are evidence, so their logarithms add up, each with the weight that calibration on scenes apart
+    gave it.
     """
     return np.exp(pool(ballots(voters, features), weights))
 
 
+def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
+    """What each voter looks at: one sort of features, the last one all of them."""
+    return [*features, np.concatenate(features, axis=1)]
+
+
 def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
     """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, features, strict=True)])
+    shown = shown_to_voters(features)
+    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
 def pool(votes: Numbers, weights: Numbers) -> Numbers:
