@@ -118,17 +118,29 @@ def _trimmed(inside: Numbers, size_m: Numbers) -> Numbers:
 
     Where things touch, a scrap of the neighbour makes the box a good deal larger.
     """
-    low, high = np.quantile(inside, [_TRIMMED, 1.0 - _TRIMMED], axis=0)
+    low, high = np.split(_quantiles(inside, np.concatenate([_TRIMMED, 1.0 - _TRIMMED])), 2)
     extents = np.column_stack([high[:, :2] - low[:, :2], high[:, 2]]) * size_m
     return np.concatenate([np.log(np.maximum(extents, _LEAST_M)).ravel(), low[:, 2]])
 
 
+def _quantiles(values: Numbers, shares: Numbers) -> Numbers:
+    """(S, D) of each column of values (N, D); NumPy's own takes ten times as long."""
+    ordered = np.sort(values.T, axis=1)
+    at = shares * (len(values) - 1)
+    below = at.astype(int)
+    above = np.minimum(below + 1, len(values) - 1)
+    return np.asarray((ordered[:, below] * (1.0 - (at - below)) + ordered[:, above] * (at - below)).T)
+
+
 def _spans(offset: Numbers, level: NDArray[np.int64]) -> Numbers:
     """(_SLICES, 2) extents of each slice along the box's axes."""
-    low, high = np.full((_SLICES, 2), np.inf), np.full((_SLICES, 2), -np.inf)
-    np.minimum.at(low, level, offset)
-    np.maximum.at(high, level, offset)
-    return np.asarray(np.maximum(high - low, 0.0))
+    count = np.bincount(level, minlength=_SLICES)
+    first, filled = np.cumsum(count) - count, count > 0
+    by_level = np.ascontiguousarray(offset[np.argsort(level.astype(np.uint8), kind="stable")].T)
+    spans = np.zeros((_SLICES, 2))
+    low, high = (end.reduceat(by_level, first[filled], axis=1) for end in (np.minimum, np.maximum))
+    spans[filled] = (high - low).T
+    return spans
 
 
 def _high(heights: Numbers) -> float:
