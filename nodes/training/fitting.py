@@ -22,6 +22,7 @@ def classifier(
     classes: int,
     hidden: tuple[int, ...],
     *,
+    seed: int = 0,
     rounds: int = _ROUNDS,
 ) -> Perceptron:
     """Scores (N, classes) from inputs (N, D); a class that `target` (N,) never names gets a very low one."""
@@ -32,7 +33,7 @@ def classifier(
         learning_rate_init=2e-3,
         max_iter=rounds,
         tol=0.0,
-        random_state=0,
+        random_state=seed,
     )
     fitted = _fit(machine, inputs, target)
     weights, biases = np.zeros((hidden[-1], classes)), np.full(classes, _NEVER_SEEN)

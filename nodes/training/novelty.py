@@ -58,8 +58,8 @@ def learn_novelty(
         out = np.isin(target, order[fold * size : (fold + 1) * size])
         known = ~held & ~out & (rng.random(len(target)) < _ENOUGH)
         voters = [
-            classifier(f[known], target[known], classes, h, rounds=_ROUNDS)
-            for f, h in zip(shown_to_voters(features), hidden, strict=True)
+            classifier(f[known], target[known], classes, h, seed=seed, rounds=_ROUNDS)
+            for seed, (f, h) in enumerate(zip(shown_to_voters(features), hidden, strict=True))
         ]
         judged = held & np.isin(target, nameable)
         seen = [f[judged] for f in features]

@@ -21,8 +21,9 @@ def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numb
 
 
 def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
-    """What each voter looks at: one sort of features, the last one all of them."""
-    return [*features, np.concatenate(features, axis=1)]
+    """What each voter looks at: one sort of features; the last two at all of them."""
+    everything = np.concatenate(features, axis=1)
+    return [*features, everything, everything]
 
 
 def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
