@@ -10,6 +10,8 @@ from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 
+_CLEAR = 2.0 / 3.0
+
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
     """(N, K) probabilities of the leaves; `features`: of each sort (N, its own number).
@@ -60,13 +62,20 @@ def answer(
 ) -> tuple[str, float]:
     """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
 
-    Of several, none of which is below another, the likelier.
+    A class that is not twice as likely as all else below one of its ancestors is not said: what may be a
+    desk or a table is furniture. Of several, none of which is below another, the likelier.
     """
     total: dict[str, float] = {}
     for leaf, probability in probabilities.items():
         for name in (leaf, *ancestors.get(leaf, ())):
             total[name] = total.get(name, 0.0) + probability
-    certain = [name for name in total if total[name] >= sure and name not in (UNKNOWN, CLUTTER)]
+    certain = [
+        name
+        for name in total
+        if name not in (UNKNOWN, CLUTTER)
+        and total[name] >= sure
+        and all(total[name] >= _CLEAR * total[above] for above in ancestors.get(name, ()) if above != UNKNOWN)
+    ]
     lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]
     best = max(lowest, key=total.__getitem__, default=UNKNOWN)
     return best, min(1.0, total.get(best, 0.0))
