@@ -107,10 +107,12 @@ def ask(
     timeout_s: float = TIMEOUT_S,
     patience_s: float = PATIENCE_S,
     meanwhile: Callable[[], None] | None = None,
+    first_hand: bool = False,
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
 
-    `meanwhile` is called again and again while the answer takes its time.
+    `meanwhile` is called again and again while the answer takes its time. `first_hand`: whoever serves just
+    this verb is asked, and those who serve all verbs of the prefix only if there is no such one.
 
     Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
     that does takes longer than `timeout_s`.
@@ -120,10 +122,18 @@ def ask(
     deadline = time.monotonic() + patience_s
     while True:
         replies = session.get(
-            key, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+            key,
+            payload=payload,
+            encoding=encoding,
+            timeout=timeout_s,
+            consolidation=_AS_THEY_COME,
+            target=zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING,
         )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
             return read_reply(key, reply, kind, timeout_s).decode()
+        if first_hand:
+            first_hand = False
+            continue
         if time.monotonic() > deadline:
             _nobody(key)
         time.sleep(0.05)
@@ -251,9 +261,12 @@ def serve(
 ) -> None:
     """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them.
 
-    One that is not answered counts as not having come here: another who serves the key may answer it.
+    One that is not answered counts as not having come here: another who serves the key may answer it. Who
+    serves a single verb is `complete` (Zenoh's word) for its key, so that it can be asked alone.
     """
-    session.declare_queryable(f"{prefix}/{verb}", lambda query: receive(_request_of_query(prefix, query)))
+    session.declare_queryable(
+        f"{prefix}/{verb}", lambda query: receive(_request_of_query(prefix, query)), complete=verb != "*"
+    )
 
 
 def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:

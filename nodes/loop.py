@@ -122,31 +122,41 @@ class Node:
         self._idle.append(handle)
 
     def ask(
-        self, prefix: str, verb: str, message: Any, kind: Any, *, beating: bool = False, **limits: float
+        self, prefix: str, verb: str, message: Any, kind: Any, *, timeout_s: float, beating: bool = False
     ) -> Any:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
-        return bus.ask(self.session, prefix, verb, message, kind, meanwhile=meanwhile, **limits)
+        return bus.ask(self.session, prefix, verb, message, kind, timeout_s=timeout_s, meanwhile=meanwhile)
 
     def ask_later(
-        self, prefix: str, verb: str, message: Any, kind: Any, *, patience_s: float = 0.0, **limits: float
+        self,
+        prefix: str,
+        verb: str,
+        message: Any,
+        kind: Any,
+        *,
+        timeout_s: float = bus.TIMEOUT_S,
+        patience_s: float = 0.0,
+        decoded: bool = True,
     ) -> Future[Any]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread.
 
-        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key.
+        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key. The result is
+        the message, or, unless `decoded`, as it came.
         """
         future: Future[Any] = Future()
         deadline_s = time.monotonic() + patience_s
 
         def send() -> None:
-            bus.ask_later(self.session, prefix, verb, message, kind, answer, **limits)
+            bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
 
         def take(read: Callable[[], bus.Encoded]) -> None:
             try:
-                future.set_result(read().decode())
+                reply = read()
+                future.set_result(reply.decode() if decoded else reply)
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)
@@ -262,22 +272,17 @@ class Node:
     def _relay(
         self, request: bus.Request, prefix: str, verb: str, message: Any, kind: Any, timeout_s: float
     ) -> None:
-        """Pass a reply on as it comes. Not from Zenoh's own thread: it holds locks when a peer is lost."""
-        if not request.plain:
-            future = self.ask_later(prefix, verb, message, kind, timeout_s=timeout_s)
-            future.add_done_callback(lambda done: self._answer_later(request, done))
-            return
-
-        def answer(read: Callable[[], bus.Encoded]) -> None:
-            self._events.put(lambda: pass_on(read))
-
-        def pass_on(read: Callable[[], bus.Encoded]) -> None:
-            try:
-                request.reply(read())
-            except errors.SemmapError as error:
-                request.refuse(error)
-
-        bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
+        """Pass a reply on as it comes, also from a node that is just being restarted."""
+        future = self.ask_later(
+            prefix,
+            verb,
+            message,
+            kind,
+            timeout_s=timeout_s,
+            patience_s=bus.PATIENCE_S,
+            decoded=not request.plain,
+        )
+        future.add_done_callback(lambda done: self._answer_later(request, done))
 
     def _answer_later(self, request: bus.Request, future: Future[Any]) -> None:
         error = future.exception()

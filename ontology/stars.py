@@ -14,6 +14,8 @@ from schemas.explanations import Term, Triple
 
 STAR_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
 """The edges from an entity to the individuals of its star."""
+COORDINATE_PROPERTIES = (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ)
+"""The numbers that say where an entity is."""
 
 
 def star(
@@ -42,13 +44,17 @@ def star(
     return triples
 
 
-def position(entity: Term, coordinates: Term, pose: Pose) -> list[Triple]:
-    """Position and, unless it is the identity, orientation."""
-    triples: list[Triple] = [(entity, v.HAS_POSITION, coordinates), (coordinates, v.RDF_TYPE, v.COORDINATES)]
-    triples += _numbers(coordinates, v.COORDINATE_XYZ, pose.position_m)
+def position(entity: Term, node: Term, pose: Pose) -> list[Triple]:
+    """Where an entity is, by the individual `node`."""
+    return [(entity, v.HAS_POSITION, node), (node, v.RDF_TYPE, v.COORDINATES), *coordinates(node, pose)]
+
+
+def coordinates(node: Term, pose: Pose) -> list[Triple]:
+    """The numbers of a pose: position and, unless it is the identity, orientation."""
+    numbers = _numbers(node, v.COORDINATE_XYZ, pose.position_m)
     if pose.orientation_wxyz != IDENTITY:
-        triples += _numbers(coordinates, v.ORIENTATION_WXYZ, pose.orientation_wxyz)
-    return triples
+        numbers += _numbers(node, v.ORIENTATION_WXYZ, pose.orientation_wxyz)
+    return numbers
 
 
 def size(entity: Term, node: Term, size_m: Size) -> list[Triple]:

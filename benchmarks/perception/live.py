@@ -124,9 +124,9 @@ def _running(folder: Path) -> Iterator[Client]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    words = ["up", "--data", folder / "data", "--listen", endpoint, "--abox", "none", "--no-record"]
-    words += ["--world", world, "--truth", "perceived", "--perception"]
-    command = [Path(sys.executable).parent / "semmap", *map(str, words)]
+    words = ["up", "--data", str(folder / "data"), "--listen", endpoint, "--abox", "none", "--no-record"]
+    words += ["--world", str(world), "--truth", "perceived", "--perception"]
+    command = [str(Path(sys.executable).with_name("semmap")), *words]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:
             assert process.stdout is not None

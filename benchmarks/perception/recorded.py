@@ -76,7 +76,7 @@ def score(scene: Scene, labels: Labels) -> Counts:
     iou = (both / np.maximum(objects[:, None] + segments - both, 1))[1:, 1:]
     iou = iou[objects[1:] >= LEAST_POINTS][:, segments[1:] >= LEAST_POINTS]
     matched = iou[linear_sum_assignment(-iou)] > IOU
-    return Counts(*iou.shape, int(matched.sum()))
+    return Counts(iou.shape[0], iou.shape[1], int(matched.sum()))
 
 
 def by_group(scenes: Iterable[Scene], segments: Callable[[Scene], Labels]) -> dict[str, Counts]:

@@ -35,8 +35,10 @@ class Bridge:
 
     def change_later(self, verb: str, message: Any) -> Future[Any]:
         """The same, as long and as patient as `ask`."""
-        limits = {"timeout_s": _USUALLY_S, "patience_s": bus.PATIENCE_S}
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+        kind = BRIDGE[verb][1]
+        return self._node.ask_later(
+            keys.BRIDGE, verb, message, kind, timeout_s=_USUALLY_S, patience_s=bus.PATIENCE_S
+        )
 
     def relay(self, command: Command) -> Relay:
         """Let the knowledge base answer a command itself."""

@@ -62,7 +62,10 @@ class Client:
         """Send any command and return its reply, of the usual type for it or of `kind`."""
         verb = str(command.__struct_config__.tag)
         kind = kind or commands.REPLIES[type(command)]
-        return bus.ask(self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s)
+        first_hand = verb in keys.OF_THE_MAP
+        return bus.ask(
+            self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s, first_hand=first_hand
+        )
 
     # To change
 

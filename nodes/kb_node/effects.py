@@ -11,11 +11,14 @@ from nodes.kb_node import entities
 from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.reasoner import Change, Reasoner
+from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Departed
 from schemas.entities import Entity, Provenance
 from schemas.explanations import Term
+
+_COORDINATES = frozenset(stars.COORDINATE_PROPERTIES)
 
 
 class Reading(NamedTuple):
@@ -54,10 +57,17 @@ def of(
         for iri in others
         if not reasoner.types(iri).isdisjoint(classes.spatial) or (iri not in new and known(before, iri))
     )
+    is_move = _is_move(commit, change)
     for iri in sorted({*at_sight, *concerned}):
         progress()
         was = None if iri in new else known(before, iri)
-        entity = at_sight.get(iri) or entities.read_entity(reasoner, classes, iri, commit.provenance, about)
+        entity: Entity | None
+        if is_move and was is not None:
+            entity = entities.moved(reasoner, was, commit.provenance)
+        else:
+            entity = at_sight.get(iri) or entities.read_entity(
+                reasoner, classes, iri, commit.provenance, about
+            )
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
@@ -80,6 +90,16 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     """The entity with this IRI."""
     entity = by_name.get(v.local_name(iri))
     return entity if entity is not None and v.iri(entity.iri) == iri else None
+
+
+def _is_move(commit: Commit, change: Change) -> bool:
+    """Whether nothing but coordinates is otherwise: no class, and no individual that was not there."""
+    triples = (*commit.retracted, *commit.inserted)
+    return (
+        all(p in _COORDINATES for _, p, _ in triples)
+        and change.touched <= {s for s, _, _ in triples}
+        and not change.alike
+    )
 
 
 def _read_at_sight(

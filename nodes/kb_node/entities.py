@@ -83,6 +83,13 @@ def read_entity(
     )
 
 
+def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
+    """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
+    iri = v.iri(known.iri)
+    nodes = [o for _, _, o in reasoner.asserted(iri, v.HAS_POSITION, None)]
+    return structs.replace(known, pose=_pose(reasoner.about, iri, nodes), provenance=provenance)
+
+
 def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
     """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
     iris = {i for c in classes.spatial for i in reasoner.instances(c)}

@@ -132,6 +132,12 @@ class Journal:
             raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_ANEW}")
         return bytes(row[0])
 
+    def tbox_changes(self, after: int) -> list[int]:
+        """The numbers of the commits later than `after` that replaced the TBox, newest first."""
+        with self._reading():
+            rows = self._db.execute("SELECT seq FROM tboxes WHERE seq > ? ORDER BY seq DESC", (after,))
+            return [seq for (seq,) in rows]
+
     def append(
         self, commit: Commit, tbox: bytes | None = None, *, begun: bodies.EarlyBody | None = None
     ) -> None:

@@ -12,8 +12,6 @@ from schemas.entities import Entity, Pose
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
-_COORDINATES = frozenset((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ))
-
 
 def place(
     reasoner: Reasoner, tbox: frozenset[Triple], entity: Entity, placed: Placed
@@ -24,15 +22,17 @@ def place(
     Raises BadRequest for a pose that is none, Refused for an entity that the TBox itself has.
     """
     iri = v.iri(entity.iri)
-    said = list(reasoner.asserted(iri))
-    if not tbox.isdisjoint(said):
+    said = reasoner.about(iri)
+    if any((iri, p, o) in tbox for p, objects in said.items() for o in objects):
         raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
     pose = _pose(entity, placed)
-    edges = [t for t in said if t[1] == v.HAS_POSITION]
-    if len(edges) == 1 and owners(reasoner, node := edges[0][2]) == {iri, node}:
-        before = [t for t in reasoner.asserted(node) if t[1] in _COORDINATES]
-        return before, [t for t in stars.position(iri, node, pose) if t[1] in _COORDINATES]
-    return edges, stars.position(iri, _free_node(reasoner, entity.name), pose)
+    nodes = said.get(v.HAS_POSITION, [])
+    if len(nodes) == 1 and owners(reasoner, node := nodes[0]) == {iri, node}:
+        values = reasoner.about(node)
+        before = [(node, p, o) for p in stars.COORDINATE_PROPERTIES for o in values.get(p, ())]
+        return before, stars.coordinates(node, pose)
+    before = [(iri, v.HAS_POSITION, node) for node in nodes]
+    return before, stars.position(iri, _free_node(reasoner, entity.name), pose)
 
 
 def _pose(entity: Entity, placed: Placed) -> Pose:

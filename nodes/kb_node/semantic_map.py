@@ -44,7 +44,7 @@ class SemanticMap:
         self._progress = progress
         journal.verify(progress)
         start = journal.last_checkpoint()
-        self.tbox = self._tbox_of(start.seq)
+        self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
@@ -118,6 +118,10 @@ class SemanticMap:
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
         return any(True for _ in self.reasoner.asserted(*triple))
+
+    def tbox_at(self, seq: int) -> frozenset[Triple]:
+        """The TBox that held after commit `seq`. Raises Refused when it is damaged."""
+        return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
     # Changing
 
@@ -272,15 +276,12 @@ class SemanticMap:
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    self._switch(commit, self._tbox_of(commit.seq), lambda _: None)
+                    self._switch(commit, self.tbox_at(commit.seq), lambda _: None)
                 else:
                     self._apply(commit, lambda _: None)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._progress()
-
-    def _tbox_of(self, seq: int) -> frozenset[Triple]:
-        return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
     def _signed(
         self,

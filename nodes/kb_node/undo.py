@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.semantic_map import SemanticMap
@@ -14,43 +14,59 @@ from schemas.explanations import Triple
 
 
 def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
-    """Take back what `command` says. Raises as `reversal` does, and Inconsistent."""
+    """Take back a commit with the settling that followed it, or the TBox that it let hold.
+
+    Raises Refused when there is nothing to take back, later commits rest on it, its author outranks who wants
+    it undone, or the map does not fit the TBox before; Inconsistent.
+    """
     if (known := journal.commit_of(command.id)) is not None:
         return known
-    transaction = reversal(semantic_map, journal, command)
-    (first, *_) = transaction.undoes
+    target = _newest_asked(journal) if command.commit is None else _named(journal, command.commit)
+    _require_authority(command, target)
+    reverse = _reverse_tbox if target.tbox else _reverse
     try:
-        commit = semantic_map.commit(transaction)
+        commit = reverse(semantic_map, journal, command, target)
     except errors.Inconsistent as error:
         raise errors.Inconsistent(
-            f"commit {first} cannot be undone: {error.text}", explanation=error.explanation
+            f"commit {target.seq} cannot be undone: {error.text}", explanation=error.explanation
         ) from None
     if commit is None:
-        raise errors.Refused(f"nothing is left of commit {first} that could be taken back")
+        raise errors.Refused(f"nothing is left of commit {target.seq} that could be taken back")
     return commit
 
 
-def reversal(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Transaction:
-    """The transaction that takes back a commit with the settling that followed it.
-
-    Raises Refused when there is nothing to take back, later commits rest on it, or its author outranks
-    who wants it undone.
-    """
-    target = _newest_asked(journal) if command.commit is None else _named(journal, command.commit)
-    _require_authority(command, target)
-    if target.tbox:
-        raise errors.Refused(
-            f"commit {target.seq} replaced the TBox; load the one before again: semmap load --tbox FILE"
-        )
+def _reverse(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit | None:
     later = _later(journal, target)
-    for commit in _in_force(later):
-        if target.seq in commit.undoes:
-            raise errors.Refused(f"commit {target.seq} was taken back by commit {commit.seq} already")
+    _require_in_force(target, later)
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
     undone = [target, *reversed(settling)]
     retract, insert = _net(undone)
     if _is_disturbed(semantic_map, retract, insert):
         raise errors.Refused(_what_rests_on(target, [c for c in later if c not in undone]))
+    return semantic_map.commit(_transaction(command, undone, retract, insert, require=retract))
+
+
+def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit:
+    """Let the TBox hold again that held before."""
+    later = [journal.commit(seq) for seq in journal.tbox_changes(after=target.seq)]
+    _require_in_force(target, later)
+    if again := [commit for commit in _in_force(later) if not commit.undoes]:
+        raise errors.Refused(_what_rests_on(target, again))
+    before, after = (semantic_map.tbox_at(seq) for seq in (target.seq - 1, target.seq))
+    retract = tuple(t for t in target.inserted if t not in after and semantic_map.has(t))
+    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.has(t))
+    return semantic_map.replace_tbox(_transaction(command, [target], retract, insert), before)
+
+
+def _transaction(
+    command: Undo,
+    undone: Sequence[Commit],
+    retract: tuple[Triple, ...],
+    insert: tuple[Triple, ...],
+    *,
+    require: tuple[Triple, ...] = (),
+) -> Transaction:
+    target = undone[0]
     return Transaction(
         id=command.id,
         source=command.source,
@@ -58,10 +74,16 @@ def reversal(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Tran
         verb="undo",
         reason=command.reason or f"undo {target.seq}: {target.reason}",
         undoes=tuple(commit.seq for commit in undone),
-        require=retract,
+        require=require,
         retract=retract,
         insert=insert,
     )
+
+
+def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
+    for commit in _in_force(later):
+        if target.seq in commit.undoes:
+            raise errors.Refused(f"commit {target.seq} was taken back by commit {commit.seq} already")
 
 
 def _newest_asked(journal: Journal) -> Commit:

@@ -1,5 +1,6 @@
 import pytest
 
+from nodes.kb_node import rdf_files
 from nodes.kb_node.undo import undo
 from ontology import stars
 from ontology import vocabulary as v
@@ -8,6 +9,7 @@ from schemas.commands import Undo
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 from tests.kb_node.test_past import A, B, C, move
+from tests.kb_node.test_tboxes import NEW_CLASSES, replace
 
 CHAIR1 = v.entity_iri("chair1")
 ids = iter(range(1000, 9999))
@@ -195,3 +197,53 @@ def test_an_undo_survives_a_restart(semantic_map):
     with pytest.raises(errors.Refused, match="nothing to undo"):
         take_back(again)
     home.close(again)
+
+
+def test_another_tbox_is_taken_back_and_brought_again(semantic_map):
+    add(semantic_map, "chair1")
+    before, tbox = semantic_map.entity("chair1").types, semantic_map.tbox
+    replace(semantic_map, "t", NEW_CLASSES)
+    changed = semantic_map.tbox
+    commit = take_back(semantic_map)
+    assert (commit.tbox, commit.undoes, commit.verb) == (True, (2,), "undo")
+    assert semantic_map.tbox == tbox
+    assert "Bench" not in semantic_map.classes.iris
+    assert semantic_map.entity("chair1").types == before
+    with pytest.raises(errors.Refused, match="commit 2 was taken back by commit 3 already"):
+        take_back(semantic_map, 2)
+    take_back(semantic_map, 3)
+    assert semantic_map.tbox == changed
+    again = home.reopened(semantic_map)
+    assert again.tbox == changed
+    home.close(again)
+
+
+def test_a_tbox_that_the_map_needs_stays(semantic_map):
+    replace(semantic_map, "t", NEW_CLASSES)
+    semantic_map.commit(transaction("bench", turtle(":bench1 a dm:Bench .")))
+    before = home.state(semantic_map)
+    with pytest.raises(errors.Refused, match="does not fit the TBox: unknown class 'Bench'"):
+        take_back(semantic_map, 1)
+    assert home.state(semantic_map) == before
+
+
+def test_a_tbox_that_was_replaced_again_waits_for_the_later_one(semantic_map):
+    first = semantic_map.tbox
+    replace(semantic_map, "t", NEW_CLASSES)
+    replace(semantic_map, "u", NEW_CLASSES + "dm:Pew a owl:Class .")
+    with pytest.raises(errors.Refused, match="undo that one first: semmap undo 2"):
+        take_back(semantic_map, 1)
+    take_back(semantic_map, 2)
+    take_back(semantic_map, 1)
+    assert semantic_map.tbox == first
+
+
+def test_what_came_with_a_tbox_into_the_abox_goes_with_it(semantic_map):
+    mine = turtle(":chair9 a dm:Chair .")
+    before = triples(semantic_map)
+    semantic_map.replace_tbox(
+        transaction("t", mine, verb="load"), rdf_files.parse(NEW_CLASSES.encode(), "t", label_prefix="n")
+    )
+    assert "chair9" in {entity.name for entity in semantic_map.entities()}
+    take_back(semantic_map)
+    assert triples(semantic_map) == before

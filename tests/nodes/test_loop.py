@@ -76,8 +76,8 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
     def done(text):
         return commands.Get, lambda _: commands.Done(text=text)
 
-    def get(client, verb):
-        return bus.ask(client, PREFIX, verb, commands.Get(name="x"), commands.Done).text
+    def get(client, verb, **how):
+        return bus.ask(client, PREFIX, verb, commands.Get(name="x"), commands.Done, **how).text
 
     with bus.open_session(other) as there, bus.open_session(first) as here:
         nodes = Node("first", here), Node("other", there)
@@ -90,6 +90,8 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
         try:
             with bus.open_session(bus.Network(connect=(endpoint,))) as client:
                 assert [get(client, "get") for _ in range(20)] == ["first"] * 20
+                assert [get(client, "get", first_hand=True) for _ in range(20)] == ["first"] * 20
+                assert get(client, "list", first_hand=True) == "other"
                 assert get(client, "list") == "other"
                 with pytest.raises(errors.UnknownVerb, match="there are: get, list"):
                     bus.ask(client, PREFIX, "*", commands.Get(name="x"), commands.Done)
@@ -98,6 +100,7 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
                 threads[0].join(timeout=5)
                 here.close()
                 assert get(client, "get") == "other"
+                assert get(client, "get", first_hand=True) == "other"
         finally:
             for node, thread in zip(nodes, threads, strict=True):
                 node.stop()
@@ -193,6 +196,20 @@ def test_so_is_an_error(network, prefix, verb, error):
     _, client = network
     with pytest.raises(error):
         bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), commands.Done)
+
+
+def test_who_is_to_reply_may_come_late(network):
+    _, client = network
+    late = "semmap/late"
+
+    def serve():
+        time.sleep(0.5)
+        bus.serve(client, late, lambda request: request.reply(commands.Done(text="here")))
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    assert bus.ask(client, PREFIX, "explain", asking_for(late, "get"), commands.Done).text == "here"
+    thread.join()
 
 
 def test_somebody_who_comes_late_is_waited_for(network):

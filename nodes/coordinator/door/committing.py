@@ -9,11 +9,12 @@ from typing import TypeVar
 
 from msgspec import structs
 
+from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.talking import Question, Talk
 from schemas import errors
 from schemas.bridge import StarQuery
-from schemas.commands import Changed, Command
+from schemas.commands import Changed, Classes, Command
 from schemas.commits import Commit, Star, Transaction
 
 _ATTEMPTS = 5
@@ -72,6 +73,13 @@ def taken(view: MapView, commit: Commit | None) -> Commit | None:
     if commit is not None:
         view.take(commit)
     return commit
+
+
+def taken_with_classes(view: MapView, commit: Commit) -> Talk[None]:
+    """Like `taken`, for a commit that may have replaced the TBox."""
+    taken(view, commit)
+    if commit.tbox:
+        view.classes = ClassNames((yield Question("classes", Classes())))
 
 
 def stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:

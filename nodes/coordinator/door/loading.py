@@ -9,14 +9,14 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.class_names import ClassNames
-from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken
+from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
 from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.talking import Question, Talk
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
-from schemas.commands import Changed, Classes, Load
+from schemas.commands import Changed, Load
 from schemas.commits import Commit, Transaction
 from schemas.entities import ClassInfo, free_name
 from schemas.explanations import Triple
@@ -99,8 +99,7 @@ def _load_tbox(view: MapView, command: Load) -> Talk[Changed]:
         filename=command.filename,
     )
     commit: Commit = yield Question("load-tbox", order)
-    taken(view, commit)
-    view.classes = ClassNames((yield Question("classes", Classes())))
+    yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
     return Changed(commit=commit.seq, text=text, names=commit.names)
 

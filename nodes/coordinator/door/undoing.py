@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nodes.coordinator.door.committing import once, taken
+from nodes.coordinator.door.committing import once, taken_with_classes
 from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.talking import Question, Talk
 from schemas.commands import Changed, Undo
@@ -13,7 +13,7 @@ from schemas.commits import Commit
 def undo(view: MapView, command: Undo) -> Talk[Changed]:
     """Take back a commit."""
     commit: Commit = yield Question("undo", command)
-    taken(view, commit)
+    yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
     text = f"took back commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")
     return Changed(commit=commit.seq, text=text, names=commit.names)

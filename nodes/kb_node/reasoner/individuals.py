@@ -71,14 +71,13 @@ class Individuals:
             return True
         return self.value(one) is not None and self.value(one) == self.value(other)
 
-    def is_term(self, node: int, term: Term) -> bool:
-        """Whether a node is what a term names: the same individual, or a literal of the same value."""
-        if self.store.terms[node] == term:
-            return True
-        other = self.store.find(term)
-        if other is not None and self.is_same(node, other):
-            return True
-        return is_literal(term) and self.value(node) is not None and self.value(node) == datatypes.value(term)
+    def named(self, node: int, term: Term) -> int | None:
+        """Which of those that are the same as a node a term names, a literal also in another spelling."""
+        found, members = self.store.find(term), self.members(node)
+        if found is not None and found in members:
+            return found
+        value = datatypes.value(term) if is_literal(term) else None
+        return None if value is None else next((m for m in members if self.value(m) == value), None)
 
     def is_literal(self, node: int) -> bool:
         """Whether a node is a literal."""

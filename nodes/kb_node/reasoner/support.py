@@ -56,10 +56,9 @@ class Support:
         abox = self._abox
         role = (predicate, False)
         for edge, here, there in abox.related(subject, abox.steps.group(role)):
-            if abox.is_term(there, object_):
+            if (node := abox.named(there, object_)) is not None:
                 implied = role if abox.store.subject[edge] == here else (predicate, True)
-                node = abox.store.find(object_)
-                same = self._same(subject, here), {} if node is None else self._same(there, node)
+                same = self._same(subject, here), self._same(there, node)
                 return union(self._edge(edge, implied), *(ends for ends in same if ends))
         raise AssertionError(f"no edge to {object_}")
 

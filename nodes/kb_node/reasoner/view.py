@@ -213,12 +213,12 @@ class View:
             cls = self._schema.find_class(o)
             return cls is not None and bool(self._store.kind[node].mask >> cls & 1)
         if p == SAME_AS:
-            return self._abox.is_term(node, o)
+            return self._abox.named(node, o) is not None
         predicate = self._schema.find_property(p)
         if predicate is None:
             return False
         group = self._abox.steps.group((predicate, False))
-        return any(self._abox.is_term(end, o) for _, _, end in self._abox.related(node, group))
+        return any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group))
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual."""

@@ -166,6 +166,17 @@ def test_a_literal_of_an_unknown_datatype_that_is_a_number():
             check_same(reasoner, asserted, BASE)
 
 
+def test_what_is_a_number_by_another_is_so_in_every_spelling():
+    asserted = dict.fromkeys(asserted_in(BASE))
+    reasoner = Reasoner(asserted)
+    for text in (':i0 :key2 "x"^^:unknown', ':i0 :fundata "1.00"^^xsd:float', ':i0 :fundata "x"^^:unknown'):
+        reasoner.apply(insert=[triple(text)])
+        asserted[triple(text)] = None
+    check_same(reasoner, asserted, BASE)
+    for spelling in ("1.00", "1.0", "1"):
+        proofs.check(reasoner.explain(triple(f':i0 :key2 "{spelling}"^^xsd:float')), asserted)
+
+
 @sequences(200)
 @given(CHANGES)
 def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
