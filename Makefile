@@ -49,7 +49,7 @@ schema: setup  ## Write the JSON Schema of scene files anew
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
 
-train-perception: setup  ## Learn anew what perception knows: half an hour on two cores; recorded scenes too where they are
+train-perception: setup  ## Learn anew what perception knows: an hour on two cores; recorded scenes too where they are
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	$(BIN)/python -m nodes.training.recognition
 

@@ -11,6 +11,7 @@ from nodes.sim_node.models.parts import Colour, Vec3
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import View, look_at
 from nodes.training.scenes import Item
+from nodes.training.spots import Rectangle, spread
 
 _HANGING = (
     "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"
@@ -29,60 +30,6 @@ LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and 
 
 CARRIERS = ("table", "table", "desk", "counter", "cabinet")
 """What things stand on, tables more often than others."""
-
-Rectangle = tuple[float, float, float, float, float]
-"""Middle x and y, extents along its own x and y [m], yaw [rad]."""
-
-
-def overlap(a: Rectangle, b: Rectangle, gap_m: float) -> bool:
-    """Whether two rectangles come nearer than `gap_m` to one another."""
-    offset = np.array([b[0] - a[0], b[1] - a[1]])
-    if math.hypot(*offset) > (math.hypot(*a[2:4]) + math.hypot(*b[2:4])) / 2 + gap_m:
-        return False
-    axes = np.array(
-        [(math.cos(yaw + turn), math.sin(yaw + turn)) for yaw in (a[4], b[4]) for turn in (0.0, math.pi / 2)]
-    )
-    reach = sum(
-        np.abs(axes @ (math.cos(r[4] + turn), math.sin(r[4] + turn))) * extent / 2
-        for r in (a, b)
-        for turn, extent in ((0.0, r[2]), (math.pi / 2, r[3]))
-    )
-    return bool(np.all(np.abs(axes @ offset) < reach + gap_m))
-
-
-def spread(
-    kinds: Sequence[str],
-    sizes: Sequence[Vec3],
-    area_m: tuple[float, float],
-    gap_m: float,
-    rng: np.random.Generator,
-    *,
-    crowded: bool = False,
-) -> list[Rectangle | None]:
-    """A free spot in an area around the origin for each thing, None where there is none left.
-
-    Crowded things come as near to the others as `gap_m` lets them.
-    """
-    taken: list[Rectangle] = []
-    spots: list[Rectangle | None] = []
-    for (x, y, _), _kind in zip(sizes, kinds, strict=True):
-        free: list[Rectangle] = []
-        for _ in range(60 if crowded else 25):
-            at = rng.uniform(-0.5, 0.5, 2) * (np.array(area_m) - 0.7 * max(x, y))
-            spot = (float(at[0]), float(at[1]), x, y, float(rng.uniform(-math.pi, math.pi)))
-            if not any(overlap(spot, other, gap_m) for other in taken):
-                free.append(spot)
-                if not crowded:
-                    break
-        best = min(free, key=lambda spot: _nearest(spot, taken), default=None)
-        spots.append(best)
-        if best is not None:
-            taken.append(best)
-    return spots
-
-
-def _nearest(spot: Rectangle, others: Sequence[Rectangle]) -> float:
-    return min((math.dist(spot[:2], other[:2]) for other in others), default=0.0)
 
 
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:

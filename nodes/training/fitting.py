@@ -22,17 +22,18 @@ def classifier(
     classes: int,
     hidden: tuple[int, ...],
     *,
+    seed: int = 0,
     rounds: int = _ROUNDS,
 ) -> Perceptron:
     """Scores (N, classes) from inputs (N, D); a class that `target` (N,) never names gets a very low one."""
     machine = MLPClassifier(
         hidden_layer_sizes=hidden,
-        alpha=3e-2,
+        alpha=0.3,
         batch_size=256,
         learning_rate_init=2e-3,
         max_iter=rounds,
         tol=0.0,
-        random_state=0,
+        random_state=seed,
     )
     fitted = _fit(machine, inputs, target)
     weights, biases = np.zeros((hidden[-1], classes)), np.full(classes, _NEVER_SEEN)

@@ -10,7 +10,7 @@ from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 from sklearn.linear_model import LogisticRegression
 
 from nodes.perception_node.recognition.novelty import Novelty, signs
-from nodes.perception_node.recognition.perceptron import log_softmax
+from nodes.perception_node.recognition.vote import ballots, pool, shown_to_voters
 from nodes.training.fitting import Numbers, classifier
 
 _FOLDS = 4
@@ -58,13 +58,13 @@ def learn_novelty(
         out = np.isin(target, order[fold * size : (fold + 1) * size])
         known = ~held & ~out & (rng.random(len(target)) < _ENOUGH)
         voters = [
-            classifier(f[known], target[known], classes, h, rounds=_ROUNDS)
-            for f, h in zip(features, hidden, strict=True)
+            classifier(f[known], target[known], classes, h, seed=seed, rounds=_ROUNDS)
+            for seed, (f, h) in enumerate(zip(shown_to_voters(features), hidden, strict=True))
         ]
         judged = held & np.isin(target, nameable)
         seen = [f[judged] for f in features]
-        votes = np.array([log_softmax(voter(f)) for voter, f in zip(voters, seen, strict=True)])
-        pooled = log_softmax(np.tensordot(weights, votes, axes=1))
+        votes = ballots(voters, seen)
+        pooled = pool(votes, weights)
         rows.append(signs(space([f[known] for f in features], target[known], classes), seen, votes, pooled))
         news.append(out[judged])
     told, new = np.concatenate(rows), np.concatenate(news)

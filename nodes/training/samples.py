@@ -26,7 +26,6 @@ from schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40
-_FOUND = 2
 _CARRIER_M = 0.45
 _UNIT = np.ones(3)
 NOTHING = ""
@@ -75,14 +74,14 @@ def read(path: Path) -> Samples:
 def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
     """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
 
-    Of one scene in `_FOUND` also what perception itself cuts out: segments that hold several things teach
-    nothing and are left out, pieces of a thing are clutter.
+    Also what perception itself cuts out: segments that hold several things teach nothing and are left out,
+    pieces of a thing are clutter.
     """
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
     true = [_truly(cloud, owner, shot.bodies) for cloud, owner in zip(shot.clouds, shot.owners, strict=True)]
-    found = [see(cloud) for cloud in shot.clouds] if scene % _FOUND == 0 else []
-    for sights, views in product(filter(None, (found, true)), _view_sets(len(shot.clouds))):
+    found = [see(cloud) for cloud in shot.clouds]
+    for sights, views in product((found, true), _view_sets(len(shot.clouds))):
         cut, labels = things_in([sights[v] for v in views])
         owners = [shot.owners[v] for v in views]
         for thing, name in zip(cut, _owner_names(shot, labels, owners, len(cut)), strict=True):

@@ -21,10 +21,12 @@ _PICKS = np.random.default_rng(0).random((2, _PAIRS))
 _HUES = 12
 _GREYS = 4
 _BANDS = 4
+_TRIMMED = np.array([0.01, 0.03, 0.08, 0.2])
+_LEAST_M = 1e-3
 
 
 def features_of(things: Sequence[Thing]) -> list[Numbers]:
-    """For each voter (N, its own number) what it looks at: geometry, shape, colour."""
+    """Geometry, shape and colour of each thing: (N, their own number) each."""
     inside = [_normalised(thing) for thing in things]
     return [
         np.array([look(thing, where) for thing, where in zip(things, inside, strict=True)])
@@ -57,6 +59,7 @@ def geometry(thing: Thing, inside: Numbers) -> Numbers:
             float((to_eye[:, 2] / distance).max()),
             float(not thing.whole),
             np.log(thing.count),
+            *_trimmed(inside, np.array([long, short, z])),
         ]
     )
 
@@ -110,12 +113,34 @@ def _normalised(thing: Thing) -> Numbers:
     return inside if thing.box.size_m[0] >= thing.box.size_m[1] else inside[:, [1, 0, 2]]
 
 
+def _trimmed(inside: Numbers, size_m: Numbers) -> Numbers:
+    """(16,) logs of what a thing measures but for so much at each end, and how low it begins then.
+
+    Where things touch, a scrap of the neighbour makes the box a good deal larger.
+    """
+    low, high = np.split(_quantiles(inside, np.concatenate([_TRIMMED, 1.0 - _TRIMMED])), 2)
+    extents = np.column_stack([high[:, :2] - low[:, :2], high[:, 2]]) * size_m
+    return np.concatenate([np.log(np.maximum(extents, _LEAST_M)).ravel(), low[:, 2]])
+
+
+def _quantiles(values: Numbers, shares: Numbers) -> Numbers:
+    """(S, D) of each column of values (N, D); NumPy's own takes ten times as long."""
+    ordered = np.sort(values.T, axis=1)
+    at = shares * (len(values) - 1)
+    below = at.astype(int)
+    above = np.minimum(below + 1, len(values) - 1)
+    return np.asarray((ordered[:, below] * (1.0 - (at - below)) + ordered[:, above] * (at - below)).T)
+
+
 def _spans(offset: Numbers, level: NDArray[np.int64]) -> Numbers:
     """(_SLICES, 2) extents of each slice along the box's axes."""
-    low, high = np.full((_SLICES, 2), np.inf), np.full((_SLICES, 2), -np.inf)
-    np.minimum.at(low, level, offset)
-    np.maximum.at(high, level, offset)
-    return np.asarray(np.maximum(high - low, 0.0))
+    count = np.bincount(level, minlength=_SLICES)
+    first, filled = np.cumsum(count) - count, count > 0
+    by_level = np.ascontiguousarray(offset[np.argsort(level.astype(np.uint8), kind="stable")].T)
+    spans = np.zeros((_SLICES, 2))
+    low, high = (end.reduceat(by_level, first[filled], axis=1) for end in (np.minimum, np.maximum))
+    spans[filled] = (high - low).T
+    return spans
 
 
 def _high(heights: Numbers) -> float:

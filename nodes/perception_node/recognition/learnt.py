@@ -25,8 +25,8 @@ UNKNOWN = "Object"
 CLUTTER = ""
 """The leaf for what is no thing: a table's edge, a leg, a piece of something."""
 
-VOTERS = ("geometry", "shape", "colour")
-"""Who votes, in the order of the weights."""
+VOTERS = ("geometry", "shape", "colour", "all", "all_again")
+"""Who votes, in the order of the weights: one by each sort of features, and two by all of them."""
 
 _NOVELTY = ("mean", "axes", "centres", "weights")
 

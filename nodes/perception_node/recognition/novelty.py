@@ -32,7 +32,7 @@ class Novelty:
 def signs(novelty: Novelty, features: Sequence[Numbers], votes: Numbers, pooled: Numbers) -> Numbers:
     """(N, signs) what tells the unknown: doubt, disagreement and distance.
 
-    `features`: for each voter (N, its own number); `votes`: (voters, N, K) and `pooled`: (N, K) logarithms of
+    `features`: of each sort (N, its own number); `votes`: (voters, N, K) and `pooled`: (N, K) logarithms of
     probabilities.
     """
     best = pooled.argmax(axis=1)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from nodes.perception_node.boxes import Box, Numbers
 from nodes.perception_node.recognition.learnt import CLUTTER, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
+from nodes.perception_node.recognition.trimming import looked_at_again
 from nodes.perception_node.recognition.vote import answer, expected_sizes
 from nodes.perception_node.things import Thing
 from schemas.entities import Pose, orientation_from_yaw
@@ -23,6 +24,7 @@ def recognise(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> list
 
     `chances`: (N, K) the probabilities of the leaves.
     """
+    chances = looked_at_again(things, chances, learnt)
     expected = expected_sizes(chances, learnt.sizes_m)
     return [_observation(*row, learnt) for row in zip(things, chances, expected, strict=True)]
 

@@ -10,19 +10,28 @@ from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
 
+_CLEAR = 2.0 / 3.0
+
 
 def vote(voters: Sequence[Perceptron], weights: Numbers, features: Sequence[Numbers]) -> Numbers:
-    """(N, K) probabilities of the leaves; `features`: for each voter (N, its own number).
+    """(N, K) probabilities of the leaves; `features`: of each sort (N, its own number).
 
-    The votes are independent evidence, so their logarithms add up, each with the weight that calibration on
-    scenes apart gave it.
+    The votes are evidence, so their logarithms add up, each with the weight that calibration on scenes apart
+    gave it.
     """
     return np.exp(pool(ballots(voters, features), weights))
 
 
+def shown_to_voters(features: Sequence[Numbers]) -> list[Numbers]:
+    """What each voter looks at: one sort of features; the last two at all of them."""
+    everything = np.concatenate(features, axis=1)
+    return [*features, everything, everything]
+
+
 def ballots(voters: Sequence[Perceptron], features: Sequence[Numbers]) -> Numbers:
     """(voters, N, K) logarithms of the probabilities that each voter gives."""
-    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, features, strict=True)])
+    shown = shown_to_voters(features)
+    return np.array([log_softmax(voter(seen)) for voter, seen in zip(voters, shown, strict=True)])
 
 
 def pool(votes: Numbers, weights: Numbers) -> Numbers:
@@ -53,13 +62,20 @@ def answer(
 ) -> tuple[str, float]:
     """The most special class whose leaves together are at least `sure`, and its probability; else `UNKNOWN`.
 
-    Of several, none of which is below another, the likelier.
+    A class that is not twice as likely as all else below one of its ancestors is not said: what may be a
+    desk or a table is furniture. Of several, none of which is below another, the likelier.
     """
     total: dict[str, float] = {}
     for leaf, probability in probabilities.items():
         for name in (leaf, *ancestors.get(leaf, ())):
             total[name] = total.get(name, 0.0) + probability
-    certain = [name for name in total if total[name] >= sure and name not in (UNKNOWN, CLUTTER)]
+    certain = [
+        name
+        for name in total
+        if name not in (UNKNOWN, CLUTTER)
+        and total[name] >= sure
+        and all(total[name] >= _CLEAR * total[above] for above in ancestors.get(name, ()) if above != UNKNOWN)
+    ]
     lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]
     best = max(lowest, key=total.__getitem__, default=UNKNOWN)
     return best, min(1.0, total.get(best, 0.0))

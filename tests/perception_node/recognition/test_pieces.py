@@ -27,7 +27,7 @@ def test_what_is_recognised_stays_apart():
 
 
 def test_a_neck_finds_its_bottle():
-    height = 0.7 + 0.15
+    height = 0.7 + 0.17
     halves = [
         thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS_M)
         for upper in (False, True)

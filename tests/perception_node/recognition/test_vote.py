@@ -18,6 +18,7 @@ ABOVE = {
         ({"Fork": 0.5, "Spoon": 0.4, "Book": 0.1}, "Cutlery", 0.9),
         ({"Fork": 0.3, "Spoon": 0.2, "Plate": 0.3, "Book": 0.2}, "Tableware", 0.8),
         ({"Magazine": 0.45, "Book": 0.4, "Fork": 0.15}, "Book", 0.85),
+        ({"Fork": 0.65, "Spoon": 0.35}, "Cutlery", 1.0),
         ({"Fork": 0.3, "Book": 0.3, "Object": 0.4}, "Object", 1.0),
         ({"Fork": 0.2, "Object": 0.8}, "Object", 1.0),
     ],

@@ -1,0 +1,58 @@
+"""A second look at what was not recognised: without scraps of its neighbours, if it seems to have some."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from nodes.perception_node.boxes import Numbers, best_yaw, box_around, in_frame
+from nodes.perception_node.recognition.features import features_of
+from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
+from nodes.perception_node.recognition.vote import leaves
+from nodes.perception_node.things import Thing
+
+_DOUBTFUL = 0.6
+_GAIN = 0.3
+_OUTERMOST = 0.03
+_LEFT = 0.6
+"""What loses more of its box with so few cells may hold a scrap of another thing."""
+
+_FEWEST = 60
+
+
+def looked_at_again(things: Sequence[Thing], chances: Numbers, learnt: Learnt) -> Numbers:
+    """(N, K) probabilities of the leaves, those of a trimmed thing where that is recognised far better.
+
+    What is new to us is not to become something known by being cut to size, so the gain has to be large.
+    """
+    nameable = np.array([name not in (UNKNOWN, CLUTTER) for name in learnt.classes])
+    known = chances[:, nameable].max(axis=1, initial=0.0)
+    trimmed = {
+        n: trim(thing)
+        for n, thing in enumerate(things)
+        if known[n] < _DOUBTFUL and not thing.carrier and len(thing.cells) > _FEWEST
+    }
+    rows = [n for n, part in trimmed.items() if part.box.size_m.prod() < _LEFT * things[n].box.size_m.prod()]
+    if not rows:
+        return chances
+    again = leaves(learnt, features_of([trimmed[n] for n in rows]))
+    better = again[:, nameable].max(axis=1) > known[rows] + _GAIN
+    chances = chances.copy()
+    chances[np.array(rows)[better]] = again[better]
+    return chances
+
+
+def trim(thing: Thing) -> Thing:
+    """The thing without its outermost cells along each axis of its box, but for the bottom."""
+    turned = in_frame(thing.cells, thing.box.yaw_rad)
+    low, high = np.quantile(turned, [_OUTERMOST, 1.0 - _OUTERMOST], axis=0)
+    inner = (turned >= low)[:, :2].all(axis=1) & (turned <= high).all(axis=1)
+    cells = thing.cells[inner]
+    return replace(
+        thing,
+        cells=cells,
+        colors=None if thing.colors is None else thing.colors[inner],
+        box=box_around(cells, best_yaw(cells), float(thing.box.low[2])),
+    )
