@@ -17,9 +17,19 @@ _MISSING = re.compile(r"Object missing required field `(.*)`")
 _NUMBERS = (inspect.FloatType, inspect.IntType)
 
 
+def counted(count: int, one: str, many: str = "") -> str:
+    """`1 camera`, `2 cameras`; `many` where an s is not enough."""
+    return f"{count} {one if count == 1 else many or f'{one}s'}"
+
+
 def entities(count: int) -> str:
     """`1 entity`, `2 entities`."""
-    return "1 entity" if count == 1 else f"{count} entities"
+    return counted(count, "entity", "entities")
+
+
+def bodies(count: int) -> str:
+    """`1 body`, `2 bodies`."""
+    return counted(count, "body", "bodies")
 
 
 def sentence(error: Exception, kind: Any) -> str:

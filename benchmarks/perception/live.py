@@ -79,7 +79,7 @@ def new_things(folder: Path, things: int = 10) -> Latency:
                 known.pop(gone.name, None)
 
         bus.follow(client.session, keys.COMMIT, on_commit)
-        _until(lambda: "things seen" in _detail(client), every_s=0.5)
+        _until(lambda: " seen, " in _detail(client), every_s=0.5)
         for n in range(things):
             at = (random_.uniform(-0.4, 0.4), random_.uniform(-0.25, 0.25))
             model = _THINGS[n % len(_THINGS)]

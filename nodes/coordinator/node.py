@@ -22,7 +22,7 @@ from nodes.coordinator.talking import hold, hold_later
 from nodes.coordinator.turns import Results, Turns
 from nodes.loop import Node, open_node, settle
 from schemas import commands as c
-from schemas import errors, keys
+from schemas import errors, keys, wording
 from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Snapshot
 from schemas.entities import BodyState
@@ -129,7 +129,8 @@ class Coordinator:
             self._keeping.keep()
             self._answer_waiting()
             self._node.describe(
-                f"{len(self._door.entities)} entities, {len(self._keeping.scene.bodies)} bodies"
+                f"{wording.entities(len(self._door.entities))},"
+                f" {wording.bodies(len(self._keeping.scene.bodies))}"
             )
 
     def _catch_up(self) -> None:
@@ -160,7 +161,7 @@ class Coordinator:
             self._door.begin(future.result())
             self._has_map = True
             gc.freeze()  # most of the map stays as it is: the collector need not look through it again
-            self._node.ready(f"{len(self._door.entities)} entities")
+            self._node.ready(wording.entities(len(self._door.entities)))
             self._keep()
 
         self._bridge.ask_later("classes", c.Classes()).add_done_callback(on_classes)

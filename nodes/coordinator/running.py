@@ -11,7 +11,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.keeping import Keeping
 from nodes.loop import then
 from schemas import commands as c
-from schemas import errors
+from schemas import errors, wording
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement
 
@@ -61,7 +61,7 @@ class Running:
             return self._ask_scene("reset", command, c.Done)
         return then(
             self._keeping.place_all(),
-            lambda reply: c.Done(text=f"{len(reply.names)} bodies are back where the map says"),
+            lambda reply: c.Done(text=f"back where the map says: {wording.bodies(len(reply.names))}"),
         )
 
     def picture(self, command: c.TakePicture) -> Future[Any]:

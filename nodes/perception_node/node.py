@@ -28,7 +28,7 @@ from nodes.perception_node.shown import segmented_cloud
 from nodes.perception_node.telling import subject_of
 from nodes.perception_node.tracks import Tracks
 from nodes.perception_node.visibility import looking
-from schemas import codec, keys
+from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Add, Changed, Classes, Command, LastSeen, Sighting
 from schemas.commits import Commit, Snapshot
@@ -123,9 +123,9 @@ class Perception:
             self._cloud_due = time.monotonic() + _CLOUD_S
             cloud = segmented_cloud(clouds, found)
             self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
-        self._node.describe(
-            f"{len(clouds)} cameras, {len(seen.observations)} things seen, {1000 * took_s:.0f} ms a look"
-        )
+        cameras = wording.counted(len(clouds), "camera")
+        things = wording.counted(len(seen.observations), "thing")
+        self._node.describe(f"{cameras}, {things} seen, {1000 * took_s:.0f} ms a look")
 
     # The map
 

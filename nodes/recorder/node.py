@@ -15,7 +15,7 @@ from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
 from nodes.recorder.surfaces import Kind
 from nodes.recorder.watching import Watching
-from schemas import keys
+from schemas import keys, wording
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
 from schemas.health import Health
@@ -103,8 +103,8 @@ class Recorder:
         self._has_map = True
         self._at(time.time_ns(), self._map.seq)
         if first or anew:
-            count = len(self._map.entities)
-            self._recording.note(f"{self._map.seq}  the recording goes on from here with {count} entities")
+            known = wording.entities(len(self._map.entities))
+            self._recording.note(f"{self._map.seq}  the recording goes on from here with {known}")
         self._recall(lost)
         self._show_all()
         self._shown()

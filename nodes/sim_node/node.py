@@ -14,7 +14,7 @@ from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import open_world
-from schemas import codec, keys
+from schemas import codec, keys, wording
 from schemas.commands import Done, Pause, Reset, StepOnce
 from schemas.scenes import (
     BodiesMoved,
@@ -109,7 +109,7 @@ class Simulator:
 
     def _reset(self, _: Reset) -> Done:
         count = self._world.reset()
-        return self._told(Done(text=f"{count} bodies are back where they were ordered to be"))
+        return self._told(Done(text=f"back where they were ordered to be: {wording.bodies(count)}"))
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
         return self._studio.paint(self._still(), self._view(query))
@@ -155,7 +155,7 @@ class Simulator:
 
     def _summary(self) -> str:
         state = ", paused" if self._paused else ""
-        return f"{len(self._world)} bodies in {self._world.name}{state}"
+        return f"{wording.bodies(len(self._world))} in {self._world.name}{state}"
 
 
 def run(config: SimConfig) -> None:

@@ -171,7 +171,7 @@ def test_what_is_seen_becomes_an_entity_once_and_is_published_with_its_name(worl
     until(lambda: world.clouds, "a cloud is published")
     assert set(np.frombuffer(world.clouds[0].labels, "<u2")) == {1}
     assert len(world.clouds[0].positions) == 12 * len(np.frombuffer(world.clouds[0].labels, "<u2"))
-    until(lambda: world.health.detail.startswith("1 cameras, 1 things seen"), "it says what it sees")
+    until(lambda: world.health.detail.startswith("1 camera, 1 thing seen"), "it says what it sees")
 
 
 def test_a_name_that_something_had_before_this_process_began_is_not_given_again(world):
