@@ -57,12 +57,12 @@ def of(
         for iri in others
         if not reasoner.types(iri).isdisjoint(classes.spatial) or (iri not in new and known(before, iri))
     )
-    is_move = _is_move(commit, change)
+    moved = _moved_nodes(commit, change)
     for iri in sorted({*at_sight, *concerned}):
         progress()
         was = None if iri in new else known(before, iri)
         entity: Entity | None
-        if is_move and was is not None:
+        if moved and was is not None and iri not in moved:
             entity = entities.moved(reasoner, was, commit.provenance)
         else:
             entity = at_sight.get(iri) or entities.read_entity(
@@ -92,14 +92,13 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     return entity if entity is not None and v.iri(entity.iri) == iri else None
 
 
-def _is_move(commit: Commit, change: Change) -> bool:
-    """Whether nothing but coordinates is otherwise: no class, and no individual that was not there."""
+def _moved_nodes(commit: Commit, change: Change) -> set[Term]:
+    """The individuals with other coordinates, if nothing but these is otherwise; else none."""
     triples = (*commit.retracted, *commit.inserted)
-    return (
-        all(p in _COORDINATES for _, p, _ in triples)
-        and change.touched <= {s for s, _, _ in triples}
-        and not change.alike
-    )
+    if change.alike or any(p not in _COORDINATES for _, p, _ in triples):
+        return set()
+    nodes = {s for s, _, _ in triples}
+    return nodes if change.touched <= nodes else set()
 
 
 def _read_at_sight(
