@@ -15,7 +15,7 @@ from nodes.extern.cli.show import console
 from nodes.extern.cli.tables import table
 from nodes.extern.cli.talking import print_json
 from nodes.extern.files import write_atomically
-from schemas import errors
+from schemas import errors, wording
 from schemas.perception import Observation
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
         if format == "json":
             records.append({"file": str(file), "frame": frame, "objects": _records(sight, told)})
         else:
-            objects = f"{len(told)} {'object' if len(told) == 1 else 'objects'}"
-            console().print(f"{file}: {objects}; {_FRAMES[frame]}")
+            console().print(f"{file}: {wording.counted(len(told), 'object')}; {_FRAMES[frame]}")
             if told:
                 console().print(_rows(sight, told))
         if labels is not None:
