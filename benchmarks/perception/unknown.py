@@ -13,8 +13,8 @@ from benchmarks.perception.table import Row
 from nodes.perception_node.pipeline import look
 from nodes.perception_node.recognition.learnt import UNKNOWN
 from nodes.sim_node.models.table import MODELS
-from nodes.training.recognition import gather, learn
-from nodes.training.samples import read
+from nodes.training.gathering import gather, read
+from nodes.training.recognition import learn
 from nodes.training.taxonomy import class_of_models
 
 LEFT_OUT = 10

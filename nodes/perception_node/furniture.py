@@ -21,6 +21,9 @@ _HANGING = 0.6
 """What reaches to less of a top's height stands under it."""
 
 _HIGHEST = 0.99  # what is higher may be a few stray points
+_UNDER_M = 0.015
+_STANDING = 0.5
+"""What has a larger share of its points above a top stands on it, and ends there."""
 
 EVERY = 4
 """Of so many rows and columns one is enough to tell how high and how wide a plane is."""
@@ -44,7 +47,27 @@ def with_furniture(segmentation: Segmentation, thin: Floats) -> tuple[NDArray[np
     body = [first + n for n in _touching(boxes)]
     for n, own_label in zip(sides, body, strict=True):
         labels[planes == n] = own_label
+    for n, own_label in zip(sides, body, strict=True):
+        if segmentation.planes[n - 1].kind == "support":
+            labels[_under(thin[thin_planes == n], labels, thin, frozenset(body))] = own_label
     return labels, frozenset(body)
+
+
+def _under(
+    top: Floats, labels: NDArray[np.int32], thin: Floats, furniture: frozenset[int]
+) -> NDArray[np.bool_]:
+    """(H, W) pixels of what stands on a top (M, 3) that are below it: the rim of the table, its legs."""
+    own, height = labels[::EVERY, ::EVERY], float(np.median(top[:, 2]))
+    ending = np.zeros_like(own)
+    for label in np.unique(own[(thin[..., 2] < height - _UNDER_M) & (own > 0)]):
+        rows, columns = np.nonzero(own == label)
+        points = thin[rows, columns]
+        low = points[:, 2] < height - _UNDER_M
+        if label not in furniture and low.mean() < 1.0 - _STANDING:
+            at = np.flatnonzero(low)[_beneath(points[low], top)]
+            ending[rows[at], columns[at]] = label
+    whole = ending.repeat(EVERY, axis=0).repeat(EVERY, axis=1)[: labels.shape[0], : labels.shape[1]]
+    return np.asarray((whole > 0) & (whole == labels))
 
 
 def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]]:
@@ -59,16 +82,16 @@ def with_what_hangs_below(groups: Sequence[Sequence[Segment]]) -> list[list[int]
         for top in tops:
             high = highest[top]
             reaches = _HANGING * high < own < high + 0.5 * _NEAR_M
-            if reaches and _share_beneath(clouds[n], clouds[top]) > _BENEATH:
+            if reaches and _beneath(clouds[n], clouds[top]).mean() > _BENEATH:
                 joined[top] += joined.pop(n)
                 break
     return list(joined.values())
 
 
-def _share_beneath(points: Floats, top: Floats) -> float:
-    """How much of some points (N, 3) is within the hull of those of a top (M, 3), as seen from above."""
+def _beneath(points: Floats, top: Floats) -> NDArray[np.bool_]:
+    """(N,) which of some points (N, 3) are within the hull of those of a top (M, 3), as seen from above."""
     sides = ConvexHull(top[:, :2], qhull_options="QJ").equations  # a front alone is a line
-    return float((points[:, :2] @ sides[:, :2].T + sides[:, 2] < _NEAR_M).all(axis=1).mean())
+    return np.asarray((points[:, :2] @ sides[:, :2].T + sides[:, 2] < _NEAR_M).all(axis=1))
 
 
 Corners = tuple[NDArray[np.float32], NDArray[np.float32]]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ _PROBES = 300
 _SAME_SHARE = 0.5
 _FEWEST_SEEN = 12
 _LARGE_SHARE = 0.2
+_DOUBT = 0.01
 
 Member = tuple[int, int]
 """The number of a sight, and that of a segment in its `segments`."""
@@ -22,30 +22,39 @@ Member = tuple[int, int]
 
 def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
     """Group segments by the thing they show."""
-    members, most, many = shown_by_others(sights)
-    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
-    same = (most & many) | (most & most.T)  # few points may lie where two things touch
-    same &= carrier == carrier[:, None]  # what is flat looks like its table to another camera
+    members, same = shown_by_others(sights)
     return _groups(same | same.T, members)
 
 
-class Shown(NamedTuple):
-    """What other cameras take segments for.
+def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> NDArray[np.float64]:
+    """(2, G, G) how likely cameras hold two groups for one: the one that does so least, and most.
 
-    `most`, `many`: (M, M) whether most of the points of one that another camera sees, and a large share of
-    all its points, are of another segment there.
+    Logits; 0 where no camera was asked.
     """
+    number = [np.zeros(int(sight.labels.max(initial=0)) + 1, int) for sight in sights]
+    for group, members in enumerate(groups):
+        for view, n in members:
+            number[view][sights[view].segments[n].label] = group + 1
+    least, most = np.full((2, len(groups) + 1, len(groups) + 1), np.inf)
+    most = -most
+    for sight, group in zip(sights, number, strict=True):
+        a, b = np.nonzero(sight.same)
+        inside = np.maximum(a, b) + 1 < len(group)
+        a, b = a[inside], b[inside]
+        chance = np.clip(sight.same[a, b], _DOUBT, 1.0 - _DOUBT)
+        pair = group[a + 1], group[b + 1]
+        for end, ufunc in ((least, np.minimum), (most, np.maximum)):
+            ufunc.at(end, pair, np.log(chance / (1.0 - chance)))
+    both = np.stack([least, most])[:, 1:, 1:]
+    return np.where(np.isfinite(both), both, 0.0)
 
-    members: list[Member]
-    most: NDArray[np.bool_]
-    many: NDArray[np.bool_]
 
+def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.bool_]]:
+    """All segments, and (M, M) whether another camera takes one for another there.
 
-def shown_by_others(sights: Sequence[Sight]) -> Shown:
-    """Look the points of each segment up in the other pictures.
-
-    Where another camera sees them too, its label says what it took them for. Clouds without intrinsics or
-    pose see nothing of what others do.
+    Most of its points that the other sees are of that segment there, and either these are a large share of
+    all its points, or it is so the other way round too. Clouds without intrinsics or pose see nothing of what
+    others do.
     """
     members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
     row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
@@ -62,7 +71,9 @@ def shown_by_others(sights: Sequence[Sight]) -> Shown:
                 if there is not None and count >= _FEWEST_SEEN:
                     most[at, there] = count > _SAME_SHARE * len(hits)
                     many[at, there] = count > _LARGE_SHARE * len(probes)
-    return Shown(members, most, many)
+    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
+    same = (most & many) | (most & most.T)  # few points may lie where two things touch
+    return members, same & (carrier == carrier[:, None])  # what is flat looks like its table to another
 
 
 def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:

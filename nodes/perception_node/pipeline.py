@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.disputes import settled
 from nodes.perception_node.furniture import with_what_hangs_below
-from nodes.perception_node.fusion import Member, fuse
+from nodes.perception_node.fusion import Member, fuse, held_for_one
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.learnt import Learnt, shipped
 from nodes.perception_node.recognition.pieces import put_together
@@ -22,7 +22,7 @@ from nodes.perception_node.sights import Sight, see
 from nodes.perception_node.things import Thing, thing_of
 from schemas.perception import CameraView, Observation, Observations
 
-__all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "shipped", "things_in"]
+__all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_in", "shipped"]
 
 
 @dataclass(frozen=True)
@@ -53,22 +53,19 @@ def look(clouds: Sequence[Cloud], learnt: Learnt) -> Look:
 
 def look_at(sights: Sequence[Sight], learnt: Learnt) -> Look:
     """The same for clouds that were taken apart already."""
-    sights = settled(sights)
-    supports = _supports(sights)
-    groups = groups_in(sights)
-    parts, chances, members = put_together(
-        [_thing(sights, group, supports) for group in groups],
-        learnt,
-        lambda a, b: thing_of((*a.segments, *b.segments), supports),
-    )
-    found = recognise(parts, chances, learnt)
+    parts = parts_in(sights)
+    things, chances, members = put_together(parts.things, parts.held_for_one, learnt, parts.join)
+    found = recognise(things, chances, learnt)
     kept = [n for n, observation in enumerate(found) if observation is not None]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
         observations=tuple(observation for observation in found if observation is not None),
     )
-    return Look(observations, _labels(sights, [[m for g in members[n] for m in groups[g]] for n in kept]))
+    numbers = np.zeros(len(parts.things) + 1, np.int32)
+    for number, n in enumerate(kept, 1):
+        numbers[np.array(members[n]) + 1] = number
+    return Look(observations, tuple(numbers[label] for label in parts.labels))
 
 
 def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
@@ -81,11 +78,31 @@ def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
     return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
 
 
-def things_in(sights: Sequence[Sight]) -> tuple[list[Thing], tuple[NDArray[np.int32], ...]]:
-    """What all sights together show, and for each (H, W) whose a pixel is, counted from 1, 0 for none."""
+@dataclass(frozen=True)
+class Parts:
+    """What sights together show, before anything is recognised.
+
+    `labels`: of each sight (H, W) whose a pixel is, counted from 1, 0 for none. `held_for_one`: (2, N, N), see
+    `fusion`. `supports_m`: heights of what things may stand on.
+    """
+
+    things: list[Thing]
+    labels: tuple[NDArray[np.int32], ...]
+    held_for_one: NDArray[np.float64]
+    supports_m: Sequence[float]
+
+    def join(self, a: Thing, b: Thing) -> Thing:
+        """Two of them as one."""
+        return thing_of((*a.segments, *b.segments), self.supports_m)
+
+
+def parts_in(sights: Sequence[Sight]) -> Parts:
+    """What several cameras see of one thing is one part."""
     sights = settled(sights)
-    groups, supports = groups_in(sights), _supports(sights)
-    return [_thing(sights, group, supports) for group in groups], _labels(sights, groups)
+    groups = groups_in(sights)
+    supports = [height for sight in sights for height in sight.supports_m]
+    things = [thing_of([sights[view].segments[n] for view, n in group], supports) for group in groups]
+    return Parts(things, _labels(sights, groups), held_for_one(sights, groups), supports)
 
 
 def groups_in(sights: Sequence[Sight]) -> list[list[Member]]:
@@ -93,14 +110,6 @@ def groups_in(sights: Sequence[Sight]) -> list[list[Member]]:
     groups = fuse(sights)
     bodies = with_what_hangs_below([[sights[v].segments[n] for v, n in group] for group in groups])
     return [[member for number in body for member in groups[number]] for body in bodies]
-
-
-def _thing(sights: Sequence[Sight], group: Sequence[Member], supports_m: Sequence[float]) -> Thing:
-    return thing_of([sights[view].segments[n] for view, n in group], supports_m)
-
-
-def _supports(sights: Sequence[Sight]) -> list[float]:
-    return [height for sight in sights for height in sight.supports_m]
 
 
 def _labels(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> tuple[NDArray[np.int32], ...]:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import os
 import time
 from collections.abc import Collection, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -20,54 +17,34 @@ from nodes.perception_node.recognition.perceptron import Perceptron
 from nodes.perception_node.recognition.sides import SIZE_FEATURES
 from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
 from nodes.sim_node.models.table import MODELS
-from nodes.training import samples as sampling
-from nodes.training.arranging import training_scenes
 from nodes.training.fitting import Numbers, classifier, regressor
+from nodes.training.gathering import HELD_OUT, Gathered, gather, read, write
+from nodes.training.joining import learn_joining
 from nodes.training.novelty import learn_novelty
 from nodes.training.samples import NOTHING, Samples
-from nodes.training.scenes import STRANGE, Stage
+from nodes.training.scenes import STRANGE
 from nodes.training.taxonomy import class_of_models, hierarchy
 
 SURE = 0.45
-_PARTS = 10  # that scenes are made in: the same whatever the machine
-_HELD_OUT = 5
 _SORTS = ("geometry", "shape", "colour")
 _HIDDEN = dict(zip(VOTERS, ((96,), (96,), (64,), (128,), (128,)), strict=True))
 _SIDES_HIDDEN = (64, 32)
+_NOTHING_YET = Perceptron(np.zeros(0), np.ones(0), (), ())
 _FARTHEST = 1.0
 """A side that is off by more of the thing's size than this was not seen at all."""
 
 
-def gather(scenes: int, seed: int) -> Samples:
-    """Samples from so many simulated scenes, made by several processes."""
-    each = -(-scenes // _PARTS)
-    with ProcessPoolExecutor(min(_PARTS, os.cpu_count() or 1), get_context("spawn")) as pool:
-        parts = list(pool.map(_gather, [each] * _PARTS, range(seed, seed + _PARTS)))
-    return sampling.joined([replace(part, scene=part.scene + n * each) for n, part in enumerate(parts)])
-
-
-def _gather(scenes: int, seed: int) -> Samples:
-    stage, rng = Stage(), np.random.default_rng(seed)
-    found = []
-    for number, (items, views) in enumerate(training_scenes(scenes, rng)):
-        bodies = stage.show(items)
-        red, green, blue = rng.uniform(0.2, 0.9, 3).tolist()
-        stage.paint({"floor": (red, green, blue)}, light=float(rng.uniform(0.25, 0.45)))
-        samples = sampling.samples_of(stage.shoot(bodies, views, rng), items, number)
-        if samples is not None:
-            found.append(samples)
-    return sampling.joined(found)
-
-
-def learn(samples: Samples, *, without: Collection[str] = ()) -> Learnt:
+def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
     """Train on four scenes of five, calibrate on the fifth; classes in `without` are left out altogether."""
     class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
-    names = np.array([class_of[kind] for kind in samples.kind])
+    names = np.array([class_of[kind] for kind in gathered.things.kind])
     known = ~np.isin(names, list(without))
-    samples, names = samples[known], names[known]
+    samples, names = gathered.things[known], names[known]
+    left_out = [kind for kind, name in class_of.items() if name in without]
+    pairs = gathered.pairs[~np.isin(gathered.pairs.kinds, left_out).any(axis=1)]
     classes = tuple(sorted(set(names.tolist())))
     target = np.searchsorted(classes, names)
-    held = samples.scene % _HELD_OUT == 0
+    held = samples.scene % HELD_OUT == 0
     features = [getattr(samples, name) for name in _SORTS]
     voters = tuple(
         classifier(f[~held], target[~held], len(classes), hidden, seed=seed)
@@ -78,7 +55,7 @@ def learn(samples: Samples, *, without: Collection[str] = ()) -> Learnt:
     novelty = learn_novelty(features, target, held, nameable, list(_HIDDEN.values()), weights)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
-    return Learnt(
+    learnt = Learnt(
         classes=classes,
         ancestors=hierarchy(),
         sizes_m=sizes,
@@ -86,10 +63,12 @@ def learn(samples: Samples, *, without: Collection[str] = ()) -> Learnt:
         voters=voters,
         weights=weights,
         novelty=novelty,
+        joining=_NOTHING_YET,
         sides=_sides(samples, expected),
         sure=SURE,
         story=f"{len(samples)} segments, {len(classes)} leaves; rendered from the model library, 2 cameras",
     )
+    return replace(learnt, joining=learn_joining(learnt, pairs))
 
 
 def _calibrated(
@@ -140,13 +119,13 @@ def main() -> None:
     options = parser.parse_args()
     started = time.perf_counter()
     if options.samples and options.samples.exists():
-        samples = sampling.read(options.samples)
+        gathered = read(options.samples)
     else:
-        samples = gather(options.scenes, options.seed)
+        gathered = gather(options.scenes, options.seed)
         if options.samples:
-            sampling.write(samples, options.samples)
-    print(f"{len(samples)} segments after {time.perf_counter() - started:.0f} s")
-    learnt = learn(samples)
+            write(gathered, options.samples)
+    print(f"{len(gathered.things)} segments after {time.perf_counter() - started:.0f} s")
+    learnt = learn(gathered)
     save(learnt, options.out)
     print(f"{options.out} after {time.perf_counter() - started:.0f} s: {learnt.story}")
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.boxes import Box
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.pipeline import things_in
+from nodes.perception_node.pipeline import Parts, parts_in
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.sides import shifts, side_features
 from nodes.perception_node.segmentation.segment import LOWEST_M
 from nodes.perception_node.segments import map_points
-from nodes.perception_node.sights import Sight, labelled, see
+from nodes.perception_node.sights import Sight, labelled
 from nodes.perception_node.things import Thing
 from nodes.sim_node.models.parts import about, bounds, rotation_matrix
 from nodes.sim_node.models.parts import product as rotated
@@ -60,31 +59,18 @@ def joined(parts: Sequence[Samples]) -> Samples:
     return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
 
 
-def write(samples: Samples, path: Path) -> None:
-    """Keep them in a file."""
-    np.savez(path, **{field.name: getattr(samples, field.name) for field in fields(samples)})
-
-
-def read(path: Path) -> Samples:
-    """Take them out of a file again."""
-    with np.load(path) as arrays:
-        return Samples(**{field.name: arrays[field.name] for field in fields(Samples)})
-
-
-def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
+def samples_of(shot: Shot, found: Sequence[Sight], items: Sequence[Item], scene: int) -> Samples | None:
     """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
 
-    Also what perception itself cuts out: segments that hold several things teach nothing and are left out,
+    Also what perception itself cuts out, `found` in each cloud: segments that hold several things teach nothing and are left out,
     pieces of a thing are clutter.
     """
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
     true = [_truly(cloud, owner, shot.bodies) for cloud, owner in zip(shot.clouds, shot.owners, strict=True)]
-    found = [see(cloud) for cloud in shot.clouds]
-    for sights, views in product((found, true), _view_sets(len(shot.clouds))):
-        cut, labels = things_in([sights[v] for v in views])
-        owners = [shot.owners[v] for v in views]
-        for thing, name in zip(cut, _owner_names(shot, labels, owners, len(cut)), strict=True):
+    for sights, views in product((found, true), view_sets(len(shot.clouds))):
+        cut = parts_in([sights[v] for v in views])
+        for thing, name in zip(cut.things, _owner_names(shot, shared_pixels(cut, shot, views)), strict=True):
             if name is None or (name == NOTHING and sights is true):
                 continue
             item = by_name.get(name)
@@ -122,22 +108,25 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Si
     return labelled(bare, labels, carriers)
 
 
-def _view_sets(count: int) -> Iterator[tuple[int, ...]]:
+def view_sets(count: int) -> Iterator[tuple[int, ...]]:
+    """Each camera alone, and all together."""
     yield from ((view,) for view in range(count))
     if count > 1:
         yield tuple(range(count))
 
 
-def _owner_names(
-    shot: Shot, labels: Sequence[NDArray[np.int32]], owners: Sequence[NDArray[np.int32]], count: int
-) -> list[str | None]:
+def shared_pixels(parts: Parts, shot: Shot, views: Sequence[int]) -> NDArray[np.int64]:
+    """(N + 1, B + 1) how many pixels each of N parts shares with each of B bodies; none of either comes first."""
+    shape = len(parts.things) + 1, len(shot.bodies) + 1
+    table = np.zeros(shape, np.int64)
+    for label, view in zip(parts.labels, views, strict=True):
+        both = label.ravel() * shape[1] + shot.owners[view].ravel()
+        table += np.bincount(both, minlength=table.size).reshape(shape)
+    return table
+
+
+def _owner_names(shot: Shot, table: NDArray[np.int64]) -> list[str | None]:
     """Whose each thing is: a body's name, `NOTHING` for clutter, None where several are in one."""
-    bodies = len(shot.bodies) + 1
-    table = np.zeros((count + 1, bodies))
-    for label, owner in zip(labels, owners, strict=True):
-        table += np.bincount(label.ravel() * bodies + owner.ravel(), minlength=table.size).reshape(
-            table.shape
-        )
     visible = table.sum(axis=0)
     names: list[str | None] = []
     for row in table[1:]:
