@@ -31,10 +31,8 @@ def settled(sights: Sequence[Sight]) -> list[Sight]:
             if other != view and len(pieces) > 1 and not cut.carrier:
                 parts = [sights[other].segments[m] for m in pieces]
                 labels[view] = _divided(sights[view], labels[view], cut.label, parts)
-    return [
-        sight if own is sight.labels else _cut_up(sight, own)
-        for sight, own in zip(sights, labels, strict=True)
-    ]
+    both = zip(sights, labels, strict=True)
+    return [sight if own is sight.labels else _cut_up(sight, own) for sight, own in both]
 
 
 def _divided(

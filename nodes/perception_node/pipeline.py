@@ -82,8 +82,8 @@ def one_by_one(sight: Sight, learnt: Learnt) -> dict[int, Observation | None]:
 class Parts:
     """What sights together show, before anything is recognised.
 
-    `labels`: of each sight (H, W) whose a pixel is, counted from 1, 0 for none. `held_for_one`: (2, N, N), see
-    `fusion`. `supports_m`: heights of what things may stand on.
+    `labels`: of each sight (H, W) whose a pixel is, counted from 1, 0 for none. `held_for_one`: (2, N, N),
+    see `fusion`. `supports_m`: heights of what things may stand on.
     """
 
     things: list[Thing]

@@ -15,7 +15,7 @@ _HIDDEN = (24,)
 
 
 def learn_joining(learnt: Learnt, pairs: Pairs) -> Perceptron:
-    """Scores for two and for one, from what is recognised in pairs of scenes that `learnt` did not learn from."""
+    """Scores for two and for one, from pairs in scenes that `learnt` has not learnt from."""
     features = [values.reshape(-1, values.shape[2]) for values in (pairs.geometry, pairs.shape, pairs.colour)]
     chances = leaves(learnt, features).reshape(len(pairs.one), 3, -1)
     worth = worth_joining(chances[:, :2], learnt)

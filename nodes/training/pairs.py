@@ -18,7 +18,7 @@ from nodes.training.scenes import Item, Shot
 
 @dataclass(frozen=True)
 class Pairs:
-    """N pairs. `kinds`: (N, 2) the models, `NOTHING` for what is none. `one`: (N,) whether they are one thing.
+    """N pairs. `kinds`: (N, 2) the models, `NOTHING` for none. `one`: (N,) whether they are one thing.
 
     `geometry`, `shape`, `colour`: (N, 3, D) features of either and of both together. `known`: (N, 7), see
     `joining.between`.
@@ -31,7 +31,7 @@ class Pairs:
     colour: NDArray[np.float64]
     known: NDArray[np.float64]
 
-    def __getitem__(self, rows: NDArray[np.bool_]) -> Pairs:
+    def __getitem__(self, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Pairs:
         return Pairs(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
@@ -62,11 +62,14 @@ def _described(
         (parts.things[a], parts.things[b], parts.join(parts.things[a], parts.things[b])) for a, b in pairs
     ]
     features = features_of([thing for three in threes for thing in three])
+    geometry, shape, colour = (values.reshape(len(pairs), 3, -1) for values in features)
     return Pairs(
-        kinds[owners],
-        (owners[:, 0] == owners[:, 1]) & (owners[:, 0] > 0),
-        *(values.reshape(len(pairs), 3, -1) for values in features),
-        np.array(
+        kinds=kinds[owners],
+        one=(owners[:, 0] == owners[:, 1]) & (owners[:, 0] > 0),
+        geometry=geometry,
+        shape=shape,
+        colour=colour,
+        known=np.array(
             [
                 between(*three, parts.held_for_one[:, [a]][:, :, [b]])
                 for three, (a, b) in zip(threes, pairs, strict=True)

@@ -62,8 +62,8 @@ def joined(parts: Sequence[Samples]) -> Samples:
 def samples_of(shot: Shot, found: Sequence[Sight], items: Sequence[Item], scene: int) -> Samples | None:
     """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
 
-    Also what perception itself cuts out, `found` in each cloud: segments that hold several things teach nothing and are left out,
-    pieces of a thing are clutter.
+    Also what perception itself cuts out, `found` in each cloud: segments that hold several things teach
+    nothing and are left out, pieces of a thing are clutter.
     """
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
@@ -116,7 +116,7 @@ def view_sets(count: int) -> Iterator[tuple[int, ...]]:
 
 
 def shared_pixels(parts: Parts, shot: Shot, views: Sequence[int]) -> NDArray[np.int64]:
-    """(N + 1, B + 1) how many pixels each of N parts shares with each of B bodies; none of either comes first."""
+    """(N + 1, B + 1) how many pixels N parts and B bodies have in common; none of either comes first."""
     shape = len(parts.things) + 1, len(shot.bodies) + 1
     table = np.zeros(shape, np.int64)
     for label, view in zip(parts.labels, views, strict=True):

@@ -70,14 +70,10 @@ def joining_signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt
     best = np.where(things, apart[:, 0], -1.0).argmax(axis=1)
     likely = [whole[:, things].max(axis=1), *apart[..., things].max(axis=2).T]
     same = [whole[rows, best], apart[rows, 1, best]]
-    odd = [
-        p[:, learnt.classes.index(name)]
-        for p in (whole, *apart.swapaxes(0, 1))
-        for name in (CLUTTER, UNKNOWN)
-    ]
-    return np.column_stack(
-        [*(np.log(np.maximum(p, _LEAST)) for p in (*likely, *same)), *odd, counts, known[:, 2:]]
-    )
+    unnamed = [learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)]
+    odd = [p[:, unnamed] for p in (whole, apart[:, 0], apart[:, 1])]
+    logs = np.log(np.maximum(np.column_stack(likely + same), _LEAST))
+    return np.column_stack([logs, *odd, counts, known[:, 2:]])
 
 
 def nameable(learnt: Learnt) -> NDArray[np.bool_]:
