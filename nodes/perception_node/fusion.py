@@ -31,13 +31,13 @@ def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) ->
 
     Logits; 0 where no camera was asked.
     """
-    number = [np.zeros(int(sight.labels.max(initial=0)) + 1, int) for sight in sights]
-    for group, members in enumerate(groups):
+    group_of = [np.zeros(int(sight.labels.max(initial=0)) + 1, int) for sight in sights]
+    for number, members in enumerate(groups, 1):
         for view, n in members:
-            number[view][sights[view].segments[n].label] = group + 1
+            group_of[view][sights[view].segments[n].label] = number
     least, most = np.full((2, len(groups) + 1, len(groups) + 1), np.inf)
     most = -most
-    for sight, group in zip(sights, number, strict=True):
+    for sight, group in zip(sights, group_of, strict=True):
         a, b = np.nonzero(sight.same)
         inside = np.maximum(a, b) + 1 < len(group)
         a, b = a[inside], b[inside]

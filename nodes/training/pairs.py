@@ -20,7 +20,7 @@ from nodes.training.scenes import Item, Shot
 class Pairs:
     """N pairs. `kinds`: (N, 2) the models, `NOTHING` for none. `one`: (N,) whether they are one thing.
 
-    `geometry`, `shape`, `colour`: (N, 3, D) features of either and of both together. `known`: (N, 7), see
+    `geometry`, `shape`, `colour`: (N, 3, D) features of either and of both together. `known`: (N, 16), see
     `joining.between`.
     """
 

@@ -29,7 +29,6 @@ SURE = 0.45
 _SORTS = ("geometry", "shape", "colour")
 _HIDDEN = dict(zip(VOTERS, ((96,), (96,), (64,), (128,), (128,)), strict=True))
 _SIDES_HIDDEN = (64, 32)
-_NOTHING_YET = Perceptron(np.zeros(0), np.ones(0), (), ())
 _FARTHEST = 1.0
 """A side that is off by more of the thing's size than this was not seen at all."""
 
@@ -41,7 +40,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
     known = ~np.isin(names, list(without))
     samples, names = gathered.things[known], names[known]
     left_out = [kind for kind, name in class_of.items() if name in without]
-    pairs = gathered.pairs[~np.isin(gathered.pairs.kinds, left_out).any(axis=1)]
+    pairs = gathered.pairs[np.asarray(~np.isin(gathered.pairs.kinds, left_out).any(axis=1))]
     classes = tuple(sorted(set(names.tolist())))
     target = np.searchsorted(classes, names)
     held = samples.scene % HELD_OUT == 0
@@ -63,7 +62,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
         voters=voters,
         weights=weights,
         novelty=novelty,
-        joining=_NOTHING_YET,
+        joining=np.zeros(0),
         sides=_sides(samples, expected),
         sure=SURE,
         story=f"{len(samples)} segments, {len(classes)} leaves; rendered from the model library, 2 cameras",

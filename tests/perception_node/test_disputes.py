@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from nodes.perception_node.disputes import settled
 from nodes.perception_node.fusion import fuse
@@ -16,23 +15,23 @@ BOXES = (((-0.1, -0.05, 0.0), (0.0, 0.05, 0.12)), ((0.0, -0.05, 0.0), (0.1, 0.05
 EYES = ((-0.6, -0.8, 0.7), (0.6, -0.8, 0.7))
 
 
-def sights(chance: float):
-    """Two views of two boxes side by side; to the first they are one."""
+def sights():
+    """Two views of two boxes side by side; to the first they are one. And the truth about the first."""
     found = []
     for eye in EYES:
         seen = boxes_on_table(*BOXES, pose=camera_pose(eye=eye), posed=True)
         known = np.isfinite(seen.cloud.points_camera[..., 2])
         found.append((see(seen.cloud), np.where(known, seen.truth, 0)))
     (one, first), (other, second) = found
-    same = np.array([[0.0, chance], [chance, 0.0]], np.float32)
+    bare = [replace(sight, same=np.zeros((0, 0), np.float32)) for sight in (one, other)]
     return [
-        labelled(one, np.minimum(first, 1), frozenset()),
-        replace(labelled(other, second, frozenset()), same=same),
+        labelled(bare[0], np.minimum(first, 1), frozenset()),
+        labelled(bare[1], second, frozenset()),
     ], first
 
 
-def test_two_things_are_two_when_the_camera_that_sees_two_is_sure():
-    seen, truth = sights(0.01)
+def test_what_another_camera_sees_as_two_is_cut_in_two():
+    seen, truth = sights()
     after = settled(seen)
     assert after[0].labels.max() == 2
     where = truth > 0
@@ -43,15 +42,23 @@ def test_two_things_are_two_when_the_camera_that_sees_two_is_sure():
     assert len(fuse(after)) == 2
 
 
-@pytest.mark.parametrize("chance", [0.3, 0.0])
-def test_pieces_of_which_nobody_is_sure_are_one_thing(chance):
-    seen, _ = sights(chance)
-    after = settled(seen)
-    assert after[0].labels is seen[0].labels
-    assert len(fuse(after)) == 1
+def test_parts_of_one_segment_were_held_for_one():
+    seen, _ = sights()
+    assert settled(seen)[0].same[0, 1] == 1.0
+
+
+def test_what_was_known_of_a_segment_holds_for_its_parts():
+    seen, _ = sights()
+    third = seen[0].labels.copy()
+    third[:4, :4] = 2  # a thing apart, of which the camera knows how likely it is one with the first
+    same = np.array([[0.0, 0.3], [0.3, 0.0]], np.float32)
+    after = settled([replace(labelled(seen[0], third, frozenset()), same=same), seen[1]])[0]
+    assert after.labels.max() == 3
+    assert after.same[0, 1] == after.same[2, 1] == np.float32(0.3)
+    assert after.same[0, 2] == 1.0
 
 
 def test_one_camera_disputes_nothing():
-    seen, _ = sights(0.01)
+    seen, _ = sights()
     assert settled(seen[:1]) == seen[:1]
     assert settled([]) == []

@@ -1,6 +1,9 @@
-import numpy as np
+from dataclasses import replace
 
-from nodes.perception_node.fusion import fuse
+import numpy as np
+import pytest
+
+from nodes.perception_node.fusion import fuse, held_for_one
 from nodes.perception_node.sights import labelled, see
 from tests.perception_node.scenes import shot
 
@@ -28,3 +31,17 @@ def test_one_view_has_nothing_to_fuse():
 
 def test_nothing_is_nothing():
     assert fuse([]) == []
+
+
+def test_what_cameras_hold_for_one():
+    sights = []
+    for sight, chance in zip(truly_cut(), (0.2, 0.9), strict=True):
+        same = np.zeros((len(shot().bodies),) * 2, np.float32)
+        same[0, 1] = same[1, 0] = chance
+        sights.append(replace(sight, same=same))
+    number = [{segment.label: n for n, segment in enumerate(sight.segments)} for sight in sights]
+    groups = [[(view, number[view][label]) for view in (0, 1)] for label in (1, 2, 3)]
+    least, most = held_for_one(sights, groups)
+    assert least[0, 1] == least[1, 0] == pytest.approx(np.log(0.25), abs=1e-3)
+    assert most[0, 1] == pytest.approx(np.log(9.0), abs=1e-3)
+    assert least[0, 2] == most[0, 2] == 0.0

@@ -11,7 +11,7 @@ from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.things import Thing
 
-_BESIDE_M = 0.015
+_BESIDE_M = 0.04
 _ABOVE_M = 0.2
 """So far a lamp's shade may be above its foot: what is thin between them is not seen."""
 
@@ -21,36 +21,40 @@ _LEAST = 1e-3
 
 
 def near(things: Sequence[Thing]) -> list[tuple[int, int]]:
-    """Pairs (a, b), a < b, that nearly touch or are above one another; no table tops."""
-    low = np.array([thing.cells.min(axis=0) for thing in things])
-    high = np.array([thing.cells.max(axis=0) for thing in things])
-    small = np.array([not thing.carrier for thing in things])
+    """Pairs (a, b), a < b, that stand close together or are above one another; no table tops."""
+    low = np.array([thing.cells.min(axis=0) for thing in things]).reshape(-1, 3)
+    high = np.array([thing.cells.max(axis=0) for thing in things]).reshape(-1, 3)
+    small = np.array([not thing.carrier for thing in things], dtype=bool)
     apart = np.maximum(low[:, None] - high, low - high[:, None])
     close = (apart < [_BESIDE_M, _BESIDE_M, _ABOVE_M]).all(axis=2) & small & small[:, None]
     return [(int(a), int(b)) for a, b in np.argwhere(np.triu(close, 1))]
 
 
 def between(a: Thing, b: Thing, whole: Thing, held_for_one: Numbers) -> NDArray[np.float64]:
-    """(7,) of a pair that nobody has recognised yet: points of each, gaps, how empty the whole's box is.
+    """(16,) what is known of a pair before it is recognised.
 
-    `held_for_one`: (2, A, B) of what a and b consist of, see `fusion`.
+    The logarithms of how many points each has, the gaps beside and above, how empty the whole's box is, how
+    likely cameras hold them for one, and the logarithms of long side, short side and height of a, b and the
+    whole. `held_for_one`: (2, A, B) of what a and b consist of, see `fusion`.
     """
     gap = np.maximum(a.cells.min(axis=0) - b.cells.max(axis=0), b.cells.min(axis=0) - a.cells.max(axis=0))
-    volumes = [thing.box.size_m.prod() for thing in (whole, a, b)]
+    sizes = np.array([[*np.sort(thing.box.size_m[:2])[::-1], thing.box.size_m[2]] for thing in (a, b, whole)])
+    volumes = sizes.prod(axis=1)
     return np.array(
         [
             np.log(a.count),
             np.log(b.count),
             gap[:2].max(),
             gap[2],
-            np.log(volumes[0] / sum(volumes[1:])),
+            np.log(volumes[2] / volumes[:2].sum()),
             held_for_one[0].min(),
             held_for_one[1].max(),
+            *np.log(sizes).ravel(),
         ]
     )
 
 
-def worth_joining(apart: Numbers, learnt: Learnt) -> NDArray[np.bool_]:
+def worth_trying(apart: Numbers, learnt: Learnt) -> NDArray[np.bool_]:
     """(N,) whether one of two things (N, 2, K) is hard to recognise alone, or both are taken for the same."""
     known = apart[..., nameable(learnt)]
     doubtful = (known.max(axis=2) < _DOUBTFUL) | (apart[..., learnt.classes.index(CLUTTER)] > _PIECE)
@@ -58,22 +62,41 @@ def worth_joining(apart: Numbers, learnt: Learnt) -> NDArray[np.bool_]:
     return np.asarray(doubtful.any(axis=1) | (best[:, 0] == best[:, 1]))
 
 
-def joining_signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Numbers:
+def likely_one(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Numbers:
+    """(N,) probabilities that two are pieces of one thing; arguments as for `signs`."""
+    told = signs(apart, whole, known, learnt)
+    return np.asarray(1.0 / (1.0 + np.exp(-(told @ learnt.joining[:-1] + learnt.joining[-1]))))
+
+
+def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Numbers:
     """(N, signs) from probabilities of the leaves of two things (N, 2, K) and of both as one (N, K).
 
-    `known`: (N, 7), see `between`. The order of the two does not matter: the surer one comes first.
+    `known`: (N, 16), see `between`. The order of the two does not matter: the surer one comes first.
     """
-    things, rows = nameable(learnt), np.arange(len(whole))
-    order = np.argsort(-apart[..., things].max(axis=2), axis=1, kind="stable")
-    apart = np.take_along_axis(apart, order[..., None], axis=1)
-    counts = np.take_along_axis(known[:, :2], order, axis=1)
-    best = np.where(things, apart[:, 0], -1.0).argmax(axis=1)
-    likely = [whole[:, things].max(axis=1), *apart[..., things].max(axis=2).T]
-    same = [whole[rows, best], apart[rows, 1, best]]
-    unnamed = [learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)]
-    odd = [p[:, unnamed] for p in (whole, apart[:, 0], apart[:, 1])]
-    logs = np.log(np.maximum(np.column_stack(likely + same), _LEAST))
-    return np.column_stack([logs, *odd, counts, known[:, 2:]])
+    things = nameable(learnt)
+    order = np.argsort(-apart[..., things].max(axis=2), axis=1, kind="stable")[..., None]
+    chances = np.concatenate([np.take_along_axis(apart, order, axis=1), whole[:, None]], axis=1)
+    log_counts = np.take_along_axis(known[:, :2, None], order, axis=1)[..., 0]
+    log_sizes = known[:, 7:].reshape(-1, 3, 3)
+    log_sizes = np.concatenate(
+        [np.take_along_axis(log_sizes[:, :2], order, axis=1), log_sizes[:, 2:]], axis=1
+    )
+    named = np.where(things, chances, -1.0)
+    leaf = named.argmax(axis=2)
+    as_first = np.take_along_axis(chances[:, 1:], leaf[:, :1, None], axis=2)[..., 0]
+    too_large = log_sizes - np.log(learnt.sizes_m)[leaf]
+    unnamed = chances[..., [learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)]]
+    return np.column_stack(
+        [
+            np.log(np.maximum(named.max(axis=2), _LEAST)),
+            np.log(np.maximum(as_first, _LEAST)),
+            unnamed.reshape(len(unnamed), -1),
+            log_counts,
+            known[:, 2:7],
+            np.maximum(too_large, 0.0).max(axis=2),
+            np.minimum(too_large, 0.0).min(axis=2),
+        ]
+    )
 
 
 def nameable(learnt: Learnt) -> NDArray[np.bool_]:

@@ -28,7 +28,6 @@ CLUTTER = ""
 VOTERS = ("geometry", "shape", "colour", "all", "all_again")
 """Who votes, in the order of the weights: one by each sort of features, and two by all of them."""
 
-_OTHERS = ("joining", "sides")
 _NOVELTY = ("mean", "axes", "centres", "weights")
 
 
@@ -39,8 +38,8 @@ class Learnt:
     `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each class,
     the most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
     `sideways`: (K,) whether a leaf's longer side is its own y axis. `voters`: scores (N, K) from each one's
-    features. `weights`: (voters,) how much each one's vote counts. `joining`: scores (N, 2) of
-    two things for being two and being one, from `joining.joining_signs`. `sides`: see `sides.completed`.
+    features. `weights`: (voters,) how much each one's vote counts. `joining`: (signs + 1,)
+    of the logistic regression on `joining.signs`, the constant last. `sides`: see `sides.completed`.
     `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
     """
 
@@ -51,7 +50,7 @@ class Learnt:
     voters: tuple[Perceptron, ...]
     weights: Numbers
     novelty: Novelty
-    joining: Perceptron
+    joining: Numbers
     sides: Perceptron
     sure: float
     story: str
@@ -74,11 +73,10 @@ def save(learnt: Learnt, path: Path) -> None:
         "sizes_m": learnt.sizes_m,
         "sideways": learnt.sideways,
         "weights": learnt.weights,
+        "joining": learnt.joining,
         **{f"novelty.{name}": getattr(learnt.novelty, name).astype(np.float32) for name in _NOVELTY},
     }
-    for name, perceptron in zip(
-        (*VOTERS, *_OTHERS), (*learnt.voters, learnt.joining, learnt.sides), strict=True
-    ):
+    for name, perceptron in zip((*VOTERS, "sides"), (*learnt.voters, learnt.sides), strict=True):
         arrays |= {f"{name}.mean": perceptron.mean.astype(np.float32)}
         arrays |= {f"{name}.scale": perceptron.scale.astype(np.float32)}
         for layer, (weight, bias) in enumerate(zip(perceptron.weights, perceptron.biases, strict=True)):
@@ -106,7 +104,7 @@ def load(path: Path = SHIPPED) -> Learnt:
                 voters=tuple(_perceptron(arrays, name) for name in VOTERS),
                 weights=arrays["weights"],
                 novelty=Novelty(*(arrays[f"novelty.{name}"].astype(float) for name in _NOVELTY)),
-                joining=_perceptron(arrays, "joining"),
+                joining=arrays["joining"],
                 sides=_perceptron(arrays, "sides"),
                 sure=float(text["sure"]),
                 story=text["story"],

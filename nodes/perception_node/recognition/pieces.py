@@ -8,9 +8,8 @@ import numpy as np
 
 from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.joining import between, joining_signs, near, worth_joining
+from nodes.perception_node.recognition.joining import between, likely_one, near, worth_trying
 from nodes.perception_node.recognition.learnt import Learnt
-from nodes.perception_node.recognition.perceptron import log_softmax
 from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.things import Thing
 
@@ -38,7 +37,7 @@ def put_together(
     tried: dict[tuple[Members, Members], tuple[Thing, Numbers, float]] = {}
     for _ in range(_ROUNDS):
         close = near(parts)
-        worth = worth_joining(chances[np.array(close, int).reshape(-1, 2)], learnt)
+        worth = worth_trying(chances[np.array(close, int).reshape(-1, 2)], learnt)
         pairs = [pair for pair, trying in zip(close, worth, strict=True) if trying][:_MOST_PAIRS]
         new = [(a, b) for a, b in pairs if (members[a], members[b]) not in tried]
         if new:
@@ -50,10 +49,9 @@ def put_together(
                     for (a, b), whole in zip(new, wholes, strict=True)
                 ]
             )
-            scores = learnt.joining(joining_signs(chances[np.array(new)], together, known, learnt))
-            one = np.exp(log_softmax(scores))[:, 1].tolist()
-            for (a, b), whole, chance, likely in zip(new, wholes, together, one, strict=True):
-                tried[members[a], members[b]] = whole, chance, likely
+            likely = likely_one(chances[np.array(new)], together, known, learnt).tolist()
+            for (a, b), *found in zip(new, wholes, together, likely, strict=True):
+                tried[members[a], members[b]] = tuple(found)
         sure = [tried[members[a], members[b]][2] for a, b in pairs]
         if max(sure, default=0.0) < _SURE:
             break

@@ -1,5 +1,7 @@
 from dataclasses import replace
 
+import numpy as np
+
 from nodes.perception_node.recognition.learnt import shipped
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.things import thing_of
@@ -7,6 +9,7 @@ from tests.perception_node.scenes import shot
 from tests.perception_node.test_fusion import truly_cut
 
 SUPPORTS_M = [0.0, 0.7]
+UNASKED = np.zeros((2, 2, 2))
 
 
 def join(a, b):
@@ -21,7 +24,7 @@ def body(name):
 
 def test_what_is_recognised_stays_apart():
     things = [thing_of(body("bottle"), SUPPORTS_M), thing_of(body("cereals"), SUPPORTS_M)]
-    parts, chances, members = put_together(things, shipped(), join)
+    parts, chances, members = put_together(things, UNASKED, shipped(), join)
     assert (len(parts), members) == (2, [[0], [1]])
     assert [shipped().classes[k] for k in chances.argmax(axis=1)] == ["Bottle", "Cereals"]
 
@@ -32,7 +35,7 @@ def test_a_neck_finds_its_bottle():
         thing_of([_part(s, (s.points[:, 2] > height) == upper) for s in body("bottle")], SUPPORTS_M)
         for upper in (False, True)
     ]
-    parts, chances, members = put_together(halves, shipped(), join)
+    parts, chances, members = put_together(halves, UNASKED, shipped(), join)
     assert members == [[0, 1]]
     assert shipped().classes[int(chances[0].argmax())] == "Bottle"
     assert parts[0].box.size_m[2] > 0.25
@@ -43,4 +46,4 @@ def _part(segment, rows):
 
 
 def test_nothing_is_nothing():
-    assert put_together([], shipped(), join)[2] == []
+    assert put_together([], np.zeros((2, 0, 0)), shipped(), join)[2] == []
