@@ -24,6 +24,7 @@ HANGING = frozenset(_HANGING.split())
 SMALL_M = 0.5
 _ODD = 0.6
 _ODD_SHARE = 0.08
+_HEAPED = 0.8
 _USUAL = 0.6  # of the tables are about as high as tables are, and desks as desks
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
@@ -50,7 +51,7 @@ def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
     return (float(np.clip(red, 0, 1)), float(np.clip(green, 0, 1)), float(np.clip(blue, 0, 1)))
 
 
-def table_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
+def table_scene(kinds: Sequence[str], rng: np.random.Generator, *, crowded_share: float = 0.5) -> list[Item]:
     """A table and these things on it; those that find no room are left out."""
     area = (float(rng.uniform(0.7, 1.0)), float(rng.uniform(1.0, 1.5)))
     kind = str(rng.choice(CARRIERS))
@@ -58,7 +59,7 @@ def table_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
     if rng.random() < _USUAL:
         height = MODELS[kind].size_m[2] * math.exp(rng.normal(0.0, 0.05))
     sizes = [varied_size(kind, rng) for kind in kinds]
-    crowded = rng.random() < 0.5
+    crowded = rng.random() < crowded_share
     gap = float(rng.uniform(0.001, 0.02)) if crowded else float(rng.uniform(0.03, 0.08))
     table = Item("table", kind, (*area, height), varied_colour(kind, rng), (0.0, 0.0, 0.0), 0.0)
     return [
@@ -130,6 +131,16 @@ def training_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
         else:
             kinds = [next(large) for _ in range(4)] + [next(small) for _ in range(3)]
             yield floor_scene(kinds, rng), views((0.0, 0.0, 0.3), (2.0, 4.0), rng)
+
+
+def heaps(count: int, rng: np.random.Generator) -> Iterator[Scene]:
+    """Scenes of things close together, often several of a kind: whose piece is whose is hard to tell."""
+    small = _deck(SMALL, rng)
+    for _ in range(count):
+        few = [next(small) for _ in range(rng.integers(3, 12))]
+        kinds = [str(kind) for kind in rng.choice(few, rng.integers(6, 14))]
+        items = table_scene(kinds, rng, crowded_share=_HEAPED)
+        yield items, views((0.0, 0.0, items[0].size_m[2]), (0.9, 1.8), rng)
 
 
 def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
 from multiprocessing import get_context
@@ -11,56 +11,54 @@ from pathlib import Path
 
 import numpy as np
 
-from nodes.perception_node.sights import see
 from nodes.training import pairs as pairing
 from nodes.training import samples as sampling
-from nodes.training.arranging import training_scenes
+from nodes.training.arranging import Scene, heaps, training_scenes
 from nodes.training.pairs import Pairs
 from nodes.training.samples import Samples
-from nodes.training.scenes import Stage
-
-HELD_OUT = 5
-"""Of so many scenes one is kept apart: no classifier learns from it."""
+from nodes.training.scenes import Item, Shot, Stage
 
 _PARTS = 10  # that scenes are made in: the same whatever the machine
 
 
 @dataclass(frozen=True)
 class Gathered:
-    """What recognition learns from: things, and pairs of neighbours in the scenes that are held out."""
+    """What recognition learns from: things, and pairs of neighbours in other scenes."""
 
     things: Samples
     pairs: Pairs
 
 
-def gather(scenes: int, seed: int) -> Gathered:
-    """Samples from so many simulated scenes, made by several processes."""
-    each = -(-scenes // _PARTS)
+def gather(scenes: int, heaped: int, seed: int) -> Gathered:
+    """Things from so many simulated scenes, pairs from so many heaps, made by several processes."""
+    each, heaps_each = -(-scenes // _PARTS), -(-heaped // _PARTS)
     with ProcessPoolExecutor(min(_PARTS, os.cpu_count() or 1), get_context("spawn")) as pool:
-        return joined(list(pool.map(_gather, [each] * _PARTS, range(seed, seed + _PARTS))), each)
+        things = list(pool.map(_things, [each] * _PARTS, range(seed, seed + _PARTS)))
+        pairs = list(pool.map(_pairs, [heaps_each] * _PARTS, range(seed + _PARTS, seed + 2 * _PARTS)))
+    numbered = [replace(part, scene=part.scene + n * each) for n, part in enumerate(things)]
+    return Gathered(sampling.joined(numbered), pairing.joined(pairs))
 
 
-def joined(parts: Sequence[Gathered], each: int) -> Gathered:
-    """All of all parts, of so many scenes each."""
-    things = [replace(part.things, scene=part.things.scene + n * each) for n, part in enumerate(parts)]
-    return Gathered(sampling.joined(things), pairing.joined([part.pairs for part in parts]))
+def _things(scenes: int, seed: int) -> Samples:
+    rng = np.random.default_rng(seed)
+    shots = _photographed(training_scenes(scenes, rng), rng)
+    samples = (sampling.samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
+    return sampling.joined([found for found in samples if found is not None])
 
 
-def _gather(scenes: int, seed: int) -> Gathered:
-    stage, rng = Stage(), np.random.default_rng(seed)
-    things, pairs = list[Samples](), list[Pairs]()
-    for number, (items, views) in enumerate(training_scenes(scenes, rng)):
+def _pairs(scenes: int, seed: int) -> Pairs:
+    rng = np.random.default_rng(seed)
+    shots = _photographed(heaps(scenes, rng), rng)
+    return pairing.joined([pairs for shot, items in shots for pairs in pairing.pairs_of(shot, items, rng)])
+
+
+def _photographed(scenes: Iterable[Scene], rng: np.random.Generator) -> Iterator[tuple[Shot, list[Item]]]:
+    stage = Stage()
+    for items, views in scenes:
         bodies = stage.show(items)
         red, green, blue = rng.uniform(0.2, 0.9, 3).tolist()
         stage.paint({"floor": (red, green, blue)}, light=float(rng.uniform(0.25, 0.45)))
-        shot = stage.shoot(bodies, views, rng)
-        found = [see(cloud) for cloud in shot.clouds]
-        samples = sampling.samples_of(shot, found, items, number)
-        if samples is not None:
-            things.append(samples)
-        if number % HELD_OUT == 0:
-            pairs += pairing.pairs_of(shot, found, items)
-    return Gathered(sampling.joined(things), pairing.joined(pairs))
+        yield stage.shoot(bodies, views, rng), items
 
 
 def write(gathered: Gathered, path: Path) -> None:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from nodes.perception_node.pipeline import Parts, parts_in
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.joining import between, near
-from nodes.perception_node.sights import Sight
+from nodes.perception_node.sights import see
 from nodes.training.samples import NOTHING, shared_pixels, view_sets
 from nodes.training.scenes import Item, Shot
+
+_JOINED = 0.5
+
+Members = tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -40,39 +46,56 @@ def joined(parts: Sequence[Pairs]) -> Pairs:
     return Pairs(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Pairs)))
 
 
-def pairs_of(shot: Shot, found: Sequence[Sight], items: Sequence[Item]) -> list[Pairs]:
-    """All neighbours in what perception cut out, by all cameras together and by each alone."""
+def pairs_of(shot: Shot, items: Sequence[Item], rng: np.random.Generator) -> list[Pairs]:
+    """All neighbours in what perception cut out, by all cameras together and by each alone.
+
+    Also those that are left when some pieces of one thing have been put together.
+    """
     kind = {item.name: item.label for item in items}
     kinds = np.array([NOTHING, *(kind[body.name] for body in shot.bodies)])
+    found = [see(cloud) for cloud in shot.clouds]
     pairs = []
     for views in view_sets(len(found)):
         parts = parts_in([found[v] for v in views])
-        neighbours = near(parts.things)
-        if neighbours:
-            owners = shared_pixels(parts, shot, views)[1:].argmax(axis=1)[np.array(neighbours)]
-            pairs.append(_described(parts, neighbours, owners, kinds))
+        owners = shared_pixels(parts, shot, views)[1:].argmax(axis=1)
+        members = [(n,) for n in range(len(parts.things))]
+        pairs += _described(parts, members, owners, kinds)
+        some = _partly_joined(parts, owners, rng)
+        if len(some) < len(members):
+            pairs += _described(parts, some, owners, kinds)
     return pairs
 
 
+def _partly_joined(parts: Parts, owners: NDArray[np.int64], rng: np.random.Generator) -> list[Members]:
+    """The numbers of those that are together when each pair of one thing is joined or not by lot."""
+    count = len(parts.things)
+    joined = np.zeros((count, count), bool)
+    for a, b in near(parts.things):
+        joined[a, b] = owners[a] == owners[b] > 0 and rng.random() < _JOINED
+    groups, group = connected_components(joined, directed=False)
+    return [tuple(np.flatnonzero(group == n).tolist()) for n in range(groups)]
+
+
 def _described(
-    parts: Parts, pairs: Sequence[tuple[int, int]], owners: NDArray[np.int64], kinds: NDArray[np.str_]
-) -> Pairs:
-    """`owners`: (N, 2) the body that most pixels of each see, 0 for none; `kinds`: (B + 1,) what each is."""
-    threes = [
-        (parts.things[a], parts.things[b], parts.join(parts.things[a], parts.things[b])) for a, b in pairs
-    ]
+    parts: Parts, members: Sequence[Members], owners: NDArray[np.int64], kinds: NDArray[np.str_]
+) -> list[Pairs]:
+    """`owners`: (N,) the body that most pixels of each part see, 0 for none; `kinds`: (B + 1,) of each body."""
+    things = [reduce(parts.join, (parts.things[n] for n in numbers)) for numbers in members]
+    pairs = near(things)
+    if not pairs:
+        return []
+    threes = [(things[a], things[b], parts.join(things[a], things[b])) for a, b in pairs]
     features = features_of([thing for three in threes for thing in three])
     geometry, shape, colour = (values.reshape(len(pairs), 3, -1) for values in features)
-    return Pairs(
-        kinds=kinds[owners],
-        one=(owners[:, 0] == owners[:, 1]) & (owners[:, 0] > 0),
-        geometry=geometry,
-        shape=shape,
-        colour=colour,
-        known=np.array(
-            [
-                between(*three, parts.held_for_one[:, [a]][:, :, [b]])
-                for three, (a, b) in zip(threes, pairs, strict=True)
-            ]
-        ),
-    )
+    owner = owners[[numbers[0] for numbers in members]][np.array(pairs)]
+    held = [parts.held_for_one[:, members[a]][:, :, members[b]] for a, b in pairs]
+    return [
+        Pairs(
+            kinds=kinds[owner],
+            one=(owner[:, 0] == owner[:, 1]) & (owner[:, 0] > 0),
+            geometry=geometry,
+            shape=shape,
+            colour=colour,
+            known=np.array([between(*three, how) for three, how in zip(threes, held, strict=True)]),
+        )
+    ]

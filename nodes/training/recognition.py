@@ -18,7 +18,7 @@ from nodes.perception_node.recognition.sides import SIZE_FEATURES
 from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
 from nodes.sim_node.models.table import MODELS
 from nodes.training.fitting import Numbers, classifier, regressor
-from nodes.training.gathering import HELD_OUT, Gathered, gather, read, write
+from nodes.training.gathering import Gathered, gather, read, write
 from nodes.training.joining import learn_joining
 from nodes.training.novelty import learn_novelty
 from nodes.training.samples import NOTHING, Samples
@@ -26,6 +26,7 @@ from nodes.training.scenes import STRANGE
 from nodes.training.taxonomy import class_of_models, hierarchy
 
 SURE = 0.45
+_HELD_OUT = 5
 _SORTS = ("geometry", "shape", "colour")
 _HIDDEN = dict(zip(VOTERS, ((96,), (96,), (64,), (128,), (128,)), strict=True))
 _SIDES_HIDDEN = (64, 32)
@@ -43,7 +44,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
     pairs = gathered.pairs[np.asarray(~np.isin(gathered.pairs.kinds, left_out).any(axis=1))]
     classes = tuple(sorted(set(names.tolist())))
     target = np.searchsorted(classes, names)
-    held = samples.scene % HELD_OUT == 0
+    held = samples.scene % _HELD_OUT == 0
     features = [getattr(samples, name) for name in _SORTS]
     voters = tuple(
         classifier(f[~held], target[~held], len(classes), hidden, seed=seed)
@@ -112,6 +113,7 @@ def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--scenes", type=int, default=1500)
+    parser.add_argument("--heaps", type=int, default=400, help="to learn from which pieces are one thing")
     parser.add_argument("--seed", type=int, default=101)
     parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
     parser.add_argument("--out", type=Path, default=SHIPPED)
@@ -120,7 +122,7 @@ def main() -> None:
     if options.samples and options.samples.exists():
         gathered = read(options.samples)
     else:
-        gathered = gather(options.scenes, options.seed)
+        gathered = gather(options.scenes, options.heaps, options.seed)
         if options.samples:
             write(gathered, options.samples)
     print(f"{len(gathered.things)} segments after {time.perf_counter() - started:.0f} s")

@@ -16,7 +16,7 @@ from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.sides import shifts, side_features
 from nodes.perception_node.segmentation.segment import LOWEST_M
 from nodes.perception_node.segments import map_points
-from nodes.perception_node.sights import Sight, labelled
+from nodes.perception_node.sights import Sight, labelled, see
 from nodes.perception_node.things import Thing
 from nodes.sim_node.models.parts import about, bounds, rotation_matrix
 from nodes.sim_node.models.parts import product as rotated
@@ -59,15 +59,16 @@ def joined(parts: Sequence[Samples]) -> Samples:
     return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
 
 
-def samples_of(shot: Shot, found: Sequence[Sight], items: Sequence[Item], scene: int) -> Samples | None:
+def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
     """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
 
-    Also what perception itself cuts out, `found` in each cloud: segments that hold several things teach
-    nothing and are left out, pieces of a thing are clutter.
+    Also what perception itself cuts out: segments that hold several things teach nothing and are left out,
+    pieces of a thing are clutter.
     """
     things, kinds, truths = [], [], []
     by_name = {item.name: item for item in items}
     true = [_truly(cloud, owner, shot.bodies) for cloud, owner in zip(shot.clouds, shot.owners, strict=True)]
+    found = [see(cloud) for cloud in shot.clouds]
     for sights, views in product((found, true), view_sets(len(shot.clouds))):
         cut = parts_in([sights[v] for v in views])
         for thing, name in zip(cut.things, _owner_names(shot, shared_pixels(cut, shot, views)), strict=True):
