@@ -32,7 +32,8 @@ class Gathered:
 def gather(scenes: int, heaped: int, seed: int) -> Gathered:
     """Things from so many simulated scenes, pairs from so many heaps, made by several processes."""
     each, heaps_each = -(-scenes // _PARTS), -(-heaped // _PARTS)
-    with ProcessPoolExecutor(min(_PARTS, os.cpu_count() or 1), get_context("spawn")) as pool:
+    workers = min(_PARTS, os.cpu_count() or 1)
+    with ProcessPoolExecutor(workers, get_context("spawn"), max_tasks_per_child=1) as pool:
         things = list(pool.map(_things, [each] * _PARTS, range(seed, seed + _PARTS)))
         pairs = list(pool.map(_pairs, [heaps_each] * _PARTS, range(seed + _PARTS, seed + 2 * _PARTS)))
     numbered = [replace(part, scene=part.scene + n * each) for n, part in enumerate(things)]

@@ -79,7 +79,7 @@ def _partly_joined(parts: Parts, owners: NDArray[np.int64], rng: np.random.Gener
 def _described(
     parts: Parts, members: Sequence[Members], owners: NDArray[np.int64], kinds: NDArray[np.str_]
 ) -> list[Pairs]:
-    """`owners`: (N,) the body that most pixels of each part see, 0 for none; `kinds`: (B + 1,) of each body."""
+    """`owners`: (N,) the body that most pixels of a part see, 0 for none; `kinds`: (B + 1,) of each body."""
     things = [reduce(parts.join, (parts.things[n] for n in numbers)) for numbers in members]
     pairs = near(things)
     if not pairs:

@@ -23,6 +23,7 @@ from nodes.training.joining import learn_joining
 from nodes.training.novelty import learn_novelty
 from nodes.training.samples import NOTHING, Samples
 from nodes.training.scenes import STRANGE
+from nodes.training.segmentation.fit import trees_of
 from nodes.training.taxonomy import class_of_models, hierarchy
 
 SURE = 0.45
@@ -63,7 +64,7 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
         voters=voters,
         weights=weights,
         novelty=novelty,
-        joining=np.zeros(0),
+        joining=trees_of([], 0.0),  # is learnt last, from what all else says
         sides=_sides(samples, expected),
         sure=SURE,
         story=f"{len(samples)} segments, {len(classes)} leaves; rendered from the model library, 2 cameras",

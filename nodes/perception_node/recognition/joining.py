@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.boxes import Numbers
+from nodes.perception_node.cloud import Floats
 from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.things import Thing
 
@@ -62,13 +63,12 @@ def worth_trying(apart: Numbers, learnt: Learnt) -> NDArray[np.bool_]:
     return np.asarray(doubtful.any(axis=1) | (best[:, 0] == best[:, 1]))
 
 
-def likely_one(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Numbers:
+def likely_one(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Floats:
     """(N,) probabilities that two are pieces of one thing; arguments as for `signs`."""
-    told = signs(apart, whole, known, learnt)
-    return np.asarray(1.0 / (1.0 + np.exp(-(told @ learnt.joining[:-1] + learnt.joining[-1]))))
+    return learnt.joining.probability(signs(apart, whole, known, learnt))
 
 
-def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Numbers:
+def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Floats:
     """(N, signs) from probabilities of the leaves of two things (N, 2, K) and of both as one (N, K).
 
     `known`: (N, 16), see `between`. The order of the two does not matter: the surer one comes first.
@@ -96,7 +96,7 @@ def signs(apart: Numbers, whole: Numbers, known: Numbers, learnt: Learnt) -> Num
             np.maximum(too_large, 0.0).max(axis=2),
             np.minimum(too_large, 0.0).min(axis=2),
         ]
-    )
+    ).astype(np.float32)
 
 
 def nameable(learnt: Learnt) -> NDArray[np.bool_]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from nodes.perception_node.boxes import Numbers
 from nodes.perception_node.recognition.novelty import Novelty
 from nodes.perception_node.recognition.perceptron import Perceptron
+from nodes.perception_node.segmentation.trees import Trees
 from schemas.entities import Size
 from schemas.errors import BadFile
 
@@ -28,6 +29,7 @@ CLUTTER = ""
 VOTERS = ("geometry", "shape", "colour", "all", "all_again")
 """Who votes, in the order of the weights: one by each sort of features, and two by all of them."""
 
+_JOINING = ("feature", "threshold", "keeps", "first", "value")
 _NOVELTY = ("mean", "axes", "centres", "weights")
 
 
@@ -38,8 +40,8 @@ class Learnt:
     `classes`: K leaves, `UNKNOWN` and `CLUTTER` among them. `ancestors`: what the TBox had above each class,
     the most special first. `sizes_m`: (K, 3) what things of a leaf measure: long side, short side, height.
     `sideways`: (K,) whether a leaf's longer side is its own y axis. `voters`: scores (N, K) from each one's
-    features. `weights`: (voters,) how much each one's vote counts. `joining`: (signs + 1,)
-    of the logistic regression on `joining.signs`, the constant last. `sides`: see `sides.completed`.
+    features. `weights`: (voters,) how much each one's vote counts. `joining`: whether two
+    things are pieces of one, from `joining.signs`. `sides`: see `sides.completed`.
     `sure`: the probability from which on a class is said. `story`: what all this was learnt from.
     """
 
@@ -50,7 +52,7 @@ class Learnt:
     voters: tuple[Perceptron, ...]
     weights: Numbers
     novelty: Novelty
-    joining: Numbers
+    joining: Trees
     sides: Perceptron
     sure: float
     story: str
@@ -73,7 +75,7 @@ def save(learnt: Learnt, path: Path) -> None:
         "sizes_m": learnt.sizes_m,
         "sideways": learnt.sideways,
         "weights": learnt.weights,
-        "joining": learnt.joining,
+        **{f"joining.{name}": getattr(learnt.joining, name) for name in _JOINING},
         **{f"novelty.{name}": getattr(learnt.novelty, name).astype(np.float32) for name in _NOVELTY},
     }
     for name, perceptron in zip((*VOTERS, "sides"), (*learnt.voters, learnt.sides), strict=True):
@@ -85,6 +87,7 @@ def save(learnt: Learnt, path: Path) -> None:
     text = {
         "story": learnt.story,
         "sure": learnt.sure,
+        "joining bias": learnt.joining.bias,
         "classes": learnt.classes,
         "ancestors": dict(learnt.ancestors),
     }
@@ -104,7 +107,9 @@ def load(path: Path = SHIPPED) -> Learnt:
                 voters=tuple(_perceptron(arrays, name) for name in VOTERS),
                 weights=arrays["weights"],
                 novelty=Novelty(*(arrays[f"novelty.{name}"].astype(float) for name in _NOVELTY)),
-                joining=arrays["joining"],
+                joining=Trees(
+                    **{name: arrays[f"joining.{name}"] for name in _JOINING}, bias=float(text["joining bias"])
+                ),
                 sides=_perceptron(arrays, "sides"),
                 sure=float(text["sure"]),
                 story=text["story"],

@@ -1,0 +1,59 @@
+"""Which neighbours are tried as one, and what is known of them."""
+
+import numpy as np
+import pytest
+
+from nodes.perception_node.recognition.joining import between, near, signs, worth_trying
+from nodes.perception_node.recognition.learnt import CLUTTER, shipped
+from nodes.perception_node.segments import Segment
+from nodes.perception_node.things import thing_of
+
+CLASSES = shipped().classes
+
+
+def thing(low, high, *, carrier=False):
+    points = np.random.default_rng(0).uniform(low, high, (2000, 3)).astype(np.float32)
+    return thing_of([Segment(points, None, 1, np.array([0.0, -1.0, 1.5]), False, 2000, carrier)], [0.7])
+
+
+FOOT = thing([0.0, 0.0, 0.7], [0.1, 0.1, 0.72])
+SHADE = thing([0.0, 0.0, 0.85], [0.1, 0.1, 1.0])
+BESIDE = thing([0.12, 0.0, 0.7], [0.2, 0.1, 0.8])
+AWAY = thing([0.4, 0.0, 0.7], [0.5, 0.1, 0.8])
+
+
+def chances(**likely):
+    row = np.zeros(len(CLASSES))
+    for name, chance in likely.items():
+        row[CLASSES.index(CLUTTER if name == "piece" else name)] = chance
+    return row
+
+
+def test_neighbours_are_beside_or_above_one_another():
+    top = thing([-0.5, -0.5, 0.68], [0.5, 0.5, 0.7], carrier=True)
+    assert near([FOOT, SHADE, BESIDE, AWAY, top]) == [(0, 1), (0, 2), (1, 2)]
+    assert near([]) == []
+
+
+def test_what_is_known_of_a_pair():
+    whole = thing([0.0, 0.0, 0.7], [0.1, 0.1, 1.0])
+    held = np.array([[[-1.0, 0.5]], [[2.0, 3.0]]])
+    known = between(FOOT, SHADE, whole, held)
+    assert known[3] == pytest.approx(0.13, abs=0.005)  # the gap above
+    assert tuple(known[5:7]) == (-1.0, 3.0)
+    assert np.exp(known[-1]) == pytest.approx(0.3, abs=0.01)
+
+
+def test_what_is_recognised_as_different_things_is_not_tried():
+    sure, other = chances(Cup=0.9), chances(Bottle=0.9)
+    pairs = np.array([[sure, other], [sure, sure], [sure, chances(Bottle=0.4)], [sure, chances(piece=0.7)]])
+    assert worth_trying(pairs, shipped()).tolist() == [False, True, True, True]
+
+
+def test_the_order_of_two_does_not_matter():
+    a, b, whole = chances(Cup=0.9), chances(Bottle=0.4, piece=0.5), chances(Cup=0.7)
+    one_way = between(FOOT, BESIDE, SHADE, np.zeros((2, 1, 1)))
+    other_way = between(BESIDE, FOOT, SHADE, np.zeros((2, 1, 1)))
+    first = signs(np.array([[a, b]]), whole[None], one_way[None], shipped())
+    again = signs(np.array([[b, a]]), whole[None], other_way[None], shipped())
+    assert first == pytest.approx(again)
