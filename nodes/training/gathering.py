@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
 from multiprocessing import get_context
@@ -18,7 +18,8 @@ from nodes.training.pairs import Pairs
 from nodes.training.samples import Samples
 from nodes.training.scenes import Item, Shot, Stage
 
-_PARTS = 10  # that scenes are made in: the same whatever the machine
+_SCENES, _HEAPS = 150, 40  # a part
+_SEEDS = 10  # from the first of scenes to the first of heaps
 
 
 @dataclass(frozen=True)
@@ -30,26 +31,32 @@ class Gathered:
 
 
 def gather(scenes: int, heaped: int, seed: int) -> Gathered:
-    """Things from so many simulated scenes, pairs from so many heaps, made by several processes."""
-    each, heaps_each = -(-scenes // _PARTS), -(-heaped // _PARTS)
-    workers = min(_PARTS, os.cpu_count() or 1)
-    with ProcessPoolExecutor(workers, get_context("spawn"), max_tasks_per_child=1) as pool:
-        things = list(pool.map(_things, [each] * _PARTS, range(seed, seed + _PARTS)))
-        pairs = list(pool.map(_pairs, [heaps_each] * _PARTS, range(seed + _PARTS, seed + 2 * _PARTS)))
-    numbered = [replace(part, scene=part.scene + n * each) for n, part in enumerate(things)]
+    """Things from so many simulated scenes, pairs from so many heaps, made by several processes.
+
+    They are made in parts, each by a process of its own: the same whatever the machine.
+    """
+    with ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), max_tasks_per_child=1) as pool:
+        things = list(pool.map(_things, range(seed, seed - (-scenes // _SCENES))))
+        pairs = list(pool.map(_pairs, range(seed + _SEEDS, seed + _SEEDS - (-heaped // _HEAPS))))
+    return joined(things, pairs)
+
+
+def joined(things: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
+    """All of all parts."""
+    numbered = [replace(part, scene=part.scene + n * _SCENES) for n, part in enumerate(things)]
     return Gathered(sampling.joined(numbered), pairing.joined(pairs))
 
 
-def _things(scenes: int, seed: int) -> Samples:
+def _things(seed: int) -> Samples:
     rng = np.random.default_rng(seed)
-    shots = _photographed(training_scenes(scenes, rng), rng)
+    shots = _photographed(training_scenes(_SCENES, rng), rng)
     samples = (sampling.samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
     return sampling.joined([found for found in samples if found is not None])
 
 
-def _pairs(scenes: int, seed: int) -> Pairs:
+def _pairs(seed: int) -> Pairs:
     rng = np.random.default_rng(seed)
-    shots = _photographed(heaps(scenes, rng), rng)
+    shots = _photographed(heaps(_HEAPS, rng), rng)
     return pairing.joined([pairs for shot, items in shots for pairs in pairing.pairs_of(shot, items, rng)])
 
 

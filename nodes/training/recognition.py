@@ -113,7 +113,7 @@ def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
 def main() -> None:
     """Render, learn, and write what ships."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--scenes", type=int, default=1500)
+    parser.add_argument("--scenes", type=int, default=1200)
     parser.add_argument("--heaps", type=int, default=400, help="to learn from which pieces are one thing")
     parser.add_argument("--seed", type=int, default=101)
     parser.add_argument("--samples", type=Path, help="keep the samples there, or take them from there")
