@@ -50,8 +50,8 @@ def put_together(
                 ]
             )
             likely = likely_one(chances[np.array(new)], together, known, learnt).tolist()
-            for (a, b), *found in zip(new, wholes, together, likely, strict=True):
-                tried[members[a], members[b]] = tuple(found)
+            for (a, b), whole, chance, one in zip(new, wholes, together, likely, strict=True):
+                tried[members[a], members[b]] = whole, chance, one
         sure = [tried[members[a], members[b]][2] for a, b in pairs]
         if max(sure, default=0.0) < _SURE:
             break
