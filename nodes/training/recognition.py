@@ -67,8 +67,8 @@ def learn(gathered: Gathered, *, without: Collection[str] = ()) -> Learnt:
         joining=trees_of([], 0.0),  # is learnt last, from what all else says
         sides=_sides(samples, expected),
         sure=SURE,
-        story=f"{len(samples)} segments, {len(pairs.one)} pairs, {len(classes)} leaves; rendered from the model"
-        " library, 2 cameras",
+        story=f"{len(samples)} segments, {len(pairs.one)} pairs, {len(classes)} leaves; "
+        "rendered from the model library, 2 cameras",
     )
     return replace(learnt, joining=learn_joining(learnt, pairs))
 
