@@ -48,12 +48,16 @@ class Encoded:
 
 @dataclass(frozen=True)
 class Network:
-    """How a process joins the system. `namespace` prefixes every key (one robot of many)."""
+    """How a process joins the system. `namespace` prefixes every key (one robot of many).
+
+    A client whose connection is refused tries again for `patience_s`; 0 is once.
+    """
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
     listen: tuple[str, ...] = ()
     mode: str = "client"
     namespace: str = ""
+    patience_s: float = PATIENCE_S
 
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
@@ -62,13 +66,14 @@ class Network:
         values: dict[str, Any] = {
             "mode": self.mode,
             "connect/endpoints": list(self.connect),
-            "connect/timeout_ms": -1 if node else int(PATIENCE_S * 1000),
+            "connect/timeout_ms": -1 if node else int(self.patience_s * 1000),
             "connect/exit_on_failure": not node,
             "connect/retry": retry,
             "listen/endpoints": list(self.listen),
             "scouting/multicast/enabled": False,
             "transport/shared_memory/enabled": False,
             "transport/link/tx/lease": 2000,
+            "transport/unicast/open_timeout": int(PATIENCE_S * 1000),
         }
         if self.namespace:
             values["namespace"] = self.namespace

@@ -16,6 +16,7 @@ from __future__ import annotations
 import contextlib
 import os
 import queue
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal
@@ -25,7 +26,8 @@ import zenoh
 from nodes import bus
 from nodes.extern.files import read_file
 from nodes.extern.sparql_client import StandingQuery
-from schemas import codec, commands, keys
+from nodes.supervisor import presence
+from schemas import codec, commands, errors, keys
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
@@ -35,6 +37,9 @@ from schemas.sparql import SparqlResult
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
+_START_S = 15.0
+"""Seconds: a system that is starting is waited for."""
+_AGAIN_S = 0.1
 
 
 def endpoint() -> str:
@@ -46,10 +51,32 @@ def endpoint() -> str:
 def connect(
     where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
 ) -> Iterator[Client]:
-    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
-    network = bus.Network(connect=(where or endpoint(),), namespace=namespace)
-    with bus.open_session(network) as session:
+    """A client of the system at `where`. Raises NoAnswer when nothing answers there.
+
+    That is said at once where this machine refuses the connection and no system is starting.
+    """
+    with _open_session(where or endpoint(), namespace) as session:
         yield Client(session, source=source, agent=agent)
+
+
+@contextlib.contextmanager
+def _open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
+    """A session with whoever listens at `where`, or will do so when the system has started."""
+    patience_s = 0.0 if presence.is_loopback(where) else bus.PATIENCE_S
+    network = bus.Network((where,), namespace=namespace, patience_s=patience_s)
+    deadline_s = time.monotonic() + _START_S
+    with contextlib.ExitStack() as stack:
+        while True:
+            try:
+                session = stack.enter_context(bus.open_session(network))
+                break
+            except errors.NoAnswer:
+                if not presence.is_announced(where):
+                    raise
+                if time.monotonic() > deadline_s:
+                    raise errors.NoAnswer(f"the system at {where} has not started yet") from None
+                time.sleep(_AGAIN_S)
+        yield session
 
 
 class Client:

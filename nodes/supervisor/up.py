@@ -15,6 +15,7 @@ from pathlib import Path
 from msgspec import structs
 
 from nodes import bus
+from nodes.supervisor import presence
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
 from schemas import errors, keys
@@ -39,13 +40,14 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     _require_free(settings.listen)
     if settings.record:
         settings = structs.replace(settings, live_view=_live_view())
-    say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
-    process = supervisor.start(settings)
-    try:
-        _Foreground(supervisor, settings, process, say).run()
-    finally:
-        _stop(process)
-        say("stopped")
+    with presence.announced(settings.reachable):
+        say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
+        process = supervisor.start(settings)
+        try:
+            _Foreground(supervisor, settings, process, say).run()
+        finally:
+            _stop(process)
+            say("stopped")
 
 
 class _Foreground:
