@@ -7,10 +7,9 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from nodes.perception_node.cloud import FEWEST_POINTS, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, Cloud
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.pipeline import Look
-from nodes.perception_node.projection import FARTHEST_M
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 

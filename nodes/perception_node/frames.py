@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud, Transform
-from nodes.perception_node.projection import cloud_of, fits
+from nodes.perception_node.projection import cloud_of, fits, is_pose
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -166,11 +166,8 @@ def _intrinsics(frame: CameraFrame) -> Transform:
 
 def _pose(frame: CameraFrame) -> Transform:
     numbers = np.array(frame.map_from_camera, dtype=float)
-    if numbers.size == 16 and np.isfinite(numbers).all():
-        pose = numbers.reshape(4, 4)
-        turn = pose[:3, :3]
-        if np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) and np.linalg.det(turn) > 0:
-            return pose
+    if numbers.size == 16 and is_pose(numbers.reshape(4, 4)):
+        return numbers.reshape(4, 4)
     raise BadRequest(
         f"camera {frame.camera}: its map_from_camera is no pose: a rotation, a position, 0 0 0 1"
     )
