@@ -56,6 +56,7 @@ class Node:
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
+        self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
@@ -168,6 +169,10 @@ class Node:
         send()
         return future
 
+    def afterwards(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` after the handler in hand has replied, and before any other event."""
+        self._afterwards.append(handle)
+
     def soon(self, handle: Callable[[], None]) -> None:
         """Call `handle()` on this node's own thread. Other threads hand over their results so."""
         self._events.put(handle)
@@ -241,6 +246,8 @@ class Node:
     def _guard(self, handle: Callable[[], None]) -> None:
         try:
             handle()
+            while self._afterwards:
+                self._afterwards.pop(0)()
         except errors.SemmapError as error:
             self.report(error.text)
         except Exception as error:

@@ -7,6 +7,7 @@ import uuid
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TypeVar
 
 from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
@@ -100,7 +101,7 @@ class KnowledgeBase:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit)
+            self._node.afterwards(partial(self._spread, commit))
         return commit
 
     def _not_written(self, error: NotWritten) -> None:
@@ -126,7 +127,7 @@ class KnowledgeBase:
                 self._not_written(error)
         new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
         for commit in new.values():
-            self._spread(commit)
+            self._node.afterwards(partial(self._spread, commit))
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
