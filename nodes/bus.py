@@ -48,7 +48,11 @@ class Encoded:
 
 @dataclass(frozen=True)
 class Network:
-    """How a process joins the system. `namespace` prefixes every key (one robot of many)."""
+    """How a process joins the system: a node listens, a client does not.
+
+    A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`
+    prefixes every key (one robot of many).
+    """
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
     listen: tuple[str, ...] = ()
@@ -57,7 +61,7 @@ class Network:
 
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
-        node = self.mode != "client"
+        node = bool(self.listen)
         retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
@@ -85,7 +89,7 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         session = zenoh.open(network.as_config())
     except zenoh.ZError as error:
         where = ", ".join((*network.listen, *network.connect))
-        if network.mode == "client" and "Unable to connect" in str(error):
+        if not network.listen and "Unable to connect" in str(error):
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if "Endpoints must be of the form" in str(error):
             raise errors.BadRequest(f"'{where}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}") from None

@@ -35,6 +35,7 @@ from schemas.sparql import SparqlResult
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
+_ON_THIS_MACHINE = ("tcp/127.", "tcp/localhost:", "tcp/[::1]:", "unixsock-stream/")
 
 
 def endpoint() -> str:
@@ -46,8 +47,13 @@ def endpoint() -> str:
 def connect(
     where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
 ) -> Iterator[Client]:
-    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
-    network = bus.Network(connect=(where or endpoint(),), namespace=namespace)
+    """A client of the system at `where`. Raises NoAnswer when nothing answers there.
+
+    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
+    """
+    where = where or endpoint()
+    mode = "peer" if where.startswith(_ON_THIS_MACHINE) else "client"
+    network = bus.Network(connect=(where,), mode=mode, namespace=namespace)
     with bus.open_session(network) as session:
         yield Client(session, source=source, agent=agent)
 
