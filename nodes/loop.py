@@ -246,13 +246,13 @@ class Node:
     def _guard(self, handle: Callable[[], None]) -> None:
         try:
             handle()
-            while self._afterwards:
-                self._afterwards.pop(0)()
         except errors.SemmapError as error:
             self.report(error.text)
         except Exception as error:
             log.exception("fault in %s", self.name)
             self.report(f"{type(error).__name__}: {error}")
+        while self._afterwards:
+            self._guard(self._afterwards.pop(0))
 
     def _handle(self, request: bus.Request, handlers: Handlers) -> None:
         try:

@@ -101,7 +101,7 @@ class KnowledgeBase:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._node.afterwards(partial(self._spread, commit))
+            self._spread(commit)
         return commit
 
     def _not_written(self, error: NotWritten) -> None:
@@ -109,9 +109,10 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk takes no commits")
 
     def _spread(self, commit: Commit) -> None:
+        """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit)
-        self._node.describe(self._summary())
-        self._sparql.follow(commit)
+        self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(lambda: self._node.describe(self._summary()))
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -127,7 +128,7 @@ class KnowledgeBase:
                 self._not_written(error)
         new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
         for commit in new.values():
-            self._node.afterwards(partial(self._spread, commit))
+            self._spread(commit)
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
