@@ -30,6 +30,7 @@ TIMEOUT_S = 30.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _JSON = "application/json"
+_NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
@@ -48,7 +49,10 @@ class Encoded:
 
 @dataclass(frozen=True)
 class Network:
-    """How a process joins the system. `namespace` prefixes every key (one robot of many).
+    """How a process joins the system: a node listens, a client does not.
+
+    A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`
+    prefixes every key (one robot of many).
 
     A client whose connection is refused tries again for `patience_s`; 0 is once.
     """
@@ -61,7 +65,7 @@ class Network:
 
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
-        node = self.mode != "client"
+        node = bool(self.listen)
         retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
@@ -90,7 +94,7 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         session = zenoh.open(network.as_config())
     except zenoh.ZError as error:
         where = ", ".join((*network.listen, *network.connect))
-        if network.mode == "client" and "Unable to connect" in str(error):
+        if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if "Endpoints must be of the form" in str(error):
             raise errors.BadRequest(f"'{where}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}") from None

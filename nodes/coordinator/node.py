@@ -18,7 +18,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
 from nodes.coordinator.running import Running
-from nodes.coordinator.talking import hold, hold_later
+from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Results, Turns
 from nodes.loop import Node, open_node, settle
 from schemas import commands as c
@@ -179,11 +179,10 @@ class Coordinator:
 
     def _change_together(self, changes: Sequence[c.Add | c.Update]) -> Future[Results]:
         """A change that comes alone is waited for: to be woken by another thread takes longer."""
-        talk = self._door.together(changes)
         if len(changes) > 1:
-            return hold_later(talk, self._bridge.change_later)
+            return hold_later(self._door.together(changes), self._bridge.change_later)
         future: Future[Results] = Future()
-        settle(future, lambda: hold(talk, self._bridge.ask))
+        settle(future, lambda: [self._door.change(changes[0])])
         return future
 
     def _once_there_is_a_body(self, changed: c.Changed) -> Future[c.Changed]:

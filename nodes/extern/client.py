@@ -40,6 +40,7 @@ _LONG_S = 700.0
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1
+_ON_THIS_MACHINE = ("tcp/127.", "tcp/localhost:", "tcp/[::1]:", "unixsock-stream/")
 
 
 def endpoint() -> str:
@@ -61,9 +62,16 @@ def connect(
 
 @contextlib.contextmanager
 def _open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
-    """A session with whoever listens at `where`, or will do so when the system has started."""
-    patience_s = 0.0 if presence.is_loopback(where) else bus.PATIENCE_S
-    network = bus.Network((where,), namespace=namespace, patience_s=patience_s)
+    """A session with whoever listens at `where`, or will do so when the system has started.
+
+    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
+    """
+    network = bus.Network(
+        connect=(where,),
+        mode="peer" if where.startswith(_ON_THIS_MACHINE) else "client",
+        namespace=namespace,
+        patience_s=0.0 if presence.is_loopback(where) else bus.PATIENCE_S,
+    )
     deadline_s = time.monotonic() + _START_S
     with contextlib.ExitStack() as stack:
         while True:

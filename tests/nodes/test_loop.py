@@ -171,6 +171,28 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
     assert 1 in done
 
 
+def test_what_comes_after_a_reply_does_not_keep_it_waiting_and_precedes_the_next_event(network):
+    node, client = network
+    order: list[str] = []
+    answered = threading.Event()
+
+    def await_the_answer():
+        assert answered.wait(5)
+        order.append("the first thing")
+
+    def answer(_):
+        node.afterwards(await_the_answer)
+        node.afterwards(lambda: fail(None))
+        node.afterwards(lambda: order.append("the last thing"))
+        node.soon(lambda: order.append("the next event"))
+        return commands.Done(text="done")
+
+    node.serve("semmap/first", {"get": (commands.Get, answer)})
+    assert bus.ask(client, "semmap/first", "get", commands.Get(name="x"), commands.Done).text == "done"
+    answered.set()
+    until(lambda: order == ["the first thing", "the last thing", "the next event"], "in that order")
+
+
 def asking_for(prefix, verb, name="x"):
     return commands.Explain(name=name, predicate=prefix, value=verb)
 
