@@ -21,19 +21,19 @@ Seen = Callable[[Sequence[Cloud], Look, float], None]
 """Told of clouds of one moment, what they show, and how long the look took [s]."""
 
 
-class Eye:
+class FrameWorker:
     """Looks at frames as fast as it can; those that come meanwhile are passed over."""
 
     def __init__(
         self, look: Callable[[Sequence[Cloud]], Look], on_look: Seen, complain: Callable[[str], None]
     ) -> None:
-        """`on_look` and `complain` are called on this eye's thread; `complain(text)` says what is wrong."""
+        """`on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
         self._look = look
         self._on_look = on_look
         self._complain = complain
         self._frames = Frames()
         self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="eye", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="frames", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
