@@ -21,7 +21,7 @@ import zenoh
 from zenoh import ext
 
 from schemas import codec, errors, keys
-from schemas.commands import Document
+from schemas.replies import Document
 from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"

@@ -27,6 +27,7 @@ from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Snapshot
 from schemas.entities import BodyState
 from schemas.health import Health
+from schemas.replies import Changed
 from schemas.scenes import Poses
 
 _WAIT_S = 20.0
@@ -62,7 +63,7 @@ class Coordinator:
         self._fetching = False
         self._changed: set[str] = set()
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
-        self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
+        self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
         running = Running(config.truth, door, self._keeping, self._ask_sim)
@@ -185,8 +186,8 @@ class Coordinator:
         settle(future, lambda: [self._door.change(changes[0])])
         return future
 
-    def _once_there_is_a_body(self, changed: c.Changed) -> Future[c.Changed]:
-        future: Future[c.Changed] = Future()
+    def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
+        future: Future[Changed] = Future()
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
         return future
 
@@ -205,7 +206,7 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _noted(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], c.Changed]:
+    def _noted(self, change: Callable[[Any], Changed]) -> Callable[[Any], Changed]:
         """Where the map does not own existence, what is removed from it only comes back."""
         if self._config.truth == "map":
             return change
@@ -214,7 +215,7 @@ class Coordinator:
             "perceived": "perception is the truth here: what it still sees comes back",
         }[self._config.truth]
 
-        def noted(command: Any) -> c.Changed:
+        def noted(command: Any) -> Changed:
             changed = change(command)
             return structs.replace(changed, notes=(*changed.notes, note))
 

@@ -12,9 +12,10 @@ from nodes.kb_node.second_opinion import owlrl_faults
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Checked, Document, Explain, Inferred, RdfFormat
+from schemas.commands import Explain, RdfFormat
 from schemas.entities import Entity
 from schemas.explanations import Explanation, Term, Triple
+from schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:

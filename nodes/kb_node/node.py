@@ -32,21 +32,15 @@ from schemas.bridge import (
 )
 from schemas.commands import (
     Check,
-    Checked,
     Classes,
-    Document,
-    Done,
     Explain,
     Export,
     Get,
     History,
     Infer,
-    Inferred,
     LastSeen,
     List,
-    LoggedCommit,
     Renew,
-    Sighting,
     Sparql,
     Undo,
     Watch,
@@ -55,6 +49,7 @@ from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation, Triple
 from schemas.health import LOADING
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0

@@ -30,11 +30,12 @@ from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracks import Tracks
 from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
-from schemas.commands import Add, Changed, Classes, Command, LastSeen, Sighting
+from schemas.commands import Add, Classes, Command, LastSeen
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Size
 from schemas.errors import UnknownName
 from schemas.health import Health
+from schemas.replies import Changed, Sighting
 
 _COMPLAINT_S = 60.0
 """What is wrong is over when it was not heard of for so long."""

@@ -15,7 +15,8 @@ from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import open_world
 from schemas import codec, keys, wording
-from schemas.commands import Done, Pause, Reset, StepOnce
+from schemas.commands import Pause, Reset, StepOnce
+from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
     Delete,

@@ -15,9 +15,10 @@ from schemas import commands as c
 from schemas import errors
 from schemas.commits import Commit, Transaction
 from schemas.entities import Pose, orientation_from_yaw
+from schemas.replies import Changed
 
 
-def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> c.Changed:
+def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
     return door.change(c.Add(class_=class_, name=name, **fields))
 
 
@@ -149,7 +150,7 @@ def test_perception_may_move_but_not_redefine_what_an_operator_put_in(door):
         door.remove(c.Remove(names=("chair1",), source="perception"))
 
 
-def load(door: Door, text: str, **fields) -> c.Changed:
+def load(door: Door, text: str, **fields) -> Changed:
     return door.load(c.Load(content=text.encode(), filename="scene.json", **fields))
 
 

@@ -18,10 +18,11 @@ from nodes.perception_node.node import Perception
 from nodes.perception_node.pipeline import Look
 from schemas import codec, errors, keys
 from schemas.bridge import SnapshotQuery
-from schemas.commands import Add, Changed, Classes, LastSeen, Sighting
+from schemas.commands import Add, Classes, LastSeen
 from schemas.commits import Commit, Snapshot
 from schemas.entities import ClassInfo, Provenance
 from schemas.perception import Observations
+from schemas.replies import Changed, Sighting
 from tests.conftest import free_endpoint, until
 from tests.perception_node.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen

@@ -9,8 +9,9 @@ from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.hands import Hands
 from nodes.coordinator.talking import Ask, Talk, hold, in_step
 from schemas import errors
-from schemas.commands import Add, Changed, Clear, Load, Remove, Undo, Update
+from schemas.commands import Add, Clear, Load, Remove, Undo, Update
 from schemas.entities import Pose
+from schemas.replies import Changed
 
 
 class Door(MapView):

@@ -12,10 +12,10 @@ from rich.tree import Tree
 
 from nodes.extern.cli.tables import author, card, pose_cells, pose_text, printable, provenance_text, table
 from schemas import wording
-from schemas.commands import Changed, Inferred, SystemStatus
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
+from schemas.replies import Changed, Inferred, SystemStatus
 
 _WIDE = 100_000
 _WORDY = ("class", "size [m]", "reference")

@@ -8,8 +8,8 @@ from msgspec import structs
 from rich.console import Console
 
 from nodes.extern.cli import show, show_past, tables
-from schemas.commands import LoggedCommit, NodeStatus, SystemStatus
 from schemas.entities import BodyState, Entity, Pose, Provenance
+from schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
 
 def entity(name, size_m=(0.0802, 0.125, 0.095)):
