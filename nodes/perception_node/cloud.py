@@ -12,8 +12,8 @@ Transform = NDArray[np.float64]
 
 FEWEST_POINTS = 10
 """In fewer nothing can be found."""
-FARTHEST_M = 100.0
-"""No depth camera measures as far."""
+NEAREST_M, FARTHEST_M = 0.01, 100.0
+"""No depth camera measures as near, or as far."""
 
 
 @dataclass(frozen=True)

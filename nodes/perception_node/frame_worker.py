@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.pipeline import Look
 from schemas.errors import BadRequest
@@ -73,5 +73,5 @@ class FrameWorker:
             size = f"{frame.width} x {frame.height} pixels"
             self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
         if cloud.measured < FEWEST_POINTS:
-            self._complain(f"camera {frame.camera} measures no depth between 0 and {FARTHEST_M:g} m")
+            self._complain(f"camera {frame.camera} measures no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
         return cloud

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import FARTHEST_M, Cloud, Transform
+from nodes.perception_node.cloud import FARTHEST_M, NEAREST_M, Cloud, Transform
 
 _FOCAL = (0.1, 20.0)
 """A focal length is this many times as long as its picture is wide and high: a view of 3 to 157 degrees."""
@@ -49,7 +49,7 @@ def cloud_of(
 ) -> Cloud:
     """The points that a depth picture (H, W) [m] sees, 0 or NaN for nothing; the first pixel's middle is 0.5.
 
-    What is as far as `FARTHEST_M` was not measured either.
+    What is as near as `NEAREST_M` or as far as `FARTHEST_M` was not measured either.
 
     Raises ValueError where picture, colours and intrinsics do not fit together.
     """
@@ -62,7 +62,7 @@ def cloud_of(
         raise ValueError("intrinsics are three rows of three numbers with positive focal lengths")
     right = ((np.arange(width) + 0.5 - intrinsics[0, 2]) / intrinsics[0, 0]).astype(np.float32)
     down = ((np.arange(height) + 0.5 - intrinsics[1, 2]) / intrinsics[1, 1]).astype(np.float32)
-    seen = np.where((depth_m > 0.0) & (depth_m < FARTHEST_M), depth_m, np.float32(np.nan))
+    seen = np.where((depth_m > NEAREST_M) & (depth_m < FARTHEST_M), depth_m, np.float32(np.nan))
     points = np.empty((height, width, 3), np.float32)
     points[..., 0], points[..., 1], points[..., 2] = seen * right, seen * down[:, None], seen
     return Cloud(points, rgb, map_from_camera, intrinsics, camera, stamp_ns)

@@ -192,7 +192,7 @@ def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
 
 
 NAN = float("nan")
-NOTHING = "camera left measures no depth between 0 and 100 m"
+NOTHING = "camera left measures no depth from 0.01 to 100 m"
 BAD = {
     "the past": ({"stamp_ns": -5_000_000_000}, "a frame of the past is passed over"),
     "sizes": ({"rgb": {"width": 32}}, "its picture has 32 x 48 pixels, its depth 64 x 48"),

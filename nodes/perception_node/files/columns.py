@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import FARTHEST_M, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, NEAREST_M, Cloud
 
 MAX_POINTS = 50_000_000
 """No frame has more; a header that says so is damaged."""
@@ -40,13 +40,14 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
     """The cloud of columns of (height * width,) each: `x`, `y`, `z` [m], and colours where there are any.
 
     Colours are packed as 0xRRGGBB in `rgb` or `rgba`, an integer or the same bits called a float, or stand in
-    `red`, `green` and `blue`. Points without a number, or farther than any camera measures, become NaN.
+    `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN.
     Raises ValueError for missing columns.
     """
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
     points = np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1)
-    points[~(np.abs(points) < FARTHEST_M).all(axis=-1)] = np.nan  # NaN is not less
+    measured = (np.abs(points) < FARTHEST_M).all(axis=-1) & (points[:, 2] > NEAREST_M)  # NaN is not
+    points[~measured] = np.nan
     colors = _colors(columns)
     return Cloud(
         points_camera=points.reshape(height, width, 3),

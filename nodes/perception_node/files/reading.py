@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
 from nodes.perception_node.files import pcd, pictures, ply
 from schemas.errors import BadFile, BadRequest
 from schemas.wording import counted
@@ -53,8 +53,8 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
         raise BadFile(f"{path} is empty: it has no points")
     if cloud.measured < FEWEST_POINTS:
         raise BadFile(
-            f"{path} has {counted(cloud.measured, 'point')} in front of the camera and nearer than"
-            f" {FARTHEST_M:g} m; at least {FEWEST_POINTS} are needed"
+            f"{path} has {counted(cloud.measured, 'point')} from {NEAREST_M:g} to {FARTHEST_M:g} m before the"
+            f" camera; at least {FEWEST_POINTS} are needed"
         )
     return cloud
 
