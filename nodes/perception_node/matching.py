@@ -107,7 +107,10 @@ def match(
 
 
 def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
-    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never."""
+    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never.
+
+    The assignment problem, as SciPy solves it (Jonker-Volgenant).
+    """
     costs = np.array([[cost(a, b) for b in columns] for a in rows]).reshape(len(rows), len(columns))
     pairs = zip(*linear_sum_assignment(np.minimum(costs, _PROHIBITIVE)), strict=True)
     return [(int(i), int(j)) for i, j in pairs if costs[i, j] < _PROHIBITIVE]

@@ -94,7 +94,7 @@ def _rays(rows: NDArray[np.intp], columns: NDArray[np.intp], intrinsics: Transfo
 def _crossing(
     rays: Transform, camera_from_box: Transform, half: Transform
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The depths [m] at which each ray enters and leaves the box; it misses where they are not in order."""
+    """The depths [m] at which each ray enters and leaves the box, by slabs; it misses where out of order."""
     rotation, middle = camera_from_box[:3, :3], camera_from_box[:3, 3]
     eye = -middle @ rotation
     directions = rays @ rotation
