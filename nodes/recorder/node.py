@@ -97,10 +97,9 @@ class Recorder:
         anew = snapshot.seq < self._map.seq
         self._map.begin(snapshot)
         self._map.relate(stars)
-        for commit in sorted(self._early, key=lambda commit: commit.seq):
-            self._map.take(commit)
+        early = sorted(self._early, key=lambda commit: commit.seq)
+        self._has_map = all([self._map.take(commit) for commit in early])  # else one between is missing
         self._early.clear()
-        self._has_map = True
         self._at(time.time_ns(), self._map.seq)
         if first or anew:
             known = wording.entities(len(self._map.entities))

@@ -66,6 +66,7 @@ class World:
         self.health = None
         self.refusal = None
         self.names_of_old = set()
+        self.snapshot = lambda: Snapshot(seq=1, entities=())
         self._seq = 1
         self._stamp_ns = 0
         self._commits = bus.publisher(session, keys.COMMIT)
@@ -75,7 +76,7 @@ class World:
         self.node.serve(
             keys.BRIDGE,
             {
-                "snapshot": (SnapshotQuery, lambda _: Snapshot(seq=1, entities=())),
+                "snapshot": (SnapshotQuery, lambda _: self.snapshot()),
                 "classes": (Classes, lambda _: CLASSES),
                 "last-seen": (LastSeen, self._last_seen),
             },
@@ -114,9 +115,13 @@ class World:
             raise self.refusal
         self._seq += 1
         made = entity(command.name, command.class_, at(*command.at), command.size, source="perception")
-        commit = Commit(seq=self._seq, stamp_ns=1, id=str(self._seq), source="perception", changed=(made,))
-        self._commits.put(codec.encode(commit))
+        self.announce(self._seq, made)
         return Changed(commit=self._seq, text="added", names=(command.name,))
+
+    def announce(self, seq, *changed):
+        """Publish a commit."""
+        commit = Commit(seq=seq, stamp_ns=1, id=str(seq), source="perception", changed=changed)
+        self._commits.put(codec.encode(commit))
 
     def _last_seen(self, query):
         if query.name not in self.names_of_old:
@@ -180,6 +185,22 @@ def test_a_name_that_something_had_before_this_process_began_is_not_given_again(
     world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity, "the map has it")
     (add,) = world.told
     assert (add.name, add.reason, world.seen[-1].observations[0].entity) == ("cup3", "cup3 was seen", "cup3")
+
+
+def test_a_commit_that_comes_before_a_snapshot_without_it_is_not_lost(world):
+    cup = entity("my_cup", "Cup", CUP.pose, CUP.size_m)
+    snapshots = iter((Snapshot(seq=3, entities=()), Snapshot(seq=4, entities=(cup,))))
+
+    def snapshot():
+        found = next(snapshots)
+        if found.seq == 3:
+            world.announce(4, cup)
+            time.sleep(0.2)  # the commit is there first
+        return found
+
+    world.snapshot = snapshot
+    world.announce(3)  # the second was missed
+    world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity == "my_cup", "it is found")
 
 
 def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
