@@ -50,8 +50,10 @@ def test_infer_says_what_was_not_said(furnished):
     [
         ("chair1", "a", "Chair", {"chair1 type Chair"}),
         ("chair1", "type", "Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
+        ("chair1", "rdf:type", "dm:Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
         ("kitchen1", "a", "Location", {"chair1 isLocatedIn kitchen1", "isLocatedIn range Location"}),
         ("chair1", "isLocatedIn", "kitchen1", {"chair1 isLocatedIn kitchen1"}),
+        ("chair1", "dm:isLocatedIn", ":kitchen1", {"chair1 isLocatedIn kitchen1"}),
         ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
     ],
 )
