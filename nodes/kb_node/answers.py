@@ -135,7 +135,8 @@ def _predicate(semantic_map: SemanticMap, word: str) -> Term:
         for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
     }
     if word not in names:
-        raise errors.BadRequest(f"unknown property '{word}'{errors.did_you_mean(word, names)}")
+        hint = errors.did_you_mean(word, names) or "; there are type and the properties of the TBox"
+        raise errors.BadRequest(f"unknown property '{word}'{hint}")
     return names[word]
 
 

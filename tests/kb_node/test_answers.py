@@ -68,6 +68,13 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
         ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
         ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
         ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
+        (
+            "chair1",
+            "xyz",
+            "kitchen1",
+            errors.BadRequest,
+            "'xyz'; there are type and the properties of the TBox",
+        ),
         ("chair1", "a", "Door", errors.Refused, "it does not hold that chair1 is of class Door"),
         (
             "chair1",
