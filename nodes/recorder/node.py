@@ -98,7 +98,7 @@ class Recorder:
         self._map.begin(snapshot)
         self._map.relate(stars)
         early = sorted(self._early, key=lambda commit: commit.seq)
-        self._has_map = all([self._map.take(commit) for commit in early])  # else one between is missing
+        self._has_map = all(self._map.take(commit) for commit in early)  # else one between is missing
         self._early.clear()
         self._at(time.time_ns(), self._map.seq)
         if first or anew:
