@@ -145,7 +145,7 @@ def ask(
             continue
         if time.monotonic() > deadline:
             _nobody(key)
-        time.sleep(0.05)
+        time.sleep(0.01)
 
 
 def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:

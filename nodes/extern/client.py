@@ -40,7 +40,6 @@ _LONG_S = 700.0
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1
-_ON_THIS_MACHINE = ("tcp/127.", "tcp/localhost:", "tcp/[::1]:", "unixsock-stream/")
 
 
 def endpoint() -> str:
@@ -66,11 +65,12 @@ def _open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
 
     On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
     """
+    here = presence.is_loopback(where)
     network = bus.Network(
         connect=(where,),
-        mode="peer" if where.startswith(_ON_THIS_MACHINE) else "client",
+        mode="peer" if here else "client",
         namespace=namespace,
-        patience_s=0.0 if presence.is_loopback(where) else bus.PATIENCE_S,
+        patience_s=0.0 if here else bus.PATIENCE_S,
     )
     deadline_s = time.monotonic() + _START_S
     with contextlib.ExitStack() as stack:
