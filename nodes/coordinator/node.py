@@ -102,7 +102,7 @@ class Coordinator:
     # Following
 
     def _on_commit(self, commit: Commit) -> None:
-        if self._has_map and (not self._door.take(commit) or commit.tbox):
+        if not self._door.take(commit) or commit.tbox:
             self._fetch_map()
         self._changed.update(commit.names)
 
@@ -117,7 +117,7 @@ class Coordinator:
             self._fetch_map()
 
     def _tick(self) -> None:
-        if not self._has_map or self._door.doubted:
+        if not self._has_map or self._door.doubted or self._door.is_behind:
             self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()

@@ -67,7 +67,6 @@ class Perception:
         self._kb_started_ns = 0
         self._untold = 0
         self._told_commit = 0
-        self._heard_commit = 0
         self._refused: dict[str, float] = {}
         self._complaints: dict[str, float] = {}
         self._observations = bus.publisher(node.session, keys.OBSERVATIONS)
@@ -175,19 +174,18 @@ class Perception:
         self._on_complaint(f"the map did not take what was seen: {error}")
 
     def _on_commit(self, commit: Commit) -> None:
-        self._heard_commit = max(self._heard_commit, commit.seq)
-        if self._map.seq >= 0 and (not self._map.take(commit) or commit.tbox):
+        if not self._map.take(commit) or commit.tbox:
             self._fetch_map()
 
     def _on_health(self, health: Health) -> None:
         """A new knowledge base may know another map."""
         if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
             self._kb_started_ns = health.started_ns
-            self._heard_commit = 0
+            self._map.doubt()
             self._fetch_map()
 
     def _tick(self) -> None:
-        if self._map.seq < max(0, self._heard_commit):  # a commit may come before a snapshot that lacks it
+        if self._map.seq < 0 or self._map.is_behind:
             self._fetch_map()
         elif time.monotonic() - self._looked_at > _NO_FRAMES_S:
             self._node.describe("no frames of cameras come")
