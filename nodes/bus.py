@@ -21,7 +21,7 @@ import zenoh
 from zenoh import ext
 
 from schemas import codec, errors, keys
-from schemas.replies import Document
+from schemas.replies import Ack, Document
 from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -289,8 +289,8 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
-            body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
-            acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
+            reply, error = (message, None) if ok else (None, message)
+            acks.put(encode(Ack(id=str(said.get("id", "")), verb=verb, ok=ok, reply=reply, error=error)))
 
         receive(Request(verb, payload, {}, send))
 
@@ -371,12 +371,6 @@ def follow_cameras(
             refuse(f"{sample.key_expr}: {error.text}")
 
     session.declare_subscriber(keys.camera_key("*", plane), on_sample)
-
-
-def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:
-    """The nodes whose liveliness token is there."""
-    replies = session.liveliness().get(keys.live_key(node), timeout=2.0)
-    return {str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok is not None}
 
 
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:

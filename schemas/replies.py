@@ -7,6 +7,7 @@ from typing import Any, Literal
 from msgspec import Struct
 
 from schemas.entities import Pose, Probability, Provenance, Source
+from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation, Triple
 
 
@@ -124,4 +125,4 @@ class Ack(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     verb: str
     ok: bool
     reply: Any = None
-    error: Any = None
+    error: ErrorMessage | None = None
