@@ -65,7 +65,7 @@ class Patterns:
 
 
 def _read(pattern: _Pattern, run: Run, provenance: Provenance) -> Entity | None:
-    names, others = list(run.individuals), run.others
+    names, others = run.individuals, run.others
     try:
         position = _numbers(pattern.position, others)
         size = _numbers(pattern.size, others)
@@ -140,18 +140,19 @@ class _Said:
 
     def __init__(self, run: Run) -> None:
         self._others = run.others
-        self.entity = next(iter(run.individuals))
+        self.entity = run.individuals[0]
         self.classes: list[Term] = []
         """Those asserted of the entity."""
         self._nodes: dict[tuple[int, Term], list[int]] = {}
         self._places: dict[tuple[int, Term], list[int]] = {}
         place = count()
+        places = run.places
         for s, p, o in run.triples:
-            subject = run.individuals[s]
+            subject = places[s]
             if p == v.RDF_TYPE:
                 self.classes += [o] if subject == 0 else []
-            elif o in run.individuals:
-                self._nodes.setdefault((subject, p), []).append(run.individuals[o])
+            elif o in places:
+                self._nodes.setdefault((subject, p), []).append(places[o])
             else:
                 self._places.setdefault((subject, p), []).append(next(place))
 

@@ -112,7 +112,7 @@ def _read_at_sight(
         if change.others.isdisjoint(individuals):
             entity = reading.patterns.read(star, reading.reasoner, reading.classes, provenance)
             if entity is not None:
-                read[next(iter(individuals))] = entity
+                read[individuals[0]] = entity
                 seen.update(individuals)
     return read, seen
 
