@@ -96,8 +96,7 @@ def _numbers(places: Places | None, others: Sequence[Term]) -> tuple[float, ...]
         return None
     found = []
     for place in places:
-        term = others[place]
-        value = float(term[1 : term.rindex('"')])
+        value = float(others[place].split('"', 2)[1])
         if not abs(value) <= REACH_M:
             raise ValueError
         found.append(value)

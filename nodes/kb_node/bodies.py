@@ -39,10 +39,11 @@ class EarlyBody:
     def __init__(self, commit: Commit) -> None:
         self._deflate = zlib.compressobj(codec.DENSITY)
         self._head: Future[bytes] = Future()
-        head = codec.encode(structs.replace(commit, changed=(), removed=())).removesuffix(_NONE)
-        Thread(target=self._compress, args=(head,), daemon=True).start()
+        whole = memoryview(codec.encode(structs.replace(commit, changed=(), removed=())))
+        assert whole[-len(_NONE) :] == _NONE
+        Thread(target=self._compress, args=(whole[: -len(_NONE)],), daemon=True).start()
 
-    def _compress(self, head: bytes) -> None:
+    def _compress(self, head: memoryview) -> None:
         self._head.set_result(self._deflate.compress(head))
 
     def finish(self, commit: Commit) -> bytes:

@@ -62,7 +62,7 @@ def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches 
     if sum(len(batch.triples) for batch in found) < _MANY:
         return None, end
     names = list(chain.from_iterable(column for batch in found for column in batch.individuals))
-    terms = list({term for batch in found for column in batch.others for term in column})
+    terms = set[Term]().union(*(column for batch in found for column in batch.others))
     kinds = runs.kinds_of(terms) if runs.are_new(names) else None
     if kinds is None:
         return None, end
@@ -71,7 +71,7 @@ def batches(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[Batches 
 
 
 def _by_form(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[list[Batch], int]:
-    """The runs of each form, of no kinds yet; none where one says something else than its predicates promise."""
+    """The runs of each form, of no kinds yet; none where one has another form than its predicates promise."""
     rows: dict[Form, list[tuple[Terms, Sequence[Triple]]]] = {}
     end = start
     for _ in range(_MOST):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import itemgetter
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.store import Store
@@ -21,6 +21,7 @@ Words = tuple[tuple[int, Term, int | Term | None], ...]
 Terms = tuple[Term, ...]
 _T = TypeVar("_T")
 Parts = tuple[tuple[_T, ...], tuple[_T, ...]]
+_QUOTE, _FIRST = '"', itemgetter(0)
 _LONGEST = 64
 """Triples of a run that has a form; a home's entities have about twenty."""
 _MOST = 2000
@@ -130,7 +131,7 @@ class Runs:
     def guesses(
         self, triples: Sequence[Triple], start: int
     ) -> Iterator[tuple[Form, Terms, Sequence[Triple]]]:
-        """The forms that the run which begins there may have, by its predicates; what it says, its triples."""
+        """The forms that the run there may have by its predicates, with what it says and its triples."""
         s, p, o = triples[start]
         if s not in self._store.numbers:
             for form in self._beginning.get(_beginning(p, o), ()):
@@ -142,7 +143,7 @@ class Runs:
     def are_new(self, names: Sequence[Term]) -> bool:
         """Whether they are different individuals, of whom nothing is known."""
         is_known = not self._store.numbers.keys().isdisjoint(names)
-        return not is_known and len(set(names)) == len(names) and not any(map(is_literal, names))
+        return not is_known and len(set(names)) == len(names) and _QUOTE not in set(map(_FIRST, names))
 
     def _read(self, triples: Sequence[Triple], start: int) -> Run:
         """The run that begins there, word by word."""
@@ -178,7 +179,7 @@ class Runs:
             node = numbers.get(term)
             if node is not None:
                 kinds.append(kind[node])
-            elif is_literal(term):
+            elif term[0] == _QUOTE:
                 kinds.append(literal(term))
             else:
                 return None

@@ -36,16 +36,17 @@ class Written:
     touched: tuple[int, ...]
     """The places of those that are subjects or have a named class."""
 
-    def touched_of(self, run: Run) -> list[Term]:
-        """What is touched of a run's individuals."""
-        return [run.individuals[place] for place in self.touched]
-
 
 class Alike(NamedTuple):
     """A run and its shape. Runs of one shape have their triples in one order, and their objects by kind."""
 
     shape: Written
     run: Run
+
+    @property
+    def touched(self) -> list[Term]:
+        """Those of its individuals that are subjects or have a named class."""
+        return [self.run.individuals[place] for place in self.shape.touched]
 
 
 class Contradiction(NamedTuple):
@@ -73,9 +74,9 @@ class Shapes:
         return self._runs.of(triples, start, len(triples) if stop is None else stop)
 
     def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[Alike], int]:
-        """Write down the runs of known shapes that begin there and follow one another, and where they end.
+        """Write down the runs of known shapes that begin there and follow one another; and where they end.
 
-        None, and nothing done, where they are few, not so plain, or free places in the store are to be filled.
+        None, and nothing done, where they are few or not so plain, or holes in the store are to be filled.
         """
         store = self._abox.store
         if store.holes > len(triples) - start:
@@ -173,7 +174,7 @@ class Shapes:
         return store.edge(store.numbers[triple[0]], predicate, store.numbers[triple[2]])
 
     def _layout(self, individuals: list[int], others: list[int], edges: dict[int, int]) -> Layout:
-        """How individuals stand in the store, with all edges that leave from them and the places of the objects."""
+        """How individuals stand in the store, with the `edges` that leave from them and where these lead."""
         store, out = self._abox.store, self._abox.store.out
         place = {node: i for i, node in enumerate(individuals)}
         index = {edge: i for i, edge in enumerate(edges)}

@@ -115,8 +115,8 @@ class Store:
 
     @property
     def holes(self) -> int:
-        """How many edges there is room for between others."""
-        return len(self._free_edges)
+        """For how many nodes or edges, whichever is more, there is room between others."""
+        return max(len(self._free_nodes), len(self._free_edges))
 
     def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
         """Store a new edge."""
@@ -176,13 +176,14 @@ class Store:
         """
         count, width, length = len(individuals[0]), len(layout.kinds), len(layout.edges)
         rows, edges = self._more_nodes(count * width), self._more_edges(count * length)
+        _put(self.kind, rows, layout.kinds * count)
+        _put(self.predicate, edges, [p for _, p, _ in layout.edges] * count)
         nodes: list[Sequence[int]] = []
         for place, (terms, kind) in enumerate(zip(individuals, layout.kinds, strict=True)):
             here = rows[place::width]
             nodes.append(here)
             self.numbers.update(zip(terms, here, strict=True))
             _put(self.terms, here, terms)
-            _put(self.kind, here, [kind] * count)
             if kind.mask:
                 _put(self._places, here, range(len(kind.nodes), len(kind.nodes) + count))
                 kind.nodes.extend(here)
@@ -190,7 +191,6 @@ class Store:
         for at, (s, p, o) in enumerate(layout.edges):
             here = edges[at::length]
             _put(self.subject, here, nodes[s])
-            _put(self.predicate, here, [p] * count)
             _put(self.object, here, nodes[o])
             self.into.link_each(nodes[o], here, p)
         for place, at in layout.heads:

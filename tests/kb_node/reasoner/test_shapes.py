@@ -4,9 +4,10 @@ import pytest
 from hypothesis import given, note
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, batches
 from nodes.kb_node.reasoner.sentences import sentence
-from nodes.kb_node.reasoner.shapes import Contradiction, Written
+from nodes.kb_node.reasoner.shapes import Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.store import Store
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed
 from tests.kb_node.reasoner.graphs import (
@@ -44,6 +45,15 @@ def named(run, name, values):
     return [triple(" ".join(map(word, part))) for part in run]
 
 
+@pytest.fixture(params=[False, True], ids=["singly", "in batches"])
+def by_columns(request, monkeypatch):
+    """Whether few runs are read and written together, as else many are."""
+    if request.param:
+        monkeypatch.setattr(batches, "_MANY", 1)
+        monkeypatch.setattr(Store, "holes", 0)
+
+
+@pytest.mark.usefixtures("by_columns")
 @sequences(100)
 @given(
     RUNS, st.lists(st.sampled_from(sorted(set(LITERALS) - {KNOWN})), min_size=24, max_size=24), st.booleans()
@@ -76,6 +86,7 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
         check_same(reasoner, asserted, BASE)
 
 
+@pytest.mark.usefixtures("by_columns")
 @sequences(30)
 @given(st.lists(RUNS, min_size=1, max_size=5), st.permutations(range(24)), st.data())
 def test_all_at_once_is_one_by_one(runs, order, data):
@@ -155,3 +166,64 @@ def test_a_constant_that_is_no_longer_as_it_was():
     assert reasoner.holds(triple(":here a :Place"))
     reasoner.apply(delete=triples(":b a :K ."))
     assert not reasoner.holds(triple(":here a :Place"))
+
+
+def load(names, value=lambda i: f"{i}.5"):
+    turtle = "".join(
+        f":{name} a :C , :K ; :p :{name}1 ; :n {value(i)} . :{name}1 :n 2 ." for i, name in enumerate(names)
+    )
+    return triples(turtle)
+
+
+def names(count, stem="a"):
+    return [f"{stem}{i}_" for i in range(count)]
+
+
+@pytest.fixture
+def batched(monkeypatch):
+    """How many runs were written together, each time."""
+    sizes = []
+    write_all = Shapes.write_all
+
+    def counted(self, triples, start):
+        alike, end = write_all(self, triples, start)
+        sizes.append(len(alike))
+        return alike, end
+
+    monkeypatch.setattr(Shapes, "write_all", counted)
+    return sizes
+
+
+def test_a_load_is_written_by_columns(batched):
+    home = triples(HOME)
+    reasoner = Reasoner(home)
+    reasoner.apply(insert=load(names(300)))
+    assert max(batched) > 200
+    assert reasoner.holds(triple(":a299_ :q :here"))
+    assert reasoner.holds(triple(":a299_1 a :D"))
+    for name in names(300):
+        reasoner.apply(delete=load([name], lambda _, name=name: f"{int(name[1:-1])}.5"))
+    assert set(reasoner.asserted()) == set(home)
+
+
+def test_what_is_free_is_filled_before_a_load_makes_room(batched):
+    reasoner = Reasoner(triples(HOME))
+    reasoner.apply(insert=load(names(300)))
+    reasoner.apply(delete=load(names(300)))
+    room = len(reasoner._engine._abox.store.subject)
+    reasoner.apply(insert=load(names(300, "b")))
+    assert len(reasoner._engine._abox.store.subject) == room
+
+
+def test_a_load_that_says_more_of_one_is_as_if_said_singly(batched):
+    reasoner = Reasoner(triples(HOME))
+    reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "7.5")])
+    assert len(list(reasoner.asserted(triple(":a7_ :p :a7_1")[0]))) == 4
+
+
+def test_a_load_with_a_contradiction_in_it_is_undone(batched):
+    home = triples(HOME)
+    reasoner = Reasoner(home)
+    with pytest.raises(Inconsistent, match="a7_"):  # :n is functional
+        reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "8")])
+    assert set(reasoner.asserted()) == set(home)
