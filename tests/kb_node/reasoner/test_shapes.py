@@ -29,6 +29,13 @@ LINKS = st.tuples(
     st.one_of(st.integers(0, 2), st.sampled_from(OTHERS)),
 )
 VALUES = st.tuples(st.integers(0, 2), st.sampled_from(prefixed("", DATA_PROPERTIES)), st.just("value"))
+
+
+def sorted_by_subject(run):
+    """As people write it, an individual with what is said of it, beginning with the first."""
+    return sorted(run, key=lambda part: part[0])
+
+
 RUNS = st.lists(st.one_of(TYPES, TYPES, LINKS, VALUES), min_size=1, max_size=6)
 """Runs without names: individuals by number, literals to be chosen."""
 BEFORE = [triple(text) for text in (":old a :F", ":older a :F", ":older :free :i2")]
@@ -227,3 +234,45 @@ def test_a_load_with_a_contradiction_in_it_is_undone(batched):
     with pytest.raises(Inconsistent, match="a7_"):  # :n is functional
         reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "8")])
     assert set(reasoner.asserted()) == set(home)
+
+
+PLAIN = st.lists(
+    st.one_of(
+        st.tuples(st.integers(0, 2), st.just("a"), st.sampled_from([":B", ":C", ":K"])),
+        st.tuples(st.integers(0, 2), st.sampled_from([":r", ":t"]), st.sampled_from([0, 1, 2, ":d", ":e"])),
+        st.tuples(st.integers(0, 2), st.sampled_from([":v", ":w"]), st.just("value")),
+    ),
+    min_size=2,
+    max_size=12,
+    unique=True,
+).map(sorted_by_subject)
+
+
+@sequences(60)
+@given(
+    PLAIN, st.lists(st.sampled_from(['"1.5"^^xsd:float', '"2"^^xsd:float', '"x"']), min_size=80, max_size=80)
+)
+def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
+    home = [*triples(HOME), *triples(":d a :B . :e a :B .")]
+    values = iter(literals)
+    loads = [[fact for name in group for fact in named(run, name, values)] for group in ("a", "bcd", "efg")]
+    singly, by_columns = Reasoner(home), Reasoner(home)
+    for insert in loads:
+        singly.apply(insert=insert)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(batches, "_MANY", 1)
+        patch.setattr(Store, "holes", 0)
+        for insert in loads:
+            by_columns.apply(insert=insert)
+    gone = loads[1][::2]
+    for delete in ([], gone, loads[2]):
+        for reasoner in (singly, by_columns):
+            reasoner.apply(delete=delete)
+        assert set(singly.asserted()) == set(by_columns.asserted())
+        assert set(singly.inferred()) == set(by_columns.inferred())
+        for cls in (":B", ":C", ":D", ":K", ":Place"):
+            term = triple(f":x a {cls}")[2]
+            assert set(singly.instances(term)) == set(by_columns.instances(term))
+        for s, p, o in singly.asserted():
+            assert list(by_columns.asserted(s, p, o)) == [(s, p, o)]
+            assert set(by_columns.asserted(None, p, o)) == set(singly.asserted(None, p, o))
