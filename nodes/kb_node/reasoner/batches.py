@@ -75,7 +75,7 @@ def _by_form(runs: Runs, triples: Sequence[Triple], start: int) -> tuple[list[Ba
     rows: dict[Form, list[tuple[Terms, Sequence[Triple]]]] = {}
     end = start
     for _ in range(_MOST):
-        if end == len(triples) or (guess := next(runs.guesses(triples, end), None)) is None:
+        if end == len(triples) or (guess := runs.guess(triples, end)) is None:
             break
         form, said, here = guess
         rows.setdefault(form, []).append((said, here))

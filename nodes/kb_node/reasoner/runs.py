@@ -119,26 +119,30 @@ class Runs:
 
     def _recognised(self, triples: Sequence[Triple], start: int) -> Run | None:
         """The run that begins there, if it has a known form."""
-        for form, said, here in self.guesses(triples, start):
+        for form in self._begun_by(triples[start]):
             end = start + form.length
-            parts = form.parts(said, form.classes)
+            here = triples[start:end]
+            said = form.said(here)
+            parts = None if said is None else form.parts(said, form.classes)
             if parts is None or (end < len(triples) and triples[end][0] in parts[0]):
                 continue
             if self.are_new(parts[0]) and (kinds := self.kinds_of(parts[1])) is not None:
                 return Run(form, here, *parts, kinds)
         return None
 
-    def guesses(
-        self, triples: Sequence[Triple], start: int
-    ) -> Iterator[tuple[Form, Terms, Sequence[Triple]]]:
-        """The forms that the run there may have by its predicates, with what it says and its triples."""
-        s, p, o = triples[start]
-        if s not in self._store.numbers:
-            for form in self._beginning.get(_beginning(p, o), ()):
-                here = triples[start : start + form.length]
-                said = form.said(here)
-                if said is not None:
-                    yield form, said, here
+    def guess(self, triples: Sequence[Triple], start: int) -> tuple[Form, Terms, Sequence[Triple]] | None:
+        """The form that the run there has by its predicates, with what it says and its triples."""
+        for form in self._begun_by(triples[start]):
+            here = triples[start : start + form.length]
+            said = form.said(here)
+            if said is not None:
+                return form, said, here
+        return None
+
+    def _begun_by(self, triple: Triple) -> tuple[Form, ...]:
+        """The forms of runs that may begin with a triple, the likeliest first."""
+        s, p, o = triple
+        return () if s in self._store.numbers else self._beginning.get(_beginning(p, o), ())
 
     def are_new(self, names: Sequence[Term]) -> bool:
         """Whether they are different individuals, of whom nothing is known."""

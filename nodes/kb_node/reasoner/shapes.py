@@ -109,13 +109,11 @@ class Shapes:
     def _has_constants(self, written: Written) -> bool:
         """Whether the values that come with classes are as they were."""
         store, constants = self._abox.store, written.constants
-        if not constants:
-            return True
-        kinds = written.layout.others[-len(constants) :]
-        nodes = map(store.find, constants)
-        return all(
-            node is not None and store.kind[node] is kind for node, kind in zip(nodes, kinds, strict=True)
-        )
+        for term, kind in zip(constants, written.layout.others[-len(constants) :], strict=False):
+            node = store.find(term)
+            if node is None or store.kind[node] is not kind:
+                return False
+        return True
 
     def learn(self, run: Run) -> None:
         """Remember the shape of a run that was just worked out."""
