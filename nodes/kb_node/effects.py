@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
-from itertools import chain
+from itertools import chain, groupby
+from operator import itemgetter
 from typing import NamedTuple
 
 from msgspec import structs
 
 from nodes.kb_node import entities, preconditions
-from nodes.kb_node.alike import Patterns
+from nodes.kb_node.alike import Pattern, Patterns, read_at_sight
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.reasoner import Change, Reasoner
 from ontology import stars
@@ -109,16 +110,19 @@ def _read_at_sight(
     read: dict[Term, Entity] = {}
     seen: set[Term] = set()
     unseen: set[Term] = set()
-    for star in change.alike:
-        individuals = star.run.individuals
-        entity = None
-        if change.others.isdisjoint(individuals):
-            entity = reading.patterns.read(star, reading.reasoner, reading.classes, provenance)
-        if entity is None:
-            unseen.update(star.touched)
-        else:
-            read[individuals[0]] = entity
-            seen.update(individuals)
+    for _, alike in groupby(change.alike, itemgetter(0)):
+        pattern: Pattern | None = None
+        for star in alike:
+            individuals = star.run.individuals
+            entity: Entity | None = None
+            if change.others.isdisjoint(individuals):
+                pattern = pattern or reading.patterns.of(star, reading.reasoner, reading.classes)
+                entity = read_at_sight(pattern, star.run, provenance) if pattern else None
+            if entity is None:
+                unseen.update(star.touched)
+            else:
+                read[individuals[0]] = entity
+                seen.update(individuals)
     return read, seen, unseen
 
 
