@@ -178,11 +178,11 @@ class Store:
         rows, edges = self._more_nodes(count * width), self._more_edges(count * length)
         _put(self.kind, rows, layout.kinds * count)
         _put(self.predicate, edges, [p for _, p, _ in layout.edges] * count)
-        nodes: list[Sequence[int]] = []
+        nodes: list[list[int]] = []  # of the same objects wherever a number stands, for memory's sake
         for place, (terms, kind) in enumerate(zip(individuals, layout.kinds, strict=True)):
             here = rows[place::width]
-            nodes.append(here)
-            self.numbers.update(zip(terms, here, strict=True))
+            nodes.append(list(here))
+            self.numbers.update(zip(terms, nodes[place], strict=True))
             _put(self.terms, here, terms)
             if kind.mask:
                 _put(self._places, here, range(len(kind.nodes), len(kind.nodes) + count))
