@@ -7,6 +7,7 @@ import uuid
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TypeVar
 
 from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
@@ -31,21 +32,15 @@ from schemas.bridge import (
 )
 from schemas.commands import (
     Check,
-    Checked,
     Classes,
-    Document,
-    Done,
     Explain,
     Export,
     Get,
     History,
     Infer,
-    Inferred,
     LastSeen,
     List,
-    LoggedCommit,
     Renew,
-    Sighting,
     Sparql,
     Undo,
     Watch,
@@ -54,6 +49,7 @@ from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation, Triple
 from schemas.health import LOADING
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
@@ -108,9 +104,10 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk takes no commits")
 
     def _spread(self, commit: Commit) -> None:
+        """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit)
-        self._node.describe(self._summary())
-        self._sparql.follow(commit)
+        self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(lambda: self._node.describe(self._summary()))
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.

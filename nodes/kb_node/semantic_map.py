@@ -138,12 +138,22 @@ class SemanticMap:
     def commit(self, transaction: Transaction) -> Commit | None:
         """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
 
+        A command that comes a second time is answered with its first commit. That is looked up only when
+        there is nothing to do or something is in the way, as the journal is: it takes no command twice.
+
         Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is none, Inconsistent (with
         the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the
         TBox or the disk does not take the commit.
         """
-        if (known := self._journal.commit_of(transaction.id)) is not None:
+        try:
+            made = self._commit(transaction)
+        except errors.SemmapError:
+            if (known := self._journal.commit_of(transaction.id)) is None:
+                raise
             return known
+        return made or self._journal.commit_of(transaction.id)
+
+    def _commit(self, transaction: Transaction) -> Commit | None:
         transaction = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction)
         preconditions.require(self.reasoner, transaction, held)

@@ -16,10 +16,11 @@ from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.talking import Question, Talk
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
-from schemas.commands import Changed, Load
+from schemas.commands import Load
 from schemas.commits import Commit, Transaction
 from schemas.entities import ClassInfo, free_name
 from schemas.explanations import Triple
+from schemas.replies import Changed
 from schemas.scene_files import Described
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
