@@ -109,10 +109,9 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "history": (History, tuple[LoggedCommit, ...]),
     "last-seen": (LastSeen, Sighting),
     "undo": (Undo, Commit),
-    "load-tbox": (LoadTBox, Commit),
+    "load-tbox": (LoadTBox, Commit | None),
     "sparql": (Sparql, SparqlResult),
     "watch": (Watch, Watching),
     "renew": (Renew, Done),
 }
-"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
-gives None."""
+"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. What changes nothing gives None."""

@@ -225,8 +225,8 @@ class KnowledgeBase:
         """A commit that takes back another one."""
         return self._published_if_new(lambda: undo.undo(self.map, self._journal, command))
 
-    def on_load_tbox(self, load: LoadTBox) -> Commit:
-        """Another TBox, in one commit."""
+    def on_load_tbox(self, load: LoadTBox) -> Commit | None:
+        """Another TBox, in one commit; none for the one that holds."""
         tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
         transaction = _loading(
@@ -234,6 +234,10 @@ class KnowledgeBase:
             retract=(t for t in before if t not in imports and self.map.has(t)),
             insert=(t for t in imports if not self.map.has(t)),
         )
+        is_old = self._journal.commit_of(load.id) is not None
+        says_more = is_old or transaction.retract or transaction.insert
+        if not says_more and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+            return None
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
     def on_check(self, query: Check) -> Future[Checked]:

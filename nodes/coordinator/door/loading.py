@@ -99,7 +99,9 @@ def _load_tbox(view: MapView, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit: Commit = yield Question("load-tbox", order)
+    commit: Commit | None = yield Question("load-tbox", order)
+    if commit is None:
+        return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
     return Changed(commit=commit.seq, text=text, names=commit.names)
