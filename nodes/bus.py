@@ -21,7 +21,7 @@ import zenoh
 from zenoh import ext
 
 from schemas import codec, errors, keys
-from schemas.commands import Document
+from schemas.replies import Ack, Document
 from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -30,6 +30,7 @@ TIMEOUT_S = 30.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _JSON = "application/json"
+_NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
@@ -48,27 +49,35 @@ class Encoded:
 
 @dataclass(frozen=True)
 class Network:
-    """How a process joins the system. `namespace` prefixes every key (one robot of many)."""
+    """How a process joins the system: a node listens, a client does not.
+
+    A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`
+    prefixes every key (one robot of many).
+
+    A client whose connection is refused tries again for `patience_s`; 0 is once.
+    """
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
     listen: tuple[str, ...] = ()
     mode: str = "client"
     namespace: str = ""
+    patience_s: float = PATIENCE_S
 
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
-        node = self.mode != "client"
+        node = bool(self.listen)
         retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
             "connect/endpoints": list(self.connect),
-            "connect/timeout_ms": -1 if node else int(PATIENCE_S * 1000),
+            "connect/timeout_ms": -1 if node else int(self.patience_s * 1000),
             "connect/exit_on_failure": not node,
             "connect/retry": retry,
             "listen/endpoints": list(self.listen),
             "scouting/multicast/enabled": False,
             "transport/shared_memory/enabled": False,
             "transport/link/tx/lease": 2000,
+            "transport/unicast/open_timeout": int(PATIENCE_S * 1000),
         }
         if self.namespace:
             values["namespace"] = self.namespace
@@ -85,7 +94,7 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         session = zenoh.open(network.as_config())
     except zenoh.ZError as error:
         where = ", ".join((*network.listen, *network.connect))
-        if network.mode == "client" and "Unable to connect" in str(error):
+        if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if "Endpoints must be of the form" in str(error):
             raise errors.BadRequest(f"'{where}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}") from None
@@ -136,7 +145,7 @@ def ask(
             continue
         if time.monotonic() > deadline:
             _nobody(key)
-        time.sleep(0.05)
+        time.sleep(0.01)
 
 
 def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:
@@ -280,8 +289,8 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
-            body = {"reply": message, "error": None} if ok else {"reply": None, "error": message}
-            acks.put(encode({"id": said.get("id", ""), "verb": verb, "ok": ok, **body}))
+            reply, error = (message, None) if ok else (None, message)
+            acks.put(encode(Ack(id=str(said.get("id", "")), verb=verb, ok=ok, reply=reply, error=error)))
 
         receive(Request(verb, payload, {}, send))
 
@@ -362,12 +371,6 @@ def follow_cameras(
             refuse(f"{sample.key_expr}: {error.text}")
 
     session.declare_subscriber(keys.camera_key("*", plane), on_sample)
-
-
-def who_is_live(session: zenoh.Session, node: str = "*") -> set[str]:
-    """The nodes whose liveliness token is there."""
-    replies = session.liveliness().get(keys.live_key(node), timeout=2.0)
-    return {str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok is not None}
 
 
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:

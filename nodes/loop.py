@@ -56,6 +56,7 @@ class Node:
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
+        self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
@@ -168,6 +169,10 @@ class Node:
         send()
         return future
 
+    def afterwards(self, handle: Callable[[], None]) -> None:
+        """Call `handle()` after the handler in hand has replied, and before any other event."""
+        self._afterwards.append(handle)
+
     def soon(self, handle: Callable[[], None]) -> None:
         """Call `handle()` on this node's own thread. Other threads hand over their results so."""
         self._events.put(handle)
@@ -246,6 +251,8 @@ class Node:
         except Exception as error:
             log.exception("fault in %s", self.name)
             self.report(f"{type(error).__name__}: {error}")
+        while self._afterwards:
+            self._guard(self._afterwards.pop(0))
 
     def _handle(self, request: bus.Request, handlers: Handlers) -> None:
         try:

@@ -8,21 +8,15 @@ from msgspec import Meta, Struct
 
 from schemas.commands import (
     Check,
-    Checked,
     Classes,
-    Document,
-    Done,
     Explain,
     Export,
     Get,
     History,
     Infer,
-    Inferred,
     LastSeen,
     List,
-    LoggedCommit,
     Renew,
-    Sighting,
     Sparql,
     Undo,
     Watch,
@@ -31,6 +25,7 @@ from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 
@@ -114,10 +109,9 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "history": (History, tuple[LoggedCommit, ...]),
     "last-seen": (LastSeen, Sighting),
     "undo": (Undo, Commit),
-    "load-tbox": (LoadTBox, Commit),
+    "load-tbox": (LoadTBox, Commit | None),
     "sparql": (Sparql, SparqlResult),
     "watch": (Watch, Watching),
     "renew": (Renew, Done),
 }
-"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. A `commit` that changes nothing
-gives None."""
+"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. What changes nothing gives None."""

@@ -1,4 +1,4 @@
-"""What one may ask: one verb, one Struct, one reply.
+"""What one may ask: one verb, one Struct, one reply (`schemas.replies`).
 
 The fields are the words of the command line (`semmap add Chair --at 1 2 0`), of a selector
 (`semmap/cmd/add?class=Chair;at=1,2,0`) and of a message (`{"verb": "add", "class": "Chair", ...}`)
@@ -16,9 +16,7 @@ from schemas.entities import (
     ClassInfo,
     Entity,
     Name,
-    Pose,
     Probability,
-    Provenance,
     Quaternion,
     Remark,
     Size,
@@ -26,8 +24,19 @@ from schemas.entities import (
     Text,
     Vector,
 )
-from schemas.explanations import Explanation, Triple
+from schemas.explanations import Explanation
 from schemas.moments import When
+from schemas.replies import (
+    Changed,
+    Checked,
+    Document,
+    Done,
+    Inferred,
+    LoggedCommit,
+    Moved,
+    Sighting,
+    SystemStatus,
+)
 from schemas.scenes import Picture
 from schemas.sparql import SparqlResult, Watching
 
@@ -119,18 +128,6 @@ class Load(Command, frozen=True, kw_only=True, tag="load"):
     tbox: bool = False
 
 
-class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The map has changed (or, without `commit`, there was nothing to change)."""
-
-    commit: int | None
-    text: str
-    names: tuple[str, ...] = ()
-    skipped: tuple[str, ...] = ()
-    """What was left out, and why."""
-    notes: tuple[str, ...] = ()
-    """How the request was understood, where it was not taken literally."""
-
-
 # To ask
 
 
@@ -155,29 +152,10 @@ class Check(Command, frozen=True, kw_only=True, tag="check"):
     engine: Literal["semmap", "owlrl"] = "semmap"
 
 
-class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The verdict."""
-
-    consistent: bool
-    engine: str
-    triples: int
-    elapsed_s: float
-    text: str
-    explanation: Explanation | None = None
-
-
 class Infer(Command, frozen=True, kw_only=True, tag="infer"):
     """What follows that was not said, about one individual or about all entities."""
 
     name: str | None = None
-
-
-class Inferred(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Triples that follow, grouped by subject in the order of names."""
-
-    triples: tuple[Triple, ...]
-    text: tuple[str, ...]
-    """One line a triple, with local names."""
 
 
 class Explain(Command, frozen=True, kw_only=True, tag="explain"):
@@ -195,46 +173,12 @@ class Export(Command, frozen=True, kw_only=True, tag="export"):
     inferred: bool = False
 
 
-class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A serialised map, as it was after commit `seq`."""
-
-    content: bytes
-    media_type: str
-    triples: int
-    seq: int
-
-
 class Classes(Command, frozen=True, kw_only=True, tag="classes"):
     """The classes of the TBox, with the number of entities of each."""
 
 
 class Status(Command, frozen=True, kw_only=True, tag="status"):
     """The nodes and the map: who runs, since when, and what is amiss."""
-
-
-class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One node, as its heartbeats tell."""
-
-    node: str
-    state: Literal["starting", "ready", "silent"]
-    pid: int
-    uptime_s: float
-    heartbeat_age_s: float
-    detail: str = ""
-    last_error: str = ""
-
-
-class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The whole system."""
-
-    truth: str
-    commit: int
-    entities: int
-    bodies: int
-    in_agreement: bool | None
-    """Map and scene are the same, to within the thresholds; None when no simulator runs."""
-    nodes: tuple[NodeStatus, ...]
-    problems: tuple[str, ...] = ()
 
 
 # To ask about the past, and to take back
@@ -249,39 +193,10 @@ class History(Command, frozen=True, kw_only=True, tag="history"):
     limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
 
 
-class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A commit without its triples: who, when, why, how sure, and what it touched."""
-
-    seq: int
-    stamp_ns: int
-    source: Source
-    agent: str
-    verb: str
-    reason: str
-    confidence: Probability | None
-    undoes: tuple[int, ...]
-    tbox: bool
-    inserted: int
-    """How many triples came."""
-    retracted: int
-    """How many went."""
-    changed: tuple[str, ...]
-    removed: tuple[str, ...]
-
-
 class LastSeen(Command, frozen=True, kw_only=True, tag="last-seen"):
     """When, where and by whom an entity was last seen or put somewhere, even if it is no more."""
 
     name: str
-
-
-class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity was last, and by whose word. `removed` is the commit that took it out since."""
-
-    name: str
-    pose: Pose | None
-    provenance: Provenance
-    removed: Provenance | None
 
 
 class Undo(Command, frozen=True, kw_only=True, tag="undo"):
@@ -344,13 +259,6 @@ class Move(Command, frozen=True, kw_only=True, tag="move"):
     yaw: Angle | None = None
 
 
-class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The body was taken and released."""
-
-    name: str
-    text: str
-
-
 class Pause(Command, frozen=True, kw_only=True, tag="pause"):
     """Stop simulated time, or with `off` let it run again; without `off` a second time does so, too."""
 
@@ -373,12 +281,6 @@ class TakePicture(Command, frozen=True, kw_only=True, tag="picture"):
     camera: str | None = None
     width: Annotated[int, Meta(ge=16, le=4096)] = 960
     height: Annotated[int, Meta(ge=16, le=4096)] = 720
-
-
-class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """It was done."""
-
-    text: str
 
 
 REPLIES: dict[type[Command], Any] = {
@@ -410,13 +312,3 @@ REPLIES: dict[type[Command], Any] = {
 
 COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in REPLIES}
 """Verb to request type."""
-
-
-class Ack(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The answer to a command that came as a put."""
-
-    id: str
-    verb: str
-    ok: bool
-    reply: Any = None
-    error: Any = None

@@ -15,7 +15,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
 from msgspec import Struct
-from rapidfuzz import fuzz, process, utils
 
 from schemas.explanations import Explanation
 
@@ -144,6 +143,8 @@ _MANY = 30
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
+    from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
+
     near = process.extract(
         word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
     )

@@ -11,6 +11,7 @@ from schemas.commits import Commit
 from schemas.entities import Entity
 from schemas.health import Health
 from schemas.perception import Observations, SegmentedCloud
+from schemas.replies import Ack
 from schemas.scenes import Poses
 from schemas.sparql import RowsChanged
 
@@ -38,7 +39,7 @@ class Topic(NamedTuple):
     qos: Literal["lossless", "newest"]
 
 
-ACK = Topic(f"{ROOT}/ack", Any, "lossless")
+ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")

@@ -8,6 +8,9 @@ from msgspec import Meta, Struct, field
 
 from schemas.entities import Name, Pose, Size
 
+PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
+"""How wide or high a picture may be."""
+
 
 class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A body to be made for an entity, standing at `pose` as of commit `commit`.
@@ -144,12 +147,15 @@ class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     the bodies and n for `names[n - 1]`. Numbers are little-endian, rows from the top. `intrinsics` (3, 3)
     [pixel] and `map_from_camera` (4, 4) [m] are row by row; the camera's frame is the optical one, with x
     to the right, y down, z into the scene, and the middle of the first pixel at (0.5, 0.5).
+
+    A publisher that drops what cannot go at once, as Zenoh's do unless told otherwise, drops every plane of
+    some 30 MB: such want `CongestionControl.BLOCK`.
     """
 
     camera: str
     encoding: Literal["rgb8", "depth32f", "segments16"]
-    width: int
-    height: int
+    width: PixelCount
+    height: PixelCount
     stamp_ns: int
     sim_time_s: float
     intrinsics: tuple[float, ...]

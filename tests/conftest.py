@@ -56,6 +56,8 @@ class System:
         self.data = data
         self.endpoint = endpoint
         self.process = process
+        self.said: list[str] = []
+        """What it said until it was ready."""
 
     def cli(self, *words: str | Path, status: int = 0) -> str:
         """What `semmap WORDS` prints; it must end with `status`, and with an error say one line."""
@@ -112,7 +114,7 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     system = System(data, endpoint, process)
     try:
-        _await_ready(process)
+        _await_ready(system)
         yield system
     finally:
         if process.poll() is None:
@@ -121,11 +123,10 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
         process.stdout.close()
 
 
-def _await_ready(process: subprocess.Popen[str]) -> None:
-    assert process.stdout is not None
-    lines = []
-    for line in process.stdout:
-        lines.append(line)
+def _await_ready(system: System) -> None:
+    assert system.process.stdout is not None
+    for line in system.process.stdout:
+        system.said.append(line)
         if line.startswith("stop "):
             return
-    pytest.fail("the system did not start:\n" + "".join(lines))
+    pytest.fail("the system did not start:\n" + "".join(system.said))

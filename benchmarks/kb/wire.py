@@ -18,7 +18,7 @@ import psutil  # type: ignore[import-untyped]
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
 from nodes.extern.client import Client, connect
-from schemas import commands, keys
+from schemas import commands, keys, replies
 
 IN_FLIGHT = 32
 
@@ -67,7 +67,7 @@ def _sustained(client: Client, names: list[str], random_: random.Random) -> floa
 
     def send(name: str) -> None:
         command = commands.Update(name=name, at=pose(random_).position_m)
-        bus.ask_later(client.session, keys.CMD, "update", command, commands.Changed, answers.put)
+        bus.ask_later(client.session, keys.CMD, "update", command, replies.Changed, answers.put)
 
     def receive() -> None:
         answers.get(timeout=bus.TIMEOUT_S)()

@@ -19,12 +19,12 @@ from msgspec import structs
 from benchmarks.perception.rooms import THIN_M, THINGS
 from benchmarks.perception.table import Row
 from nodes.perception_node.association import associate
+from nodes.perception_node.class_hierarchy import ClassHierarchy
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.occupancy import occupancy_in
 from nodes.perception_node.pipeline import Learnt, Look, look
 from nodes.perception_node.tracks import Tracks
-from nodes.perception_node.visibility import looking
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import look_at
 from nodes.training.scenes import Item, Stage
@@ -52,12 +52,12 @@ class Kept(NamedTuple):
 
 def measure(moves: int, learnt: Learnt) -> list[Row]:
     """The rows of the table."""
-    kinship = Kinship(
+    classes = ClassHierarchy(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
     stage = Stage()  # one for all: with a second OpenGL context the first one's end harms it
     runs = [
-        identity(lambda clouds: look(clouds, learnt), kinship, stage, moves=moves, seed=seed)
+        identity(lambda clouds: look(clouds, learnt), classes, stage, moves=moves, seed=seed)
         for seed in _SEEDS
     ]
     shares = [run.kept / run.moves for run in runs]
@@ -117,7 +117,7 @@ class ObedientMap:
 
 def identity(
     perceive: Callable[[Sequence[Cloud]], Look],
-    kinship: Kinship,
+    classes: ClassHierarchy,
     stage: Stage,
     *,
     moves: int = 100,
@@ -145,7 +145,7 @@ def identity(
         for _ in range(count):
             clouds = stage.shoot(bodies, views, rng).clouds
             seen = perceive(clouds).observations.observations
-            told = associate(semantic_map.entities, tracks, seen, looking(clouds), kinship, config)
+            told = associate(semantic_map.entities, tracks, seen, occupancy_in(clouds), classes, config)
             tracks = told.tracks
             for command in told.commands:
                 semantic_map.obey(command)

@@ -17,6 +17,7 @@ from schemas import commands as c
 from schemas import errors
 from schemas.entities import Entity
 from schemas.moments import When
+from schemas.replies import SystemStatus
 
 
 class Answers:
@@ -49,9 +50,9 @@ class Answers:
             return self._bridge.relay(query)
         return self._with_body(self._door.entity(query.name))
 
-    def status(self, _: c.Status) -> c.SystemStatus:
+    def status(self, _: c.Status) -> SystemStatus:
         """The nodes, the map, the scene."""
-        return c.SystemStatus(
+        return SystemStatus(
             truth=self._truth,
             commit=self._door.seq,
             entities=len(self._door.entities),

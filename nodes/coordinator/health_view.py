@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from schemas.commands import NodeStatus
 from schemas.health import Health
+from schemas.replies import NodeStatus
 
 SILENT_AFTER_S = 3.0
 

@@ -222,7 +222,7 @@ class Keeping:
                 )
             pose = rounded(body.pose)
             x, y, z = pose.position_m
-            self._door.add(
+            self._door.change(
                 Add(
                     source="scene",
                     reason=f"{body.name} stands in the scene",

@@ -18,7 +18,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
 from nodes.coordinator.running import Running
-from nodes.coordinator.talking import hold, hold_later
+from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Results, Turns
 from nodes.loop import Node, open_node, settle
 from schemas import commands as c
@@ -27,6 +27,7 @@ from schemas.bridge import SnapshotQuery
 from schemas.commits import Commit, Snapshot
 from schemas.entities import BodyState
 from schemas.health import Health
+from schemas.replies import Changed
 from schemas.scenes import Poses
 
 _WAIT_S = 20.0
@@ -62,7 +63,7 @@ class Coordinator:
         self._fetching = False
         self._changed: set[str] = set()
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
-        self._waiting: list[tuple[str, float, c.Changed, Future[c.Changed]]] = []
+        self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
         running = Running(config.truth, door, self._keeping, self._ask_sim)
@@ -101,7 +102,7 @@ class Coordinator:
     # Following
 
     def _on_commit(self, commit: Commit) -> None:
-        if self._has_map and (not self._door.take(commit) or commit.tbox):
+        if not self._door.take(commit) or commit.tbox:
             self._fetch_map()
         self._changed.update(commit.names)
 
@@ -116,7 +117,7 @@ class Coordinator:
             self._fetch_map()
 
     def _tick(self) -> None:
-        if not self._has_map or self._door.doubted:
+        if not self._has_map or self._door.doubted or self._door.is_behind:
             self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
@@ -179,15 +180,14 @@ class Coordinator:
 
     def _change_together(self, changes: Sequence[c.Add | c.Update]) -> Future[Results]:
         """A change that comes alone is waited for: to be woken by another thread takes longer."""
-        talk = self._door.together(changes)
         if len(changes) > 1:
-            return hold_later(talk, self._bridge.change_later)
+            return hold_later(self._door.together(changes), self._bridge.change_later)
         future: Future[Results] = Future()
-        settle(future, lambda: hold(talk, self._bridge.ask))
+        settle(future, lambda: [self._door.change(changes[0])])
         return future
 
-    def _once_there_is_a_body(self, changed: c.Changed) -> Future[c.Changed]:
-        future: Future[c.Changed] = Future()
+    def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
+        future: Future[Changed] = Future()
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
         return future
 
@@ -206,7 +206,7 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _noted(self, change: Callable[[Any], c.Changed]) -> Callable[[Any], c.Changed]:
+    def _noted(self, change: Callable[[Any], Changed]) -> Callable[[Any], Changed]:
         """Where the map does not own existence, what is removed from it only comes back."""
         if self._config.truth == "map":
             return change
@@ -215,7 +215,7 @@ class Coordinator:
             "perceived": "perception is the truth here: what it still sees comes back",
         }[self._config.truth]
 
-        def noted(command: Any) -> c.Changed:
+        def noted(command: Any) -> Changed:
             changed = change(command)
             return structs.replace(changed, notes=(*changed.notes, note))
 

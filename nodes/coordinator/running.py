@@ -13,6 +13,7 @@ from nodes.loop import then
 from schemas import commands as c
 from schemas import errors, wording
 from schemas.entities import Pose, orientation_from_yaw
+from schemas.replies import Done, Moved
 from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement
 
 
@@ -38,30 +39,30 @@ class Running:
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
         order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
 
-        def moved(reply: BodiesMoved) -> c.Moved:
+        def moved(reply: BodiesMoved) -> Moved:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
             self._door.hands.let_go(command)
             x, y, z = command.at
-            return c.Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
+            return Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
 
         return then(self._ask("move", order, BodiesMoved), moved)
 
     def pause(self, command: c.Pause) -> Future[Any]:
         """Stop or start time."""
-        return self._ask_scene("pause", command, c.Done)
+        return self._ask_scene("pause", command, Done)
 
     def step(self, command: c.StepOnce) -> Future[Any]:
         """Let a little time pass."""
-        return self._ask_scene("step", command, c.Done)
+        return self._ask_scene("step", command, Done)
 
     def reset(self, command: c.Reset) -> Future[Any]:
         """Put every body back to where the map says, or, when the map only perceives, to where it began."""
         if self._truth == "perceived":
-            return self._ask_scene("reset", command, c.Done)
+            return self._ask_scene("reset", command, Done)
         return then(
             self._keeping.place_all(),
-            lambda reply: c.Done(text=f"back where the map says: {wording.bodies(len(reply.names))}"),
+            lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.names))}"),
         )
 
     def picture(self, command: c.TakePicture) -> Future[Any]:

@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 
 from nodes.loop import settle
 from schemas import errors
-from schemas.commands import Add, Changed, Update
+from schemas.commands import Add, Update
+from schemas.replies import Changed
 
 GROUP = 16
 """How many changes go together at most: two groups are as many as a busy client has in flight."""

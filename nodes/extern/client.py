@@ -16,6 +16,7 @@ from __future__ import annotations
 import contextlib
 import os
 import queue
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal
@@ -25,7 +26,8 @@ import zenoh
 from nodes import bus
 from nodes.extern.files import read_file
 from nodes.extern.sparql_client import StandingQuery
-from schemas import codec, commands, keys
+from nodes.supervisor import presence
+from schemas import codec, commands, errors, keys, replies
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
@@ -35,6 +37,9 @@ from schemas.sparql import SparqlResult
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
+_START_S = 15.0
+"""Seconds: a system that is starting is waited for."""
+_AGAIN_S = 0.1
 
 
 def endpoint() -> str:
@@ -46,10 +51,40 @@ def endpoint() -> str:
 def connect(
     where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
 ) -> Iterator[Client]:
-    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
-    network = bus.Network(connect=(where or endpoint(),), namespace=namespace)
-    with bus.open_session(network) as session:
+    """A client of the system at `where`. Raises NoAnswer when nothing answers there.
+
+    That is said at once where this machine refuses the connection and no system is starting.
+    """
+    with _open_session(where or endpoint(), namespace) as session:
         yield Client(session, source=source, agent=agent)
+
+
+@contextlib.contextmanager
+def _open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
+    """A session with whoever listens at `where`, or will do so when the system has started.
+
+    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
+    """
+    here = presence.is_loopback(where)
+    network = bus.Network(
+        connect=(where,),
+        mode="peer" if here else "client",
+        namespace=namespace,
+        patience_s=0.0 if here else bus.PATIENCE_S,
+    )
+    deadline_s = time.monotonic() + _START_S
+    with contextlib.ExitStack() as stack:
+        while True:
+            try:
+                session = stack.enter_context(bus.open_session(network))
+                break
+            except errors.NoAnswer:
+                if not presence.is_announced(where):
+                    raise
+                if time.monotonic() > deadline_s:
+                    raise errors.NoAnswer(f"the system at {where} has not started yet") from None
+                time.sleep(_AGAIN_S)
+        yield session
 
 
 class Client:
@@ -85,7 +120,7 @@ class Client:
         default: bool = False,
         wait: bool = False,
         id: str = "",
-    ) -> commands.Changed:
+    ) -> replies.Changed:
         """Put an entity into the map; see `schemas.commands.Add`."""
         return self._change(
             commands.Add,
@@ -118,7 +153,7 @@ class Client:
         confidence: float | None = None,
         wait: bool = False,
         id: str = "",
-    ) -> commands.Changed:
+    ) -> replies.Changed:
         """Change what is given; what is not given stays."""
         return self._change(
             commands.Update,
@@ -136,11 +171,11 @@ class Client:
             id=id,
         )
 
-    def remove(self, *names: str, id: str = "") -> commands.Changed:
+    def remove(self, *names: str, id: str = "") -> replies.Changed:
         """Take entities out of map and scene: all of them, or, if one is unknown, none."""
         return self._change(commands.Remove, names=names, id=id)
 
-    def clear(self) -> commands.Changed:
+    def clear(self) -> replies.Changed:
         """Take every entity out."""
         return self._change(commands.Clear)
 
@@ -151,7 +186,7 @@ class Client:
         replace: bool = False,
         skip_unknown: bool = False,
         tbox: bool = False,
-    ) -> commands.Changed:
+    ) -> replies.Changed:
         """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile.
 
         With `tbox` it is a TBox that takes the place of the present one.
@@ -166,7 +201,7 @@ class Client:
             tbox=tbox,
         )
 
-    def undo(self, commit: int | None = None, *, id: str = "") -> commands.Changed:
+    def undo(self, commit: int | None = None, *, id: str = "") -> replies.Changed:
         """Take back a commit; without one, the newest that a client asked for, with its settling."""
         return self._change(commands.Undo, commit=commit, id=id)
 
@@ -195,14 +230,14 @@ class Client:
         entity: Entity = self.send(commands.Get(name=name, as_of=with_offset(as_of)))
         return entity
 
-    def check(self, engine: Literal["semmap", "owlrl"] = "semmap") -> commands.Checked:
+    def check(self, engine: Literal["semmap", "owlrl"] = "semmap") -> replies.Checked:
         """Is the map consistent, and if not, why?"""
-        checked: commands.Checked = self.send(commands.Check(engine=engine))
+        checked: replies.Checked = self.send(commands.Check(engine=engine))
         return checked
 
-    def infer(self, name: str | None = None) -> commands.Inferred:
+    def infer(self, name: str | None = None) -> replies.Inferred:
         """What follows that was not said."""
-        inferred: commands.Inferred = self.send(commands.Infer(name=name))
+        inferred: replies.Inferred = self.send(commands.Infer(name=name))
         return inferred
 
     def explain(self, name: str, predicate: str, value: str) -> Explanation:
@@ -211,9 +246,9 @@ class Client:
         explanation: Explanation = self.send(question)
         return explanation
 
-    def export(self, format: commands.RdfFormat = "rdfxml", *, inferred: bool = False) -> commands.Document:
+    def export(self, format: commands.RdfFormat = "rdfxml", *, inferred: bool = False) -> replies.Document:
         """The map as a document, checked first."""
-        document: commands.Document = self.send(commands.Export(format=format, inferred=inferred))
+        document: replies.Document = self.send(commands.Export(format=format, inferred=inferred))
         return document
 
     def classes(self) -> tuple[ClassInfo, ...]:
@@ -221,9 +256,9 @@ class Client:
         classes: tuple[ClassInfo, ...] = self.send(commands.Classes())
         return classes
 
-    def status(self, *, timeout_s: float = _LONG_S) -> commands.SystemStatus:
+    def status(self, *, timeout_s: float = _LONG_S) -> replies.SystemStatus:
         """The nodes and the map. Raises NoAnswer when the coordinator has no time for it that long."""
-        status: commands.SystemStatus = self.send(commands.Status(), timeout_s=timeout_s)
+        status: replies.SystemStatus = self.send(commands.Status(), timeout_s=timeout_s)
         return status
 
     def history(
@@ -233,16 +268,16 @@ class Client:
         since: When | None = None,
         until: When | None = None,
         limit: int = 100,
-    ) -> tuple[commands.LoggedCommit, ...]:
+    ) -> tuple[replies.LoggedCommit, ...]:
         """The newest commits in a span of time, or those that touched an entity; newest last."""
         span = {"since": with_offset(since), "until": with_offset(until)}
         query = codec.convert({"name": name, **span, "limit": limit}, commands.History)
-        commits: tuple[commands.LoggedCommit, ...] = self.send(query)
+        commits: tuple[replies.LoggedCommit, ...] = self.send(query)
         return commits
 
-    def last_seen(self, name: str) -> commands.Sighting:
+    def last_seen(self, name: str) -> replies.Sighting:
         """When, where and by whom an entity was last seen or put, even if it is no more."""
-        sighting: commands.Sighting = self.send(commands.LastSeen(name=name))
+        sighting: replies.Sighting = self.send(commands.LastSeen(name=name))
         return sighting
 
     # To query
@@ -266,27 +301,27 @@ class Client:
 
     # To run
 
-    def move(self, name: str, at: Vector, yaw: float | None = None) -> commands.Moved:
+    def move(self, name: str, at: Vector, yaw: float | None = None) -> replies.Moved:
         """Take the body and put it elsewhere, as a hand would; the map follows when it rests."""
         command = codec.convert(
             {"name": name, "at": _plain(at), "yaw": _plain(yaw), **self._signed}, commands.Move
         )
-        moved: commands.Moved = self.send(command)
+        moved: replies.Moved = self.send(command)
         return moved
 
-    def pause(self, *, off: bool | None = None) -> commands.Done:
+    def pause(self, *, off: bool | None = None) -> replies.Done:
         """Stop simulated time; with `off` let it run again; without `off`, a second time does so, too."""
-        done: commands.Done = self.send(commands.Pause(off=off))
+        done: replies.Done = self.send(commands.Pause(off=off))
         return done
 
-    def step(self, seconds: float = 0.1) -> commands.Done:
+    def step(self, seconds: float = 0.1) -> replies.Done:
         """Let paused time go on for so long, 60 s at most."""
-        done: commands.Done = self.send(codec.convert({"seconds": _plain(seconds)}, commands.StepOnce))
+        done: replies.Done = self.send(codec.convert({"seconds": _plain(seconds)}, commands.StepOnce))
         return done
 
-    def reset(self) -> commands.Done:
+    def reset(self) -> replies.Done:
         """Put every body back where the map says it stands."""
-        done: commands.Done = self.send(commands.Reset())
+        done: replies.Done = self.send(commands.Reset())
         return done
 
     def picture(self, camera: str | None = None, *, width: int = 960, height: int = 720) -> bytes:
@@ -311,9 +346,9 @@ class Client:
         finally:
             subscriber.undeclare()
 
-    def _change(self, kind: type[commands.Command], **fields: Any) -> commands.Changed:
+    def _change(self, kind: type[commands.Command], **fields: Any) -> replies.Changed:
         command = codec.convert({**_given(kind, fields), **self._signed}, kind)
-        changed: commands.Changed = self.send(command)
+        changed: replies.Changed = self.send(command)
         return changed
 
 

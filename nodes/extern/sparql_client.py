@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import zenoh
 
 from nodes import bus
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, replies
 from schemas.sparql import Row, RowsChanged, Watching
 
 _LEASE_S = 30.0
@@ -72,7 +72,7 @@ class StandingQuery:
         self._subscriber.undeclare()
         with contextlib.suppress(errors.SemmapError):
             renewal = commands.Renew(watch=self._name, end=True)
-            bus.ask(self._session, keys.CMD, "renew", renewal, commands.Done, patience_s=0.0, timeout_s=2.0)
+            bus.ask(self._session, keys.CMD, "renew", renewal, replies.Done, patience_s=0.0, timeout_s=2.0)
 
     def _watch(self) -> Watching:
         watching: Watching = bus.ask(
@@ -83,7 +83,7 @@ class StandingQuery:
     def _renew(self) -> Watching | None:
         """Go on; what it has now, if it is not known there any more and was asked anew."""
         try:
-            bus.ask(self._session, keys.CMD, "renew", commands.Renew(watch=self._name), commands.Done)
+            bus.ask(self._session, keys.CMD, "renew", commands.Renew(watch=self._name), replies.Done)
         except errors.UnknownName:
             return self._watch()
         except errors.NoAnswer:

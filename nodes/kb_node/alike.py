@@ -29,7 +29,7 @@ class _Text(NamedTuple):
     place: int
 
 
-class _Pattern(NamedTuple):
+class Pattern(NamedTuple):
     """Where the parts of an entity are in each run of a shape."""
 
     kind: Kind
@@ -48,24 +48,23 @@ class Patterns:
     """The patterns of the shapes that have been met."""
 
     def __init__(self) -> None:
-        self._known: WeakKeyDictionary[object, _Pattern | None] = WeakKeyDictionary()
+        self._known: WeakKeyDictionary[object, Pattern | None] = WeakKeyDictionary()
 
-    def read(
-        self, alike: Alike, reasoner: Reasoner, classes: ClassTable, provenance: Provenance
-    ) -> Entity | None:
-        """The entity that a run is the star of; None if it is not to be told at sight.
-
-        Raises BadRequest for one that cannot be named.
-        """
+    def of(self, alike: Alike, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
+        """Where the parts of an entity are in all runs of a shape; None if it is not to be told at sight."""
         try:
-            pattern = self._known[alike.shape]
+            return self._known[alike.shape]
         except KeyError:
-            pattern = self._known[alike.shape] = _pattern(alike.run, reasoner, classes)
-        return None if pattern is None else _read(pattern, alike.run, provenance)
+            found = self._known[alike.shape] = _pattern(alike.run, reasoner, classes)
+            return found
 
 
-def _read(pattern: _Pattern, run: Run, provenance: Provenance) -> Entity | None:
-    names, others = list(run.individuals), run.others
+def read_at_sight(pattern: Pattern, run: Run, provenance: Provenance) -> Entity | None:
+    """The entity that a run is the star of; None if it is not to be told at sight.
+
+    Raises BadRequest for one that cannot be named.
+    """
+    names, others = run.individuals, run.others
     try:
         position = _numbers(pattern.position, others)
         size = _numbers(pattern.size, others)
@@ -94,14 +93,11 @@ def _numbers(places: Places | None, others: Sequence[Term]) -> tuple[float, ...]
     """Raises ValueError for one that is none, or is out of bounds."""
     if places is None:
         return None
-    found = []
-    for place in places:
-        term = others[place]
-        value = float(term[1 : term.rindex('"')])
-        if not abs(value) <= REACH_M:
+    found = tuple([float(others[place].split('"', 2)[1]) for place in places])
+    for value in found:
+        if not -REACH_M <= value <= REACH_M:
             raise ValueError
-        found.append(value)
-    return tuple(found)
+    return found
 
 
 def _texts(texts: Sequence[_Text], names: Sequence[Term], others: Sequence[Term]) -> list[str]:
@@ -111,7 +107,7 @@ def _texts(texts: Sequence[_Text], names: Sequence[Term], others: Sequence[Term]
     return [v.lexical(others[text.place]) for text in texts]
 
 
-def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> _Pattern | None:
+def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
     """The pattern of all runs that are alike this one; None for an irregular one."""
     are_entities = [not reasoner.types(term).isdisjoint(classes.spatial) for term in run.individuals]
     if not are_entities[0] or any(are_entities[1:]):
@@ -123,7 +119,7 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> _Pattern | No
     assert kind is not None
     try:
         coordinates, size = said.node(v.HAS_POSITION), said.node(v.HAS_SIZE)
-        return _Pattern(
+        return Pattern(
             kind=kind,
             position=said.numbers(coordinates, v.COORDINATE_XYZ),
             orientation=said.numbers(coordinates, v.ORIENTATION_WXYZ),
@@ -140,18 +136,19 @@ class _Said:
 
     def __init__(self, run: Run) -> None:
         self._others = run.others
-        self.entity = next(iter(run.individuals))
+        self.entity = run.individuals[0]
         self.classes: list[Term] = []
         """Those asserted of the entity."""
         self._nodes: dict[tuple[int, Term], list[int]] = {}
         self._places: dict[tuple[int, Term], list[int]] = {}
         place = count()
+        places = run.places
         for s, p, o in run.triples:
-            subject = run.individuals[s]
+            subject = places[s]
             if p == v.RDF_TYPE:
                 self.classes += [o] if subject == 0 else []
-            elif o in run.individuals:
-                self._nodes.setdefault((subject, p), []).append(run.individuals[o])
+            elif o in places:
+                self._nodes.setdefault((subject, p), []).append(places[o])
             else:
                 self._places.setdefault((subject, p), []).append(next(place))
 

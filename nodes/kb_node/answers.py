@@ -10,11 +10,13 @@ from nodes.kb_node import rdf_files
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.second_opinion import owlrl_faults
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.text import PREFIXES
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Checked, Document, Explain, Inferred, RdfFormat
+from schemas.commands import Explain, RdfFormat
 from schemas.entities import Entity
 from schemas.explanations import Explanation, Term, Triple
+from schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
@@ -114,11 +116,19 @@ def _class_iri(semantic_map: SemanticMap, name: str) -> Term:
     return iris[name]
 
 
+def _term(word: str) -> Term | None:
+    """A term as it is written, or a name with a prefix that queries know; None for another word."""
+    prefix, colon, name = word.partition(":")
+    if word.startswith(("<", '"', "_:")):
+        return word
+    return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
+
+
 def _predicate(semantic_map: SemanticMap, word: str) -> Term:
     if word in ("a", "type"):
         return v.RDF_TYPE
-    if word.startswith("<"):
-        return word
+    if (term := _term(word)) is not None:
+        return term
     kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
     names = {
         v.local_name(p): p
@@ -126,14 +136,15 @@ def _predicate(semantic_map: SemanticMap, word: str) -> Term:
         for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
     }
     if word not in names:
-        raise errors.BadRequest(f"unknown property '{word}'{errors.did_you_mean(word, names)}")
+        hint = errors.did_you_mean(word, names) or "; there are type and the properties of the TBox"
+        raise errors.BadRequest(f"unknown property '{word}'{hint}")
     return names[word]
 
 
 def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
     """The terms that `word` may stand for as the object of this subject and predicate."""
-    if word.startswith(("<", '"', "_:")):
-        return [word]
+    if (term := _term(word)) is not None:
+        return [term]
     if predicate == v.RDF_TYPE:
         return [_class_iri(semantic_map, word)]
     held = (

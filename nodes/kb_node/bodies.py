@@ -7,8 +7,7 @@ compresses them meanwhile. The outcome is what `codec.encode` makes of the whole
 from __future__ import annotations
 
 import zlib
-from concurrent.futures import Future
-from threading import Thread
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
 from msgspec import Struct, structs
@@ -38,16 +37,19 @@ class EarlyBody:
 
     def __init__(self, commit: Commit) -> None:
         self._deflate = zlib.compressobj(codec.DENSITY)
-        self._head: Future[bytes] = Future()
-        head = codec.encode(structs.replace(commit, changed=(), removed=())).removesuffix(_NONE)
-        Thread(target=self._compress, args=(head,), daemon=True).start()
+        self._beside = ThreadPoolExecutor(1)
+        whole = memoryview(codec.encode(structs.replace(commit, changed=(), removed=())))
+        assert whole[-len(_NONE) :] == _NONE
+        self._head = self._beside.submit(self._deflate.compress, whole[: -len(_NONE)])
 
-    def _compress(self, head: bytes) -> None:
-        self._head.set_result(self._deflate.compress(head))
-
-    def finish(self, commit: Commit) -> bytes:
+    def finish(self, commit: Commit) -> Future[bytes]:
         """The whole, now that the effects are known."""
         effects = codec.encode(_Effects(changed=commit.changed, removed=commit.removed))[_MAP_OF_TWO:]
+        whole = self._beside.submit(self._whole, effects)
+        self._beside.shutdown(wait=False)
+        return whole
+
+    def _whole(self, effects: bytes) -> bytes:
         return self._head.result() + self._deflate.compress(effects) + self._deflate.flush()
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
+from itertools import chain, groupby
+from operator import itemgetter
 from typing import NamedTuple
 
 from msgspec import structs
 
-from nodes.kb_node import entities
-from nodes.kb_node.alike import Patterns
+from nodes.kb_node import entities, preconditions
+from nodes.kb_node.alike import Pattern, Patterns, read_at_sight
 from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.reasoner import Change, Reasoner
 from ontology import stars
@@ -49,8 +51,8 @@ def of(
     changed: dict[str, Entity] = {}
     removed: list[Departed] = []
     reasoner, classes, _, progress = reading
-    at_sight, seen = _read_at_sight(change, reading, commit.provenance)
-    others = (owners | change.touched) - seen
+    at_sight, seen, unseen = _read_at_sight(change, reading, commit.provenance)
+    others = (owners - seen) | change.others | unseen
     about = entities.about(reasoner, commit.inserted, others & new)
     concerned = (
         iri
@@ -94,27 +96,34 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
 
 def _moved_nodes(commit: Commit, change: Change) -> set[Term]:
     """The individuals with other coordinates, if nothing but these is otherwise; else none."""
-    triples = (*commit.retracted, *commit.inserted)
+    triples = chain(commit.retracted, commit.inserted)
     if change.alike or any(p not in _COORDINATES for _, p, _ in triples):
         return set()
-    nodes = {s for s, _, _ in triples}
-    return nodes if change.touched <= nodes else set()
+    nodes = preconditions.subjects(commit.retracted, commit.inserted)
+    return nodes if change.others <= nodes else set()
 
 
 def _read_at_sight(
     change: Change, reading: Reading, provenance: Provenance
-) -> tuple[dict[Term, Entity], set[Term]]:
-    """The new entities whose stars are of known shapes, and the individuals of these stars."""
+) -> tuple[dict[Term, Entity], set[Term], set[Term]]:
+    """The new entities whose stars are of known shapes, the individuals of these stars, and of the others."""
     read: dict[Term, Entity] = {}
     seen: set[Term] = set()
-    for star in change.alike:
-        individuals = star.run.individuals
-        if change.others.isdisjoint(individuals):
-            entity = reading.patterns.read(star, reading.reasoner, reading.classes, provenance)
-            if entity is not None:
-                read[next(iter(individuals))] = entity
+    unseen: set[Term] = set()
+    for _, alike in groupby(change.alike, itemgetter(0)):
+        pattern: Pattern | None = None
+        for star in alike:
+            individuals = star.run.individuals
+            entity: Entity | None = None
+            if change.others.isdisjoint(individuals):
+                pattern = pattern or reading.patterns.of(star, reading.reasoner, reading.classes)
+                entity = read_at_sight(pattern, star.run, provenance) if pattern else None
+            if entity is None:
+                unseen.update(star.touched)
+            else:
+                read[individuals[0]] = entity
                 seen.update(individuals)
-    return read, seen
+    return read, seen, unseen
 
 
 def _taken(holder: Entity) -> errors.NameTaken:

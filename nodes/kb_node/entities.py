@@ -89,9 +89,8 @@ def entity_of(
     Of several preferred references the first in the alphabet counts. Raises BadRequest for one that cannot
     be named.
     """
-    _require_name(iri, kind.class_name)
     return Entity(
-        name=v.local_name(iri),
+        name=_name(iri, kind.class_name),
         class_=kind.class_name,
         iri=v.bare(iri),
         types=kind.types,
@@ -146,17 +145,19 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     )
 
 
-def _require_name(iri: Term, class_name: str) -> None:
-    """Raises BadRequest for an entity without an IRI (http, https, urn or file) that ends in a name."""
+def _name(iri: Term, class_name: str) -> str:
+    """The name that an entity's IRI (http, https, urn or file) ends in. Raises BadRequest."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):
         raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
-    if not _NAME.match(v.local_name(iri)):
+    name = v.local_name(iri)
+    if not _NAME.match(name):
         raise errors.BadRequest(
             f"the {class_name} {iri} needs an IRI that ends in a name of letters a to z, digits, '_', '.'"
             " and '-', not beginning with a digit"
         )
+    return name
 
 
 def owners(reasoner: Reasoner, subject: Term) -> set[Term]:

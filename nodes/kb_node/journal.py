@@ -147,12 +147,13 @@ class Journal:
         if self._digest is None:
             with self._reading():
                 self._digest = self._digest_of(self.last)
-        body = codec.encode(commit, dense_from=_DENSE_FROM) if begun is None else begun.finish(commit)
-        digest = _chain(self._digest, body)
+        whole = None if begun is None else begun.finish(commit)
         with self._writing(f"commit {commit.seq}"):
-            self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
             touches = [(name, commit.seq) for name in commit.names]
             self._db.executemany("INSERT INTO touches VALUES (?, ?)", touches)
+            body = codec.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
+            digest = _chain(self._digest, body)
+            self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
             if tbox is not None:
                 row = (commit.seq, tbox, _chain(b"", tbox))
                 self._db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)

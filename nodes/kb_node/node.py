@@ -7,6 +7,7 @@ import uuid
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TypeVar
 
 from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
@@ -31,21 +32,15 @@ from schemas.bridge import (
 )
 from schemas.commands import (
     Check,
-    Checked,
     Classes,
-    Document,
-    Done,
     Explain,
     Export,
     Get,
     History,
     Infer,
-    Inferred,
     LastSeen,
     List,
-    LoggedCommit,
     Renew,
-    Sighting,
     Sparql,
     Undo,
     Watch,
@@ -54,6 +49,7 @@ from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation, Triple
 from schemas.health import LOADING
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
@@ -108,9 +104,10 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk takes no commits")
 
     def _spread(self, commit: Commit) -> None:
+        """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit)
-        self._node.describe(self._summary())
-        self._sparql.follow(commit)
+        self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(lambda: self._node.describe(self._summary()))
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -228,8 +225,8 @@ class KnowledgeBase:
         """A commit that takes back another one."""
         return self._published_if_new(lambda: undo.undo(self.map, self._journal, command))
 
-    def on_load_tbox(self, load: LoadTBox) -> Commit:
-        """Another TBox, in one commit."""
+    def on_load_tbox(self, load: LoadTBox) -> Commit | None:
+        """Another TBox, in one commit; none for the one that holds."""
         tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
         transaction = _loading(
@@ -237,6 +234,10 @@ class KnowledgeBase:
             retract=(t for t in before if t not in imports and self.map.has(t)),
             insert=(t for t in imports if not self.map.has(t)),
         )
+        is_old = self._journal.commit_of(load.id) is not None
+        says_more = is_old or transaction.retract or transaction.insert
+        if not says_more and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+            return None
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
     def on_check(self, query: Check) -> Future[Checked]:

@@ -15,10 +15,11 @@ from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.reasoner import Reasoner
 from schemas import errors
-from schemas.commands import History, LoggedCommit, Sighting
+from schemas.commands import History
 from schemas.commits import Commit
 from schemas.entities import Entity, Provenance
 from schemas.moments import When, read_moment
+from schemas.replies import LoggedCommit, Sighting
 
 
 class Past:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
-from itertools import islice
+from collections.abc import Container, Iterable
+from itertools import chain, islice
+from operator import itemgetter
 
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
@@ -15,10 +16,15 @@ _FEW = 64
 """Triples of one subject: so many are looked through together, and of more each by itself."""
 
 
+def subjects(*groups: Iterable[Triple]) -> set[Term]:
+    """Those of all triples."""
+    return set(map(itemgetter(0), chain(*groups)))
+
+
 def held(reasoner: Reasoner, transaction: Transaction) -> set[Triple]:
     """Those of the transaction's triples that are asserted already."""
     groups = transaction.require, transaction.retract, transaction.insert
-    known = reasoner.mentioned({s for triples in groups for s, _, _ in triples})
+    known = reasoner.mentioned(subjects(*groups))
     found: set[Triple] = set()
     many: set[Term] = set()
     for subject in known:

@@ -32,6 +32,8 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
+_MUCH = 100_000
+"""Objects that a commit leaves."""
 
 
 class SemanticMap:
@@ -136,12 +138,22 @@ class SemanticMap:
     def commit(self, transaction: Transaction) -> Commit | None:
         """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
 
+        A command that comes a second time is answered with its first commit. That is looked up only when
+        there is nothing to do or something is in the way, as the journal is: it takes no command twice.
+
         Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is none, Inconsistent (with
         the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the
         TBox or the disk does not take the commit.
         """
-        if (known := self._journal.commit_of(transaction.id)) is not None:
+        try:
+            made = self._commit(transaction)
+        except errors.SemmapError:
+            if (known := self._journal.commit_of(transaction.id)) is None:
+                raise
             return known
+        return made or self._journal.commit_of(transaction.id)
+
+    def _commit(self, transaction: Transaction) -> Commit | None:
         transaction = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction)
         preconditions.require(self.reasoner, transaction, held)
@@ -240,6 +252,8 @@ class SemanticMap:
 
     def _spelled_out(self, transaction: Transaction) -> Transaction:
         """The transaction with where entities are placed said in triples, too."""
+        if not transaction.placed:
+            return transaction
         retract, insert = list(transaction.retract), list(transaction.insert)
         for placed in transaction.placed:
             gone, come = placing.place(self.reasoner, self.tbox, self.entity(placed.name), placed)
@@ -311,7 +325,7 @@ class SemanticMap:
 
     def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
-        subjects = {s for triples in (commit.retracted, commit.inserted) for s, _, _ in triples}
+        subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
         owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
@@ -375,4 +389,6 @@ def _uncollected() -> Iterator[None]:
         yield
     finally:
         if was_on:
+            if gc.get_count()[0] > _MUCH:
+                gc.freeze()  # it stays: the collector need not look through it
             gc.enable()

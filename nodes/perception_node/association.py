@@ -16,14 +16,15 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from nodes.perception_node.class_hierarchy import ANYTHING, ClassHierarchy
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import ANYTHING, Kinship, Votes
-from nodes.perception_node.likeness import Target
+from nodes.perception_node.costs import Target
+from nodes.perception_node.map_updates import additions, has_moved, is_sure, update_of
 from nodes.perception_node.matching import Candidate, Matching, match
-from nodes.perception_node.overlap import Place, are_of_one, share
-from nodes.perception_node.telling import has_moved, is_sure, news, proposals
+from nodes.perception_node.occupancy import OccupancyOf
+from nodes.perception_node.overlap import OrientedBox, are_of_one, share
 from nodes.perception_node.tracks import Track, Tracks, slack_m
-from nodes.perception_node.visibility import Looks
+from nodes.perception_node.votes import Votes
 from schemas.commands import Add, Command
 from schemas.entities import Entity, Size, distance_m, free_name
 from schemas.perception import Observation
@@ -45,28 +46,31 @@ def associate(
     entities: Mapping[str, Entity],
     tracks: Tracks,
     observations: Sequence[Observation],
-    looks: Looks,
-    kinship: Kinship,
+    occupancy_of: OccupancyOf,
+    classes: ClassHierarchy,
     config: TrackingConfig,
 ) -> Association:
-    """One look. `entities` are the map's, `looks` tells what is seen of a place without an observation."""
+    """One look. `entities` are the map's, `occupancy_of` tells what is seen of a box that none observed."""
     candidates = {
-        name: _candidate(entity, tracks.known.get(name), kinship, config)
+        name: _candidate(entity, tracks.known.get(name), classes, config)
         for name, entity in entities.items()
         if not entity.place and entity.pose is not None
     }
-    others = [Candidate(track, _target(track, kinship)) for track in tracks.tentative]
-    matching = match(candidates, others, observations, looks, kinship, config)
+    others = [Candidate(track, _target(track, classes)) for track in tracks.tentative]
+    matching = match(candidates, others, observations, occupancy_of, classes, config)
     known = {
         name: _watched(
-            _after(name, candidate.track, matching, observations, config), entities[name], looks, config
+            _after(name, candidate.track, matching, observations, config),
+            entities[name],
+            occupancy_of,
+            config,
         )
         for name, candidate in candidates.items()
     }
     tentative = _tentative(tracks.tentative, matching, observations, config)
-    told = [news(entities[name], track, kinship, config) for name, track in known.items()]
-    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, kinship, config))
-    added = proposals(proposed, {*tracks.names, *entities}, kinship)
+    told = [update_of(entities[name], track, classes, config) for name, track in known.items()]
+    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, classes, config))
+    added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
     return Association(
         Tracks(
@@ -88,13 +92,15 @@ def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, 
     return tracks, structs.replace(add, name=name, reason=f"{name} was seen")
 
 
-def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: TrackingConfig) -> Candidate:
+def _candidate(
+    entity: Entity, track: Track | None, classes: ClassHierarchy, config: TrackingConfig
+) -> Candidate:
     """An entity; if somebody else has told the map another pose of it since, that counts.
 
     What the process before this one believed of perception's own is remembered by the map.
     """
     assert entity.pose is not None
-    usual_m = kinship.usual_m.get(entity.class_)
+    usual_m = classes.usual_m.get(entity.class_)
     own = entity.shape_provenance.source == "perception"
     if track is None:
         sureness = entity.shape_provenance.confidence if own else None
@@ -104,7 +110,7 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     if track.told != entity.pose and elsewhere:
         track = replace(track, pose=entity.pose, looks=0)
     track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
-    target = _target(track, kinship)
+    target = _target(track, classes)
     return Candidate(
         track,
         target._replace(
@@ -116,8 +122,8 @@ def _candidate(entity: Entity, track: Track | None, kinship: Kinship, config: Tr
     )
 
 
-def _target(track: Track, kinship: Kinship) -> Target:
-    return Target(track.pose, track.size_m, track.votes.belief(kinship), track.whole)
+def _target(track: Track, classes: ClassHierarchy) -> Target:
+    return Target(track.pose, track.size_m, track.votes.belief(classes), track.whole)
 
 
 def _after(
@@ -126,15 +132,15 @@ def _after(
     """What is remembered of an entity after this look."""
     if name in matching.known:
         return track.see(observations[matching.known[name]], config)
-    return track.miss(matching.places[name], odd=name in matching.odd)
+    return track.miss(matching.occupancy[name], odd=name in matching.odd)
 
 
-def _watched(track: Track, entity: Entity, looks: Looks, config: TrackingConfig) -> Track:
+def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:
     """With a look at the place that the map has of it: is that left, or does it only seem so?"""
     if entity.pose is None or track.unseen or not has_moved(entity, track, config):
         return replace(track, left=False)
-    before, now = Place(entity.pose, track.size_m), Place(track.pose, track.size_m)
-    return replace(track, left=track.left or share(now, before) == 0.0 or looks(*before) == "open")
+    before, now = OrientedBox(entity.pose, track.size_m), OrientedBox(track.pose, track.size_m)
+    return replace(track, left=track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free")
 
 
 def _tentative(
@@ -144,7 +150,7 @@ def _tentative(
     after = [
         track.see(observations[matching.tentative[i]], config)
         if i in matching.tentative
-        else track.miss("open", odd=False)
+        else track.miss("free", odd=False)
         for i, track in enumerate(tracks)
     ]
     new = [observations[j] for j in matching.new]
@@ -157,7 +163,7 @@ def _tentative(
 def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:
     apart: list[Track] = []
     for track in tracks:
-        spot = Place(track.pose, track.size_m)
-        if not any(are_of_one(spot, Place(other.pose, other.size_m)) for other in apart):
+        box = OrientedBox(track.pose, track.size_m)
+        if not any(are_of_one(box, OrientedBox(other.pose, other.size_m)) for other in apart):
             apart.append(track)
     return apart

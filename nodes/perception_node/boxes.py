@@ -1,4 +1,4 @@
-"""Upright boxes around points."""
+"""Upright boxes around points, of the least area on the floor: the yaw is searched for, coarse to fine."""
 
 from __future__ import annotations
 

@@ -12,6 +12,8 @@ Transform = NDArray[np.float64]
 
 FEWEST_POINTS = 10
 """In fewer nothing can be found."""
+NEAREST_M, FARTHEST_M = 0.01, 100.0
+"""No depth camera measures as near, or as far."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.cloud import Cloud, Transform
-from nodes.perception_node.projection import cloud_of, fits
+from nodes.perception_node.projection import cloud_of, fits, is_pose
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -48,7 +48,8 @@ class Pair(NamedTuple):
 class Frames:
     """The newest frame of each camera. Filled by other threads than the one that takes.
 
-    Cameras that were once heard of with the same stamp see together, and are waited for a little.
+    Cameras that were once heard of with the same stamp see together, and are waited for a little. Cameras
+    with clocks of their own take turns.
     """
 
     def __init__(self) -> None:
@@ -58,6 +59,8 @@ class Frames:
         self._partners: dict[str, set[str]] = {}
         self._taken_ns = 0
         self._taken: set[str] = set()
+        self._turns = 0
+        self._last_turn: dict[str, int] = {}
 
     def put(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
         """A plane has come. Raises BadRequest for one of the past."""
@@ -73,7 +76,7 @@ class Frames:
             self._pair_up(frame)
 
     def take(self, timeout_s: float) -> tuple[Pair, ...]:
-        """What all cameras saw at the newest moment, in the order of their names; maybe nothing."""
+        """What cameras saw at one moment, the newest there is, in the order of their names; maybe nothing."""
         deadline = time.monotonic() + timeout_s
         with self._news:
             while not self._pairs:
@@ -84,12 +87,15 @@ class Frames:
                 pass
             for camera in missing:
                 self._partners.pop(camera, None)
-            newest = self._newest()
-            pairs = tuple(self._pairs.pop(camera) for camera in sorted(newest))
-            self._pairs.clear()
-            self._taken, self._taken_ns = newest, pairs[0].stamp_ns
-            for camera in newest:
-                self._partners[camera] = newest | (self._partners.get(camera, set()) - missing)
+            cameras = self._next()
+            self._turns += 1
+            for camera in cameras:
+                self._partners[camera] = cameras | (self._partners.get(camera, set()) - missing)
+                self._last_turn[camera] = self._turns
+            for camera in self._outdated():
+                del self._pairs[camera]
+            pairs = tuple(self._pairs.pop(camera) for camera in sorted(cameras))
+            self._taken, self._taken_ns = cameras, pairs[0].stamp_ns
             return pairs
 
     def _pair_up(self, frame: CameraFrame) -> None:
@@ -104,13 +110,25 @@ class Frames:
         self._pairs[frame.camera] = Pair(rgb, depth)
         self._news.notify_all()
 
-    def _newest(self) -> set[str]:
-        stamp_ns = max(pair.stamp_ns for pair in self._pairs.values())
+    def _next(self) -> set[str]:
+        """The cameras of one moment: those whose turn was longest ago or, of these, the newest."""
+        current = self._pairs.keys() - self._outdated()
+        first = min(current, key=lambda name: (self._last_turn.get(name, 0), -self._pairs[name].stamp_ns))
+        stamp_ns = self._pairs[first].stamp_ns
         return {camera for camera, pair in self._pairs.items() if pair.stamp_ns == stamp_ns}
 
+    def _outdated(self) -> set[str]:
+        """Cameras of which there is a frame older than that of another that sees together with them."""
+        return {
+            camera
+            for camera, pair in self._pairs.items()
+            for partner in self._partners.get(camera, set()) & self._pairs.keys()
+            if self._pairs[partner].stamp_ns > pair.stamp_ns
+        }
+
     def _missing(self) -> set[str]:
-        newest = self._newest()
-        return set().union(*(self._partners.get(camera, set()) for camera in newest)) - newest
+        cameras = self._next()
+        return set().union(*(self._partners.get(camera, set()) for camera in cameras)) - cameras
 
 
 def read_cloud(pair: Pair) -> Cloud:
@@ -166,11 +184,8 @@ def _intrinsics(frame: CameraFrame) -> Transform:
 
 def _pose(frame: CameraFrame) -> Transform:
     numbers = np.array(frame.map_from_camera, dtype=float)
-    if numbers.size == 16 and np.isfinite(numbers).all():
-        pose = numbers.reshape(4, 4)
-        turn = pose[:3, :3]
-        if np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) and np.linalg.det(turn) > 0:
-            return pose
+    if numbers.size == 16 and is_pose(numbers.reshape(4, 4)):
+        return numbers.reshape(4, 4)
     raise BadRequest(
         f"camera {frame.camera}: its map_from_camera is no pose: a rotation, a position, 0 0 0 1"
     )

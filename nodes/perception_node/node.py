@@ -19,22 +19,23 @@ from nodes import bus
 from nodes.loop import Node, open_node
 from nodes.map_view import MapView
 from nodes.perception_node.association import associate, renamed
+from nodes.perception_node.class_hierarchy import ClassHierarchy, hierarchy_of
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.eye import Eye
-from nodes.perception_node.kinship import Kinship, kinship_of
+from nodes.perception_node.frame_worker import FrameWorker
+from nodes.perception_node.map_updates import subject_of
+from nodes.perception_node.occupancy import occupancy_in
 from nodes.perception_node.pipeline import Look, look, shipped
-from nodes.perception_node.shown import segmented_cloud
-from nodes.perception_node.telling import subject_of
+from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracks import Tracks
-from nodes.perception_node.visibility import looking
 from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
-from schemas.commands import Add, Changed, Classes, Command, LastSeen, Sighting
+from schemas.commands import Add, Classes, Command, LastSeen
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Size
 from schemas.errors import UnknownName
 from schemas.health import Health
+from schemas.replies import Changed, Sighting
 
 _COMPLAINT_S = 60.0
 """What is wrong is over when it was not heard of for so long."""
@@ -60,7 +61,7 @@ class Perception:
         self._config = config
         self._usual_m = usual_m
         self._map = MapView()
-        self._kinship = Kinship()
+        self._classes = ClassHierarchy()
         self._tracks = Tracks()
         self._fetching = False
         self._kb_started_ns = 0
@@ -76,15 +77,15 @@ class Perception:
         node.follow(keys.COMMIT, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
-        self._eye = Eye(look, self._hand_over, self._complain)
+        self._worker = FrameWorker(look, self._hand_over, self._complain)
         for plane in ("rgb", "depth"):
-            bus.follow_cameras(node.session, plane, self._eye.keep, self._complain)
+            bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
 
     def close(self) -> None:
         """Let the look in hand be finished, and no other be begun."""
-        self._eye.close()
+        self._worker.close()
 
-    # On the eye's and on Zenoh's threads
+    # On the worker's and on Zenoh's threads
 
     def _hand_over(self, clouds: Sequence[Cloud], found: Look, took_s: float) -> None:
         self._node.soon(lambda: self._on_look(clouds, found, took_s))
@@ -110,8 +111,8 @@ class Perception:
                 self._map.entities,
                 self._tracks,
                 seen.observations,
-                looking(clouds),
-                self._kinship,
+                occupancy_in(clouds),
+                self._classes,
                 self._config.tracking,
             )
             self._tracks = result.tracks
@@ -173,17 +174,18 @@ class Perception:
         self._on_complaint(f"the map did not take what was seen: {error}")
 
     def _on_commit(self, commit: Commit) -> None:
-        if self._map.seq >= 0 and (not self._map.take(commit) or commit.tbox):
+        if not self._map.take(commit) or commit.tbox:
             self._fetch_map()
 
     def _on_health(self, health: Health) -> None:
         """A new knowledge base may know another map."""
         if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
             self._kb_started_ns = health.started_ns
+            self._map.doubt()
             self._fetch_map()
 
     def _tick(self) -> None:
-        if self._map.seq < 0:
+        if self._map.seq < 0 or self._map.is_behind:
             self._fetch_map()
         elif time.monotonic() - self._looked_at > _NO_FRAMES_S:
             self._node.describe("no frames of cameras come")
@@ -193,18 +195,18 @@ class Perception:
         if self._fetching:
             return
         self._fetching = True
-        classes: list[Kinship] = []
+        classes: list[ClassHierarchy] = []
 
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
-                classes.append(kinship_of(future.result(), self._usual_m))
+                classes.append(hierarchy_of(future.result(), self._usual_m))
             self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
 
         def on_snapshot(future: Future[Snapshot]) -> None:
             self._fetching = False
             if future.exception() is not None or not classes:
                 return
-            (self._kinship,) = classes
+            (self._classes,) = classes
             self._map.begin(future.result())
             self._told_commit = min(self._told_commit, self._map.seq)
             self._node.ready("no frames of cameras yet")

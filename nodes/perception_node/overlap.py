@@ -16,8 +16,8 @@ _GRID = np.stack(
 _A_PART, _NO_PART = 0.3, 0.02
 
 
-class Place(NamedTuple):
-    """The box that a thing fills: `pose` is that of its bottom centre."""
+class OrientedBox(NamedTuple):
+    """The box that a thing fills in the map: `pose` is that of its bottom centre."""
 
     pose: Pose
     size_m: Size
@@ -28,7 +28,7 @@ class Place(NamedTuple):
         return math.prod(self.size_m)
 
 
-def share(inner: Place, outer: Place) -> float:
+def share(inner: OrientedBox, outer: OrientedBox) -> float:
     """The part of the volume of `inner` that is in `outer`, roughly, in [0, 1]."""
     if _apart(inner, outer):
         return 0.0
@@ -40,7 +40,7 @@ def share(inner: Place, outer: Place) -> float:
     )
 
 
-def are_of_one(one: Place, other: Place) -> bool:
+def are_of_one(one: OrientedBox, other: OrientedBox) -> bool:
     """Whether one box may hold a part of the other's thing: they overlap, and neither is tiny."""
     ratio = one.volume_m3 / other.volume_m3
     return (ratio > _NO_PART and share(one, other) > _A_PART) or (
@@ -48,7 +48,7 @@ def are_of_one(one: Place, other: Place) -> bool:
     )
 
 
-def _apart(one: Place, other: Place) -> bool:
+def _apart(one: OrientedBox, other: OrientedBox) -> bool:
     reach = (math.hypot(*one.size_m[:2]) + math.hypot(*other.size_m[:2])) / 2.0
     aside = math.dist(one.pose.position_m[:2], other.pose.position_m[:2])
     above = other.pose.position_m[2] - one.pose.position_m[2]

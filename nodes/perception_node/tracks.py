@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import Votes
-from nodes.perception_node.visibility import Sight
+from nodes.perception_node.occupancy import Occupancy
+from nodes.perception_node.votes import Votes
 from schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
 from schemas.perception import Observation
 
@@ -22,9 +22,9 @@ _MEMORY = 20
 class Track:
     """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of `sized` looks.
 
-    `looks` is how often it was seen since it rests, `filled` how often its place was since then although the
-    thing was not told apart, `unseen` how often in a row it should have been seen since and was not, `odd`
-    how often in a row something of another size filled its place. `whole`: it was seen unhidden and uncut.
+    `looks` is how often it was seen since it rests, `occupied` how often its place was so since then although
+    the thing was not told apart, `unseen` how often in a row it should have been seen since and was not,
+    `odd` how often in a row something of another size was in its place. `whole`: it was seen unhidden, uncut.
     `told` is the map's pose at the last look; `left`: that place is seen empty.
     """
 
@@ -33,7 +33,7 @@ class Track:
     votes: Votes = field(default_factory=Votes)
     sized: int = 0
     looks: int = 0
-    filled: int = 0
+    occupied: int = 0
     unseen: int = 0
     odd: int = 0
     whole: bool = False
@@ -57,22 +57,22 @@ class Track:
             pose=self._mean(pose) if still else pose,
             votes=votes,
             looks=self.looks + 1 if still else 1,
-            filled=self.filled if still else self.filled + 1 if near else 0,
+            occupied=self.occupied if still else self.occupied + 1 if near else 0,
             unseen=0,
             odd=0,
         )
 
-    def miss(self, place: Sight, *, odd: bool) -> Track:
+    def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
         """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
-        if place == "hidden":
+        if occupancy == "unknown":
             return self
-        if place == "open":
+        if occupancy == "free":
             return replace(self, unseen=self.unseen + 1, odd=0)
-        return replace(self, filled=self.filled + 1, unseen=0, odd=self.odd + 1 if odd else 0)
+        return replace(self, occupied=self.occupied + 1, unseen=0, odd=self.odd + 1 if odd else 0)
 
     def rests(self, looks: int) -> bool:
         """Whether it was seen where it is, and is there since so many looks."""
-        return self.looks > 0 and self.looks + self.filled >= looks and not self.unseen and not self.odd
+        return self.looks > 0 and self.looks + self.occupied >= looks and not self.unseen and not self.odd
 
     def _sized(self, size_m: Size, *, whole: bool) -> Track:
         """With one more look at its size; one at the whole of it is worth more than any at a part."""

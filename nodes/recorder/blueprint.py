@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import rerun.blueprint as rrb
 
-from nodes.recorder.sightings import BOXES, camera_path
+from nodes.recorder.perception_archetypes import BOXES, camera_path
 from schemas.entities import Pose, Vector
 
 _BACKGROUND = (24, 26, 30)

@@ -10,11 +10,11 @@ from nodes.loop import Node, open_node
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.graph import graph_of
 from nodes.recorder.map_state import MapState, missed
+from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
 from nodes.recorder.surfaces import Kind
-from nodes.recorder.watching import Watching
 from schemas import keys, wording
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
@@ -48,7 +48,7 @@ class Recorder:
         node.follow(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
-        Watching(node, recording, self._at)
+        PerceptionRecorder(node, recording, self._at)
 
     # The map
 
@@ -97,10 +97,9 @@ class Recorder:
         anew = snapshot.seq < self._map.seq
         self._map.begin(snapshot)
         self._map.relate(stars)
-        for commit in sorted(self._early, key=lambda commit: commit.seq):
-            self._map.take(commit)
+        early = sorted(self._early, key=lambda commit: commit.seq)
+        self._has_map = all(self._map.take(commit) for commit in early)  # else one between is missing
         self._early.clear()
-        self._has_map = True
         self._at(time.time_ns(), self._map.seq)
         if first or anew:
             known = wording.entities(len(self._map.entities))
@@ -165,11 +164,13 @@ class Recorder:
 
     def _fetch_some_surfaces(self, kinds: dict[str, Kind]) -> None:
         def on_surfaces(future: Future[Surfaces]) -> None:
-            if future.exception() is None:
-                for name, surface in future.result().surfaces.items():
-                    self._stage.surfaces.take(kinds[name], surface)
-                self._at(time.time_ns())
-                self._show_all()
+            if future.exception() is not None:
+                self._stage.surfaces.give_up(kinds.values())
+                return
+            for name, surface in future.result().surfaces.items():
+                self._stage.surfaces.take(kinds[name], surface)
+            self._at(time.time_ns())
+            self._show_all()
 
         query = SurfaceQuery(names=tuple(kinds))
         self._node.ask_later(keys.SIM, "surfaces", query, Surfaces).add_done_callback(on_surfaces)

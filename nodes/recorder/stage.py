@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from nodes.recorder.figures import Figure, figure_of, pose_of, still
 from nodes.recorder.graph import Graph
 from nodes.recorder.recording import Recording
-from nodes.recorder.surfaces import SurfaceShelf
+from nodes.recorder.surfaces import SurfaceCache
 from schemas.entities import Entity, Pose
 from schemas.scenes import Body
 
@@ -19,7 +19,7 @@ class Stage:
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
-        self.surfaces = SurfaceShelf()
+        self.surfaces = SurfaceCache()
         self._drawn: dict[str, Drawn] = {}
         self._graph = Graph({}, ())
 

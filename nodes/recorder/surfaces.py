@@ -10,7 +10,7 @@ from schemas.scenes import Body, Surface
 Kind = tuple[str, Size]
 
 
-class SurfaceShelf:
+class SurfaceCache:
     """Surfaces by model and size."""
 
     def __init__(self) -> None:
@@ -32,6 +32,12 @@ class SurfaceShelf:
     def take(self, kind: Kind, surface: Surface) -> None:
         """Remember what the simulator told."""
         self._known[kind] = surface
+
+    def give_up(self, kinds: Iterable[Kind]) -> None:
+        """What was asked for in vain may be asked for again."""
+        for kind in kinds:
+            if self._known.get(kind) is None:
+                self._known.pop(kind, None)
 
 
 def _kind(body: Body) -> Kind:

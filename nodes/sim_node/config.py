@@ -23,7 +23,7 @@ class CameraConfig:
 
 @dataclass(frozen=True)
 class SimConfig:
-    """`world` is an MJCF or JSON scene, None a bare floor; `models` a folder of files (`models.files`)."""
+    """`world` is an MJCF or JSON scene, None a bare floor; `models` a folder of files (`models.sources`)."""
 
     world: Path | None = None
     models: Path | None = None

@@ -9,13 +9,14 @@ from typing import Any, Literal, TypeVar
 from nodes import bus
 from nodes.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
-from nodes.sim_node.models.files import Models
+from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import open_world
 from schemas import codec, keys, wording
-from schemas.commands import Done, Pause, Reset, StepOnce
+from schemas.commands import Pause, Reset, StepOnce
+from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
     Delete,

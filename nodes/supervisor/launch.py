@@ -29,7 +29,7 @@ def seed(settings: Settings) -> None:
     from nodes.kb_node.seed import seed as seed_journal
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
-        from nodes.sim_node.models.files import Models
+        from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
         open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))

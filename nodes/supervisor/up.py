@@ -12,12 +12,16 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import zenoh
 from msgspec import structs
 
 from nodes import bus
+from nodes.supervisor import presence
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
 from schemas import errors, keys
+from schemas.commands import Classes
+from schemas.entities import ClassInfo
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
@@ -39,13 +43,14 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     _require_free(settings.listen)
     if settings.record:
         settings = structs.replace(settings, live_view=_live_view())
-    say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
-    process = supervisor.start(settings)
-    try:
-        _Foreground(supervisor, settings, process, say).run()
-    finally:
-        _stop(process)
-        say("stopped")
+    with presence.announced(settings.reachable):
+        say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
+        process = supervisor.start(settings)
+        try:
+            _Foreground(supervisor, settings, process, say).run()
+        finally:
+            _stop(process)
+            say("stopped")
 
 
 class _Foreground:
@@ -73,14 +78,15 @@ class _Foreground:
         deadline = time.monotonic() + _START_TIMEOUT_S
         greeted = False
         with contextlib.ExitStack() as stack:
-            following = False
+            session = None
             while not self._stopping and self._process.poll() is None:
                 self._require_alive()
-                if not following:
-                    following = self._follow(stack)
+                if session is None:
+                    session = self._follow(stack)
                 self._hear()
-                if not greeted and set(self._pids) == set(self._settings.nodes):
+                if session is not None and not greeted and set(self._pids) == set(self._settings.nodes):
                     greeted = True
+                    self._tell_of_models(session)
                     self._greet()
                 if not greeted and time.monotonic() > deadline:
                     late = sorted(set(self._settings.nodes) - set(self._pids))
@@ -90,14 +96,14 @@ class _Foreground:
     def _on_signal(self, *_: object) -> None:
         self._stopping = True
 
-    def _follow(self, stack: contextlib.ExitStack) -> bool:
+    def _follow(self, stack: contextlib.ExitStack) -> zenoh.Session | None:
         """Join the network as soon as the coordinator listens."""
         try:
             session = stack.enter_context(bus.open_session(bus.Network(connect=(self._settings.reachable,))))
         except errors.NoAnswer:
-            return False
+            return None
         bus.follow(session, keys.HEALTH, lambda _, health: self._beats.put(health))
-        return True
+        return session
 
     def _hear(self) -> None:
         with contextlib.suppress(queue.Empty):
@@ -124,6 +130,18 @@ class _Foreground:
                 self._say(f"{node:<{_COLUMN}} silent for {_HANGS_AFTER_S:g} s: restarting it")
                 self._heard[node] = time.monotonic()
                 self._supervisor.restart(node)
+
+    def _tell_of_models(self, session: zenoh.Session) -> None:
+        """Say which of the files in `--models` are nobody's model."""
+        if self._settings.models is None or not self._settings.sim:
+            return
+        from nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
+
+        with contextlib.suppress(errors.SemmapError, OSError):
+            classes = bus.ask(session, keys.CMD, "classes", Classes(), tuple[ClassInfo, ...])
+            if strange := passed_over(Path(self._settings.models), {c.model for c in classes}):
+                said = f"passed over, for no class has a model of that name: {', '.join(strange)}"
+                self._say(f"{'models':<{_COLUMN}} {said}")
 
     def _greet(self) -> None:
         connect = (

@@ -10,8 +10,8 @@ import numpy as np
 from nodes.sim_node.models.parts import Colour, Vec3
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import View, look_at
+from nodes.training.placements import Rectangle, spread
 from nodes.training.scenes import Item
-from nodes.training.spots import Rectangle, spread
 
 _HANGING = (
     "air_conditioning blinds board boiler curtain door extractor_hood fences handle heating jacket_hook light"
@@ -71,24 +71,24 @@ def table_scene(kinds: Sequence[str], rng: np.random.Generator, *, crowded_share
 def floor_scene(kinds: Sequence[str], rng: np.random.Generator) -> list[Item]:
     """These things on the floor."""
     sizes = [varied_size(kind, rng) for kind in kinds]
-    spots = spread(kinds, sizes, (3.5, 3.5), float(rng.uniform(0.02, 0.3)), rng)
-    return standing(kinds, sizes, spots, 0.0, rng)
+    placements = spread(kinds, sizes, (3.5, 3.5), float(rng.uniform(0.02, 0.3)), rng)
+    return standing(kinds, sizes, placements, 0.0, rng)
 
 
 def standing(
     kinds: Sequence[str],
     sizes: Sequence[Vec3],
-    spots: Sequence[Rectangle | None],
+    placements: Sequence[Rectangle | None],
     height_m: float,
     rng: np.random.Generator,
 ) -> list[Item]:
-    """Things at their spots, at one height."""
+    """Things at their placements, at one height."""
     items = []
-    for n, (kind, size, spot) in enumerate(zip(kinds, sizes, spots, strict=True)):
-        if spot is not None:
-            at = (spot[0], spot[1], height_m + 0.001)
+    for n, (kind, size, placement) in enumerate(zip(kinds, sizes, placements, strict=True)):
+        if placement is not None:
+            at = (placement[0], placement[1], height_m + 0.001)
             odd = kind in SMALL and is_odd(kind, size)
-            items.append(Item(f"{kind}_{n}", kind, size, varied_colour(kind, rng), at, spot[4], odd))
+            items.append(Item(f"{kind}_{n}", kind, size, varied_colour(kind, rng), at, placement[4], odd))
     return items
 
 

@@ -56,4 +56,5 @@ def door(semantic_map):
     }
     door = Door(lambda verb, message: answers[verb](message))
     door.classes = ClassNames(semantic_map.class_table())
+    door.begin(semantic_map.snapshot())
     return door

@@ -9,10 +9,10 @@ from tests.coordinator.test_door import add
 AT = (4.0, 5.0, 0.0)
 SCENE = b'{"entities": [{"class": "Chair", "name": "new"}]}'
 CHANGES = {
-    "class": lambda d, s: d.update(c.Update(name="chair1", class_="Furniture", source=s)),
-    "size": lambda d, s: d.update(c.Update(name="chair1", size=(1.0, 1.0, 1.0), source=s)),
-    "reference": lambda d, s: d.update(c.Update(name="chair1", ref="stool", source=s)),
-    "no references": lambda d, s: d.update(c.Update(name="chair1", alt=(), source=s)),
+    "class": lambda d, s: d.change(c.Update(name="chair1", class_="Furniture", source=s)),
+    "size": lambda d, s: d.change(c.Update(name="chair1", size=(1.0, 1.0, 1.0), source=s)),
+    "reference": lambda d, s: d.change(c.Update(name="chair1", ref="stool", source=s)),
+    "no references": lambda d, s: d.change(c.Update(name="chair1", alt=(), source=s)),
     "existence": lambda d, s: d.remove(c.Remove(names=("chair1",), source=s)),
     "all existence": lambda d, s: d.clear(c.Clear(source=s)),
     "another map": lambda d, s: d.load(c.Load(content=SCENE, filename="s.json", replace=True, source=s)),
@@ -35,7 +35,7 @@ def test_what_an_operator_said_only_an_operator_changes(door, source, change):
 @pytest.mark.parametrize("source", ["scene", "perception"])
 def test_anybody_may_say_where_it_is(door, source):
     add(door, name="chair1")
-    door.update(c.Update(name="chair1", at=AT, source=source, agent="camera", confidence=0.5))
+    door.change(c.Update(name="chair1", at=AT, source=source, agent="camera", confidence=0.5))
     chair1 = door.entity("chair1")
     assert (chair1.pose.position_m, chair1.pose_provenance.source) == (AT, source)
     assert (chair1.pose_provenance.agent, chair1.pose_provenance.confidence) == ("camera", 0.5)
@@ -52,8 +52,8 @@ def test_what_perception_said_perception_changes(door, change):
 @changes
 def test_an_operator_s_word_on_a_thing_that_perception_brought_in_counts(door, change):
     add(door, name="chair1", alt=("seat",), source="perception")
-    door.update(c.Update(name="chair1", ref="my chair"))
-    door.update(c.Update(name="chair1", at=AT, source="perception"))
+    door.change(c.Update(name="chair1", ref="my chair"))
+    door.change(c.Update(name="chair1", at=AT, source="perception"))
     with pytest.raises(errors.Refused, match="only an operator may"):
         change(door, "perception")
 
@@ -71,7 +71,7 @@ def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(door)
 def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic_map):
     add(door, name="chair1", ref="seat")
     before = door.entity("chair1")
-    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception", confidence=0.9))
+    door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception", confidence=0.9))
     chair1 = door.entity("chair1")
     assert (chair1.conflict, chair1.provenance.source) == ("looks like a Cup", "perception")
     assert chair1.provenance.confidence == 0.9
@@ -80,22 +80,22 @@ def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic
         before.pose_provenance,
         before.reference_provenance,
     )
-    door.update(c.Update(name="chair1", conflict="not seen", source="perception"))
+    door.change(c.Update(name="chair1", conflict="not seen", source="perception"))
     assert door.entity("chair1").conflict == "not seen"
-    door.update(c.Update(name="chair1", conflict="", source="perception"))
+    door.change(c.Update(name="chair1", conflict="", source="perception"))
     assert door.entity("chair1").conflict == ""
     assert not any("conflict" in triple[1] for triple in semantic_map.abox())
 
 
 def test_a_conflict_goes_with_its_entity(door, semantic_map):
     add(door, name="chair1")
-    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
     door.remove(c.Remove(names=("chair1",)))
     assert semantic_map.abox() == []
 
 
 def test_the_same_conflict_again_changes_nothing(door):
     add(door, name="chair1")
-    door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
-    again = door.update(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
+    again = door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
     assert again.commit is None

@@ -15,10 +15,11 @@ from schemas import commands as c
 from schemas import errors
 from schemas.commits import Commit, Transaction
 from schemas.entities import Pose, orientation_from_yaw
+from schemas.replies import Changed
 
 
-def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> c.Changed:
-    return door.add(c.Add(class_=class_, name=name, **fields))
+def add(door: Door, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
+    return door.change(c.Add(class_=class_, name=name, **fields))
 
 
 def everything(semantic_map) -> set:
@@ -73,15 +74,15 @@ def test_a_refused_add_changes_nothing(door, semantic_map, fields, error):
 
 def test_what_is_not_named_in_an_update_stays(door):
     add(door, name="chair1", at=(1.0, 2.0, 3.0), yaw=1.0, size=(1.0, 1.0, 1.0), ref="seat", alt=("a", "b"))
-    door.update(c.Update(name="chair1", at=(5.0, 6.0, 7.0)))
+    door.change(c.Update(name="chair1", at=(5.0, 6.0, 7.0)))
     chair = door.entity("chair1")
     assert chair.pose == Pose(position_m=(5.0, 6.0, 7.0), orientation_wxyz=orientation_from_yaw(1.0))
     assert (chair.size_m, chair.preferred_reference) == ((1.0, 1.0, 1.0), "seat")
     assert chair.alternative_references == ("a", "b")
-    door.update(c.Update(name="chair1", ref="throne"))
+    door.change(c.Update(name="chair1", ref="throne"))
     assert door.entity("chair1").pose == chair.pose
     assert door.entity("chair1").preferred_reference == "throne"
-    door.update(c.Update(name="chair1", class_="Furniture"))
+    door.change(c.Update(name="chair1", class_="Furniture"))
     assert door.entity("chair1").class_ == "Furniture"
     assert door.entity("chair1").size_m == (1.0, 1.0, 1.0)
 
@@ -90,13 +91,13 @@ def test_an_update_leaves_no_orphans(door, semantic_map):
     add(door, name="chair1", ref="seat", alt=("a", "b"), size=(1.0, 1.0, 1.0))
     before = len(everything(semantic_map))
     for text in ("x", "y", "z"):
-        door.update(c.Update(name="chair1", ref=text, alt=(text, text + text), size=(2.0, 1.0, 1.0), yaw=0.0))
+        door.change(c.Update(name="chair1", ref=text, alt=(text, text + text), size=(2.0, 1.0, 1.0), yaw=0.0))
     assert len(everything(semantic_map)) == before
 
 
 def test_an_update_that_changes_nothing_is_no_commit(door):
     add(door, name="chair1", at=(1.0, 2.0, 0.0), ref="seat", alt=("a",))
-    reply = door.update(c.Update(name="chair1", at=(1.0, 2.0, 0.0), ref="seat", alt=("a",), class_="Chair"))
+    reply = door.change(c.Update(name="chair1", at=(1.0, 2.0, 0.0), ref="seat", alt=("a",), class_="Chair"))
     assert reply.commit is None
 
 
@@ -125,7 +126,7 @@ def test_clear_on_an_empty_map_is_no_commit(door):
 def test_a_name_can_be_used_again_after_removal_and_after_changes_of_references(door):
     for _ in range(3):
         add(door, name="chair1", ref="seat")
-        door.update(c.Update(name="chair1", ref="stool"))
+        door.change(c.Update(name="chair1", ref="stool"))
         door.remove(c.Remove(names=("chair1",)))
 
 
@@ -141,15 +142,15 @@ def test_the_same_command_id_is_executed_once(door):
 
 def test_perception_may_move_but_not_redefine_what_an_operator_put_in(door):
     add(door, name="chair1")
-    door.update(c.Update(name="chair1", at=(1.0, 1.0, 0.0), source="perception"))
+    door.change(c.Update(name="chair1", at=(1.0, 1.0, 0.0), source="perception"))
     for change in ({"class_": "Furniture"}, {"ref": "thing"}):
         with pytest.raises(errors.Refused, match="operator"):
-            door.update(c.Update(name="chair1", source="perception", **change))
+            door.change(c.Update(name="chair1", source="perception", **change))
     with pytest.raises(errors.Refused, match="operator"):
         door.remove(c.Remove(names=("chair1",), source="perception"))
 
 
-def load(door: Door, text: str, **fields) -> c.Changed:
+def load(door: Door, text: str, **fields) -> Changed:
     return door.load(c.Load(content=text.encode(), filename="scene.json", **fields))
 
 

@@ -37,7 +37,7 @@ def test_each_batch_doubles_what_is_there():
 def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(door):
     asked = []
     keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *words: asked.append(words), asked.append)
-    door.add(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.scene.known = True
     keeping.keep()
     assert asked == []
@@ -47,7 +47,7 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
 
 def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):
     keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *_: None, print)
-    door.add(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     assert keeping.problems() == []
-    door.update(c.Update(name="chair1", conflict="not seen where it should stand", source="perception"))
+    door.change(c.Update(name="chair1", conflict="not seen where it should stand", source="perception"))
     assert keeping.problems() == ["chair1: perception: not seen where it should stand"]

@@ -8,7 +8,8 @@ import pytest
 
 from nodes.coordinator.turns import GROUP, Turns
 from schemas import errors
-from schemas.commands import Add, Changed, Update
+from schemas.commands import Add, Update
+from schemas.replies import Changed
 
 
 class KnowledgeBase:

@@ -50,8 +50,10 @@ def test_infer_says_what_was_not_said(furnished):
     [
         ("chair1", "a", "Chair", {"chair1 type Chair"}),
         ("chair1", "type", "Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
+        ("chair1", "rdf:type", "dm:Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
         ("kitchen1", "a", "Location", {"chair1 isLocatedIn kitchen1", "isLocatedIn range Location"}),
         ("chair1", "isLocatedIn", "kitchen1", {"chair1 isLocatedIn kitchen1"}),
+        ("chair1", "dm:isLocatedIn", ":kitchen1", {"chair1 isLocatedIn kitchen1"}),
         ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
     ],
 )
@@ -66,6 +68,13 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
         ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
         ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
         ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
+        (
+            "chair1",
+            "xyz",
+            "kitchen1",
+            errors.BadRequest,
+            "'xyz'; there are type and the properties of the TBox",
+        ),
         ("chair1", "a", "Door", errors.Refused, "it does not hold that chair1 is of class Door"),
         (
             "chair1",

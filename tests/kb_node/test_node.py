@@ -13,7 +13,7 @@ from nodes.kb_node.seed import seed
 from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, SnapshotQuery, StarQuery
+from schemas.bridge import BRIDGE, LoadDocument, LoadTBox, SnapshotQuery, StarQuery
 from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
@@ -129,6 +129,19 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     seen = dict(until(entities, 3))
     assert seen == {keys.entity_key(c, "pub"): None for c in ("Door", "Object", "Physical_Thing")}
     subscriber.undeclare()
+
+
+def test_the_tbox_that_holds_is_no_change(session):
+    def load(number, text):
+        order = LoadTBox(id=f"tbox{number}", source="file", content=text.encode(), filename="tbox.ttl")
+        return ask(session, "load-tbox", order)
+
+    text = TBOX_TURTLE + "dm:Chair rdfs:subClassOf [ owl:unionOf ( dm:Seat dm:Object ) ] ."
+    commit = load(1, text)
+    assert commit.tbox
+    assert load(2, text) is None
+    assert load(1, text) == commit
+    assert load(3, TBOX_TURTLE).seq == commit.seq + 1
 
 
 def test_two_clients_see_one_map(bench, session):

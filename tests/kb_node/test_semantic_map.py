@@ -65,6 +65,18 @@ def test_the_same_command_twice_is_answered_with_the_first_commit(semantic_map):
     home.close(again)
 
 
+def test_the_same_command_twice_at_once_is_answered_with_one_commit(semantic_map):
+    several = [
+        transaction("same", chair()),
+        transaction("same", chair("chair2")),
+        transaction(3, chair("c3")),
+    ]
+    first, again, third = semantic_map.commit_together(several)
+    assert again == first
+    assert [commit.seq for commit in (first, third)] == [1, 2]
+    assert sorted(entity.name for entity in semantic_map.entities()) == ["c3", "chair1"]
+
+
 HIGH = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_x "high"^^xsd:float ] .'
 NAN = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_y "NaN"^^xsd:float ] .'
 TWICE = "<http://a.org/x#b> a dm:Chair . <http://b.org/x#b> a dm:Chair ."

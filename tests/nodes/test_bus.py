@@ -11,7 +11,7 @@ import msgpack
 import pytest
 
 from nodes import bus
-from schemas import codec, commands, errors, keys
+from schemas import codec, commands, errors, keys, replies
 from schemas.commits import Commit
 from tests.conftest import free_endpoint
 
@@ -43,9 +43,9 @@ def answer(handle):
 
 def test_a_question_is_answered(pair):
     server, client = pair
-    bus.serve(server, PREFIX, answer(lambda request: commands.Done(text=request.read(commands.Get).name)))
-    reply = bus.ask(client, PREFIX, "get", commands.Get(name="chair1"), commands.Done)
-    assert reply == commands.Done(text="chair1")
+    bus.serve(server, PREFIX, answer(lambda request: replies.Done(text=request.read(commands.Get).name)))
+    reply = bus.ask(client, PREFIX, "get", commands.Get(name="chair1"), replies.Done)
+    assert reply == replies.Done(text="chair1")
 
 
 def test_an_error_reply_is_raised_with_its_code(pair):
@@ -56,13 +56,13 @@ def test_an_error_reply_is_raised_with_its_code(pair):
 
     bus.serve(server, PREFIX, answer(refuse))
     with pytest.raises(errors.NameTaken, match="taken"):
-        bus.ask(client, PREFIX, "add", commands.Get(name="x"), commands.Done)
+        bus.ask(client, PREFIX, "add", commands.Get(name="x"), replies.Done)
 
 
 def test_nobody_is_no_answer(pair):
     _, client = pair
     with pytest.raises(errors.NoAnswer, match="nobody serves it"):
-        bus.ask(client, PREFIX, "get", commands.Get(name="x"), commands.Done, patience_s=0.2)
+        bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done, patience_s=0.2)
 
 
 def test_one_who_does_not_answer_in_time_is_no_answer(pair):
@@ -70,23 +70,23 @@ def test_one_who_does_not_answer_in_time_is_no_answer(pair):
     kept = []
     bus.serve(server, PREFIX, kept.append)
     with pytest.raises(errors.NoAnswer, match=r"within 0\.2 s"):
-        bus.ask(client, PREFIX, "get", commands.Get(name="x"), commands.Done, timeout_s=0.2)
+        bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done, timeout_s=0.2)
 
 
 def test_patience_lasts_until_somebody_serves(pair):
     server, client = pair
     serve = threading.Timer(
-        0.4, lambda: bus.serve(server, PREFIX, answer(lambda _: commands.Done(text="here")))
+        0.4, lambda: bus.serve(server, PREFIX, answer(lambda _: replies.Done(text="here")))
     )
     serve.start()
-    assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), commands.Done).text == "here"
+    assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done).text == "here"
     serve.join()
 
 
 def test_ask_later_answers_once_also_when_nobody_is_there(pair):
     _, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
-    bus.ask_later(client, PREFIX, "get", commands.Get(name="x"), commands.Done, answers.put)
+    bus.ask_later(client, PREFIX, "get", commands.Get(name="x"), replies.Done, answers.put)
     read = answers.get(timeout=5)
     with pytest.raises(errors.NoAnswer, match="nobody serves it"):
         read()
@@ -121,7 +121,7 @@ def test_a_malformed_message_is_a_bad_request(pair, payload):
 def test_a_put_is_executed_and_acknowledged(pair):
     server, client = pair
     acks = client.declare_subscriber(keys.ACK.key)
-    bus.serve_puts(server, PREFIX, answer(lambda request: commands.Done(text=request.verb)))
+    bus.serve_puts(server, PREFIX, answer(lambda request: replies.Done(text=request.verb)))
     time.sleep(0.3)
     client.put(PREFIX, msgpack.packb({"verb": "get", "name": "chair1", "id": "7"}))
     ack = msgpack.unpackb(acks.recv().payload.to_bytes())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import threading
 import time
@@ -12,7 +13,7 @@ import pytest
 
 from nodes import bus
 from nodes.loop import Node, Relay, then
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, replies
 from schemas.health import Health
 from tests.conftest import free_endpoint, until
 
@@ -25,7 +26,7 @@ def fail(_):
 
 def relay(m):
     """To the verb that is named, of this node or of nobody."""
-    return Relay(m.predicate, m.value, commands.Get(name=m.name), commands.Done, 1.0)
+    return Relay(m.predicate, m.value, commands.Get(name=m.name), replies.Done, 1.0)
 
 
 @pytest.fixture
@@ -36,14 +37,14 @@ def network():
         node = Node("test_node", session)
         promise: Future = Future()
         handlers = {
-            "get": (commands.Get, lambda m: commands.Done(text=m.name)),
+            "get": (commands.Get, lambda m: replies.Done(text=m.name)),
             "check": (commands.Check, fail),
             "infer": (commands.Infer, lambda _: promise),
             "explain": (commands.Explain, relay),
         }
         node.serve(PREFIX, handlers)
         node.every(
-            0.05, lambda: promise.set_result(commands.Done(text="late")) if not promise.done() else None
+            0.05, lambda: promise.set_result(replies.Done(text="late")) if not promise.done() else None
         )
         thread = threading.Thread(target=node.run)
         thread.start()
@@ -56,14 +57,14 @@ def network():
 def test_a_fault_is_answered_and_the_node_lives_on(network):
     _, client = network
     with pytest.raises(errors.InternalError, match="ZeroDivisionError: oops"):
-        bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
-    assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), commands.Done).text == "x"
+        bus.ask(client, PREFIX, "check", commands.Check(), replies.Done)
+    assert bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done).text == "x"
 
 
 def test_an_unknown_verb_is_told_with_those_that_are_there(network):
     _, client = network
     with pytest.raises(errors.UnknownVerb, match="there are: check, explain, get, infer"):
-        bus.ask(client, PREFIX, "fly", commands.Get(name="x"), commands.Done)
+        bus.ask(client, PREFIX, "fly", commands.Get(name="x"), replies.Done)
 
 
 def test_a_verb_is_left_to_the_node_that_serves_it():
@@ -74,10 +75,10 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
     away = threading.Event()
 
     def done(text):
-        return commands.Get, lambda _: commands.Done(text=text)
+        return commands.Get, lambda _: replies.Done(text=text)
 
     def get(client, verb, **how):
-        return bus.ask(client, PREFIX, verb, commands.Get(name="x"), commands.Done, **how).text
+        return bus.ask(client, PREFIX, verb, commands.Get(name="x"), replies.Done, **how).text
 
     with bus.open_session(other) as there, bus.open_session(first) as here:
         nodes = Node("first", here), Node("other", there)
@@ -94,7 +95,7 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
                 assert get(client, "list", first_hand=True) == "other"
                 assert get(client, "list") == "other"
                 with pytest.raises(errors.UnknownVerb, match="there are: get, list"):
-                    bus.ask(client, PREFIX, "*", commands.Get(name="x"), commands.Done)
+                    bus.ask(client, PREFIX, "*", commands.Get(name="x"), replies.Done)
                 away.set()
                 nodes[0].stop()
                 threads[0].join(timeout=5)
@@ -109,7 +110,7 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
 
 def test_a_reply_may_come_later(network):
     _, client = network
-    assert bus.ask(client, PREFIX, "infer", commands.Infer(), commands.Done).text == "late"
+    assert bus.ask(client, PREFIX, "infer", commands.Infer(), replies.Done).text == "late"
 
 
 def test_the_heartbeat_shows_state_and_the_last_error(network):
@@ -117,7 +118,7 @@ def test_the_heartbeat_shows_state_and_the_last_error(network):
     beats: list[Health] = []
     bus.follow(client, keys.HEALTH, lambda _, health: beats.append(health))
     with pytest.raises(errors.InternalError):
-        bus.ask(client, PREFIX, "check", commands.Check(), commands.Done)
+        bus.ask(client, PREFIX, "check", commands.Check(), replies.Done)
     until(lambda: beats and "oops" in beats[-1].last_error, "the error is in the heartbeat")
     assert re.match(r"\d\d:\d\d:\d\d check: ", beats[-1].last_error)
     node._error_shown_until = 0.0
@@ -126,7 +127,8 @@ def test_the_heartbeat_shows_state_and_the_last_error(network):
     node._events.put(lambda: node.ready("so many entities"))
     until(lambda: beats[-1].state == "ready", "the heartbeat says ready")
     assert beats[-1].detail == "so many entities"
-    assert bus.who_is_live(client) == {"test_node"}
+    tokens = [str(reply.ok.key_expr) for reply in client.liveliness().get(keys.live_key("*"))]
+    assert tokens == [keys.live_key("test_node", str(os.getpid()))]
 
 
 def test_a_loop_that_is_blocked_falls_silent(network):
@@ -159,7 +161,7 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
     def finish():
         done.append(len(put_off))
         while put_off:
-            put_off.pop().set_result(commands.Done(text="done"))
+            put_off.pop().set_result(replies.Done(text="done"))
 
     def later(_):
         put_off.append(Future())
@@ -167,8 +169,30 @@ def test_what_is_put_off_is_done_when_no_event_waits(network):
 
     node.when_idle(finish)
     node.serve("semmap/later", {"get": (commands.Get, later)})
-    assert bus.ask(client, "semmap/later", "get", commands.Get(name="x"), commands.Done).text == "done"
+    assert bus.ask(client, "semmap/later", "get", commands.Get(name="x"), replies.Done).text == "done"
     assert 1 in done
+
+
+def test_what_comes_after_a_reply_does_not_keep_it_waiting_and_precedes_the_next_event(network):
+    node, client = network
+    order: list[str] = []
+    answered = threading.Event()
+
+    def await_the_answer():
+        assert answered.wait(5)
+        order.append("the first thing")
+
+    def answer(_):
+        node.afterwards(await_the_answer)
+        node.afterwards(lambda: fail(None))
+        node.afterwards(lambda: order.append("the last thing"))
+        node.soon(lambda: order.append("the next event"))
+        return replies.Done(text="done")
+
+    node.serve("semmap/first", {"get": (commands.Get, answer)})
+    assert bus.ask(client, "semmap/first", "get", commands.Get(name="x"), replies.Done).text == "done"
+    answered.set()
+    until(lambda: order == ["the first thing", "the last thing", "the next event"], "in that order")
 
 
 def asking_for(prefix, verb, name="x"):
@@ -179,7 +203,7 @@ def asking_for(prefix, verb, name="x"):
 def test_a_reply_of_another_is_passed_on_as_it_comes(network, length):
     _, client = network
     question = asking_for(PREFIX, "get", "x" * length)
-    assert bus.ask(client, PREFIX, "explain", question, commands.Done).text == "x" * length
+    assert bus.ask(client, PREFIX, "explain", question, replies.Done).text == "x" * length
 
 
 def test_a_reply_of_another_in_json(network):
@@ -195,7 +219,7 @@ def test_a_reply_of_another_in_json(network):
 def test_so_is_an_error(network, prefix, verb, error):
     _, client = network
     with pytest.raises(error):
-        bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), commands.Done)
+        bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), replies.Done)
 
 
 def test_who_is_to_reply_may_come_late(network):
@@ -204,11 +228,11 @@ def test_who_is_to_reply_may_come_late(network):
 
     def serve():
         time.sleep(0.5)
-        bus.serve(client, late, lambda request: request.reply(commands.Done(text="here")))
+        bus.serve(client, late, lambda request: request.reply(replies.Done(text="here")))
 
     thread = threading.Thread(target=serve)
     thread.start()
-    assert bus.ask(client, PREFIX, "explain", asking_for(late, "get"), commands.Done).text == "here"
+    assert bus.ask(client, PREFIX, "explain", asking_for(late, "get"), replies.Done).text == "here"
     thread.join()
 
 
@@ -217,11 +241,11 @@ def test_somebody_who_comes_late_is_waited_for(network):
     served: list[Future] = []
     node._events.put(
         lambda: served.append(
-            node.ask_later("semmap/late", "get", commands.Get(name="x"), commands.Done, patience_s=5.0)
+            node.ask_later("semmap/late", "get", commands.Get(name="x"), replies.Done, patience_s=5.0)
         )
     )
     until(lambda: served, "the question")
     time.sleep(0.3)
     assert not served[0].done()
-    bus.serve(client, "semmap/late", lambda request: request.reply(commands.Done(text="here")))
+    bus.serve(client, "semmap/late", lambda request: request.reply(replies.Done(text="here")))
     assert served[0].result(timeout=5).text == "here"

@@ -38,3 +38,20 @@ def test_another_snapshot_counts():
     view = begun()
     view.begin(Snapshot(seq=9, entities=(entity("sink1", "Sink"),)))
     assert (view.seq, set(view.entities)) == (9, {"sink1"})
+
+
+def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
+    view = MapView()
+    view.take(commit(2, entity("sink1", "Sink")))
+    view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
+    assert view.is_behind
+    view.begin(Snapshot(seq=2, entities=(entity("cup1", "Cup"), entity("sink1", "Sink"))))
+    assert not view.is_behind
+
+
+def test_another_knowledge_base_may_know_less():
+    view = begun()
+    view.take(commit(2, entity("sink1", "Sink")))
+    view.doubt()
+    view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
+    assert not view.is_behind

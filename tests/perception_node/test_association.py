@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.perception_node.association import renamed
-from nodes.perception_node.telling import DISPLACED, MISSING
+from nodes.perception_node.map_updates import DISPLACED, MISSING
 from nodes.perception_node.tracks import Tracks
 from schemas.commands import Add, Remove, Update
 from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen

@@ -72,6 +72,29 @@ def test_cameras_that_see_together_are_taken_together():
     later.join()
 
 
+def test_cameras_with_clocks_of_their_own_take_turns():
+    frames = Frames()
+    seen = []
+    for moment in range(10, 100, 10):  # the right one is always a little newer
+        put(frames, "left", moment)
+        put(frames, "right", moment + 1)
+        seen += taken(frames)
+    assert [camera for camera, _ in seen] == ["right", "left"] * 4 + ["right"]
+    assert [stamp_ns // 10 for _, stamp_ns in seen] == list(range(1, 10))
+
+
+def test_a_frame_that_is_late_is_not_taken_after_a_newer_one():
+    frames = Frames()
+    put(frames, "left", 1)
+    put(frames, "right", 1)
+    assert taken(frames) == [("left", 1), ("right", 1)]
+    put(frames, "right", 2)
+    put(frames, "left", 3)
+    put(frames, "right", 3)
+    assert taken(frames) == [("left", 3), ("right", 3)]
+    assert taken(frames) == []
+
+
 def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
     frames = Frames()
     put(frames, "left", 1)

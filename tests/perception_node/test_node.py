@@ -18,10 +18,11 @@ from nodes.perception_node.node import Perception
 from nodes.perception_node.pipeline import Look
 from schemas import codec, errors, keys
 from schemas.bridge import SnapshotQuery
-from schemas.commands import Add, Changed, Classes, LastSeen, Sighting
+from schemas.commands import Add, Classes, LastSeen
 from schemas.commits import Commit, Snapshot
 from schemas.entities import ClassInfo, Provenance
 from schemas.perception import Observations
+from schemas.replies import Changed, Sighting
 from tests.conftest import free_endpoint, until
 from tests.perception_node.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
@@ -65,6 +66,7 @@ class World:
         self.health = None
         self.refusal = None
         self.names_of_old = set()
+        self.snapshot = lambda: Snapshot(seq=1, entities=())
         self._seq = 1
         self._stamp_ns = 0
         self._commits = bus.publisher(session, keys.COMMIT)
@@ -74,7 +76,7 @@ class World:
         self.node.serve(
             keys.BRIDGE,
             {
-                "snapshot": (SnapshotQuery, lambda _: Snapshot(seq=1, entities=())),
+                "snapshot": (SnapshotQuery, lambda _: self.snapshot()),
                 "classes": (Classes, lambda _: CLASSES),
                 "last-seen": (LastSeen, self._last_seen),
             },
@@ -113,9 +115,13 @@ class World:
             raise self.refusal
         self._seq += 1
         made = entity(command.name, command.class_, at(*command.at), command.size, source="perception")
-        commit = Commit(seq=self._seq, stamp_ns=1, id=str(self._seq), source="perception", changed=(made,))
-        self._commits.put(codec.encode(commit))
+        self.announce(self._seq, made)
         return Changed(commit=self._seq, text="added", names=(command.name,))
+
+    def announce(self, seq, *changed):
+        """Publish a commit."""
+        commit = Commit(seq=seq, stamp_ns=1, id=str(seq), source="perception", changed=changed)
+        self._commits.put(codec.encode(commit))
 
     def _last_seen(self, query):
         if query.name not in self.names_of_old:
@@ -181,6 +187,22 @@ def test_a_name_that_something_had_before_this_process_began_is_not_given_again(
     assert (add.name, add.reason, world.seen[-1].observations[0].entity) == ("cup3", "cup3 was seen", "cup3")
 
 
+def test_a_commit_that_comes_before_a_snapshot_without_it_is_not_lost(world):
+    cup = entity("my_cup", "Cup", CUP.pose, CUP.size_m)
+    snapshots = iter((Snapshot(seq=3, entities=()), Snapshot(seq=4, entities=(cup,))))
+
+    def snapshot():
+        found = next(snapshots)
+        if found.seq == 3:
+            world.announce(4, cup)
+            time.sleep(0.2)  # the commit is there first
+        return found
+
+    world.snapshot = snapshot
+    world.announce(3)  # the second was missed
+    world.film_until(lambda: world.seen and world.seen[-1].observations[0].entity == "my_cup", "it is found")
+
+
 def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
     world.refusal = errors.Inconsistent("a cup cannot be here")
     world.film_until(lambda: "a cup cannot be here" in world.health.last_error, "it says why")
@@ -191,7 +213,7 @@ def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
 
 
 NAN = float("nan")
-NOTHING = "camera left measures no depth between 0 and 100 m"
+NOTHING = "camera left measures no depth from 0.01 to 100 m"
 BAD = {
     "the past": ({"stamp_ns": -5_000_000_000}, "a frame of the past is passed over"),
     "sizes": ({"rgb": {"width": 32}}, "its picture has 32 x 48 pixels, its depth 64 x 48"),

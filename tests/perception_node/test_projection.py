@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.projection import cloud_of, fits
+from nodes.perception_node.projection import cloud_of, fits, is_pose
 
 INTRINSICS = np.array([[100.0, 0.0, 2.0], [0.0, 100.0, 1.0], [0.0, 0.0, 1.0]])
 
@@ -37,6 +37,7 @@ def test_colours_of_another_size_are_told():
         ((-525.0, 525.0, 319.5, 239.5), 640, 480, False),
         ((525.0, 0.5, 319.5, 239.5), 640, 480, False),
         ((525.0, 525.0, 319.5, np.nan), 640, 480, False),
+        ((1e7, 1e7, 319.5, 239.5), 640, 480, False),
     ],
 )
 def test_the_intrinsics_of_another_picture_do_not_fit(k, width, height, fit):
@@ -44,3 +45,14 @@ def test_the_intrinsics_of_another_picture_do_not_fit(k, width, height, fit):
     intrinsics = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
     assert fits(intrinsics, width, height) is fit
     assert not fits(intrinsics.T, width, height)
+    skewed = intrinsics.copy()
+    skewed[0, 1] = 1.0
+    assert not fits(skewed, width, height)
+
+
+def test_a_pose_is_a_rotation_and_a_position():
+    pose = np.eye(4)
+    pose[:3, 3] = (1.0, 2.0, 3.0)
+    assert is_pose(pose)
+    for bad in (pose.T, 2 * pose, np.diag([1.0, 1.0, -1.0, 1.0]), np.zeros((4, 4)), np.full((4, 4), np.nan)):
+        assert not is_pose(bad)

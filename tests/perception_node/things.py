@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from msgspec import structs
 
 from nodes.perception_node.association import associate
+from nodes.perception_node.class_hierarchy import ClassHierarchy
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import Kinship
+from nodes.perception_node.occupancy import Occupancy
 from nodes.perception_node.tracks import Tracks
-from nodes.perception_node.visibility import Sight
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
 from schemas.perception import Observation
@@ -26,7 +26,7 @@ SIZES: dict[str, Size] = {
     "Book": (0.16, 0.24, 0.03),
     "Object": (0.3, 0.12, 0.15),
 }
-KINSHIP = Kinship(
+CLASSES = ClassHierarchy(
     {
         "Object": frozenset({"Physical_Thing"}),
         "Tableware": frozenset({"Object", "Physical_Thing"}),
@@ -94,7 +94,7 @@ class Table:
 
     def look(self) -> tuple[Command, ...]:
         """One look, and the map takes what it is told; gives the commands."""
-        result = associate(self.entities, self.tracks, self.things, self._sight, KINSHIP, self.config)
+        result = associate(self.entities, self.tracks, self.things, self._occupancy, CLASSES, self.config)
         self.tracks, self.taken_for = result.tracks, result.entities
         for command in result.commands:
             self._obey(command)
@@ -107,10 +107,10 @@ class Table:
         self.entities |= {e.name: e for e in entities}
         return self
 
-    def _sight(self, pose: Pose, size_m: Size) -> Sight:
+    def _occupancy(self, pose: Pose, size_m: Size) -> Occupancy:
         if self.hidden:
-            return "hidden"
-        return "filled" if any(_fills(thing, pose, size_m) for thing in self.things) else "open"
+            return "unknown"
+        return "occupied" if any(_fills(thing, pose, size_m) for thing in self.things) else "free"
 
     def _obey(self, command: Command) -> None:
         assert command.source == "perception"

@@ -11,7 +11,8 @@ from nodes.loop import Node
 from nodes.sim_node.config import CameraConfig, SimConfig
 from nodes.sim_node.node import Simulator
 from schemas import codec, errors, keys
-from schemas.commands import Done, Pause, Reset, StepOnce
+from schemas.commands import Pause, Reset, StepOnce
+from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
     CameraFrame,

@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from nodes.sim_node.models.files import Models
+from nodes.sim_node.models.sources import Models
 from nodes.sim_node.world_file import open_world
 from schemas.errors import BadFile
 

@@ -118,6 +118,17 @@ def test_bad_options_are_told(tmp_path, words, said):
     assert said in line
 
 
+def test_a_model_file_of_no_class_is_told(tmp_path):
+    models = tmp_path / "models"
+    models.mkdir()
+    for name in ("chair.obj", "chiar.obj"):
+        (models / name).write_text("")
+    words = ("--models", models, "--abox", "none", "--no-record")
+    with running(tmp_path / "data", *words) as system:
+        (line,) = [line for line in system.said if line.startswith("models ")]
+    assert "passed over, for no class has a model of that name: chiar.obj (did you mean chair" in line
+
+
 def test_one_system_a_data_folder(tmp_path):
     with running(tmp_path, "--abox", "none", "--no-sim", "--no-record"):
         status, line = up(tmp_path)

@@ -12,9 +12,10 @@ from nodes.coordinator.hands import Hand
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.talking import Talk
 from schemas import errors
-from schemas.commands import Add, Changed, Clear, Command, Remove, Update
+from schemas.commands import Add, Clear, Command, Remove, Update
 from schemas.commits import Commit, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
+from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
 

@@ -14,8 +14,9 @@ from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.talking import Question, Talk
 from schemas import errors
 from schemas.bridge import StarQuery
-from schemas.commands import Changed, Classes, Command
+from schemas.commands import Classes, Command
 from schemas.commits import Commit, Star, Transaction
+from schemas.replies import Changed
 
 _ATTEMPTS = 5
 C = TypeVar("C", bound=Command)

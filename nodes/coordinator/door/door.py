@@ -9,8 +9,9 @@ from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.hands import Hands
 from nodes.coordinator.talking import Ask, Talk, hold, in_step
 from schemas import errors
-from schemas.commands import Add, Changed, Clear, Load, Remove, Undo, Update
+from schemas.commands import Add, Clear, Load, Remove, Undo, Update
 from schemas.entities import Pose
+from schemas.replies import Changed
 
 
 class Door(MapView):
@@ -26,22 +27,16 @@ class Door(MapView):
         self._ask = ask
         self.hands = Hands()
 
-    def add(self, command: Add) -> Changed:
-        """Put an entity into the map."""
-        return hold(changing.add(self, command), self._ask)
-
-    def update(self, command: Update) -> Changed:
-        """Change what is named; what is not named stays."""
-        return hold(changing.update(self, command), self._ask)
+    def change(self, command: Add | Update) -> Changed:
+        """Put an entity into the map, or change what is named of one; what is not named stays."""
+        return hold(self._changing(command), self._ask)
 
     def together(self, commands: Sequence[Add | Update]) -> Talk[list[Changed | errors.SemmapError]]:
         """Changes of different entities, with as few questions as one."""
-        return in_step(
-            [
-                changing.add(self, command) if isinstance(command, Add) else changing.update(self, command)
-                for command in commands
-            ]
-        )
+        return in_step([self._changing(command) for command in commands])
+
+    def _changing(self, command: Add | Update) -> Talk[Changed]:
+        return changing.add(self, command) if isinstance(command, Add) else changing.update(self, command)
 
     def remove(self, command: Remove) -> Changed:
         """Take entities out: all of them, or, if one is unknown, none."""

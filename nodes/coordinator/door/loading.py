@@ -16,10 +16,11 @@ from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.talking import Question, Talk
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
-from schemas.commands import Changed, Load
+from schemas.commands import Load
 from schemas.commits import Commit, Transaction
 from schemas.entities import ClassInfo, free_name
 from schemas.explanations import Triple
+from schemas.replies import Changed
 from schemas.scene_files import Described
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
@@ -98,7 +99,9 @@ def _load_tbox(view: MapView, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit: Commit = yield Question("load-tbox", order)
+    commit: Commit | None = yield Question("load-tbox", order)
+    if commit is None:
+        return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
     return Changed(commit=commit.seq, text=text, names=commit.names)

@@ -14,7 +14,6 @@ class MapView(map_view.MapView):
 
     def __init__(self) -> None:
         super().__init__()
-        self.seq = 0  # an empty map until a snapshot says more
         self.classes = ClassNames()
         self.doubted = False
 
@@ -31,6 +30,7 @@ class MapView(map_view.MapView):
 
     def doubt(self) -> None:
         """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
+        super().doubt()
         self.doubted = True
 
     def begin(self, snapshot: Snapshot) -> None:

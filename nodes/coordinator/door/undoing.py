@@ -5,8 +5,9 @@ from __future__ import annotations
 from nodes.coordinator.door.committing import once, taken_with_classes
 from nodes.coordinator.door.map_view import MapView
 from nodes.coordinator.talking import Question, Talk
-from schemas.commands import Changed, Undo
+from schemas.commands import Undo
 from schemas.commits import Commit
+from schemas.replies import Changed
 
 
 @once

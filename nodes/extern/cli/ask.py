@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -162,10 +163,10 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> No
         print(f"{key}  {payload}", flush=True)
 
 
-def _print_entities(entities: tuple[Entity, ...]) -> None:
+def _print_entities(entities: Sequence[Entity]) -> None:
     if entities:
         show.console().print(show.entity_table(entities))
-    print(f"{len(entities)} {'entity' if len(entities) == 1 else 'entities'}")
+    print(show.entity_line(entities))
 
 
 def _format_of(file: Path) -> commands.RdfFormat:

@@ -13,7 +13,7 @@ from nodes.extern.cli import show
 from nodes.extern.cli.talking import complain, print_lines, run_words
 from nodes.extern.client import CONNECT_VARIABLE, Client, connect
 from nodes.extern.files import read_file
-from schemas import codec, commands, errors
+from schemas import codec, commands, errors, replies
 
 _BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch"))
 
@@ -69,7 +69,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
     except errors.SemmapError as error:
         complain(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
-    if isinstance(reply, commands.Changed):
+    if isinstance(reply, replies.Changed):
         print_lines(show.changed(reply))
     else:
         print(getattr(reply, "text", None) or codec.encode_json(reply).decode())

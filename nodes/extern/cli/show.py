@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -11,10 +11,11 @@ from rich.text import Text
 from rich.tree import Tree
 
 from nodes.extern.cli.tables import author, card, pose_cells, pose_text, printable, provenance_text, table
-from schemas.commands import Changed, Inferred, SystemStatus
+from schemas import wording
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
+from schemas.replies import Changed, Inferred, SystemStatus
 
 _WIDE = 100_000
 _WORDY = ("class", "size [m]", "reference")
@@ -34,6 +35,13 @@ def entity_table(entities: Iterable[Entity]) -> Table:
     for e in entities:
         rows.add(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
     return rows
+
+
+def entity_line(entities: Sequence[Entity]) -> str:
+    """How many they are, and where it is said why some bodies could not be made."""
+    failed = sum(e.body is not None and e.body.status == "failed" for e in entities)
+    why = f"; {wording.bodies(failed)} could not be made: semmap status says why" if failed else ""
+    return wording.entities(len(entities)) + why
 
 
 def entity_card(e: Entity) -> Table:
@@ -100,7 +108,7 @@ def status_line(status: SystemStatus) -> str:
         None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
     }
     agree = verdicts[status.in_agreement]
-    counts = f"{status.entities} entities, {status.bodies} bodies, commit {status.commit}"
+    counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"
     return f"{counts}; truth: {status.truth}; {agree}"
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from rich.table import Table
 
 from nodes.extern.cli.tables import author, card, moment, pose_text, provenance_text, table
-from schemas.commands import LoggedCommit, Sighting
+from schemas.replies import LoggedCommit, Sighting
 
 _FEW = 6
 

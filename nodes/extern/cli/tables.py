@@ -11,9 +11,9 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from schemas.commands import LoggedCommit
 from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
+from schemas.replies import LoggedCommit
 
 _NARROWEST = 8
 """Characters: a column that folds keeps so many, if it has them."""

@@ -2,6 +2,7 @@
 
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.shapes import Alike, Run
+from nodes.kb_node.reasoner.runs import Run
+from nodes.kb_node.reasoner.shapes import Alike
 
 __all__ = ["Alike", "Change", "Inconsistent", "Reasoner", "Run"]

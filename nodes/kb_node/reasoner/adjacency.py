@@ -6,7 +6,7 @@ So a room with ten thousand parts is asked for its walls without looking at the 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 NONE: Final = -1
@@ -47,6 +47,15 @@ class Adjacency:
         if second != NONE:
             self.after[edge] = second
             self.before[second] = edge
+
+    def link_each(self, nodes: Iterable[int], edges: Iterable[int], predicate: int) -> None:
+        """`link` an edge to each node."""
+        heads, link = self.heads, self.link
+        for node, edge in zip(nodes, edges, strict=True):
+            if heads[node] == NONE:
+                heads[node] = edge
+            else:
+                link(node, edge, predicate)
 
     def unlink(self, node: int, edge: int) -> None:
         """Take an edge out of the list of a node."""

@@ -22,4 +22,4 @@ class Change(NamedTuple):
     @property
     def touched(self) -> frozenset[Term]:
         """All of them."""
-        return self.others.union(*(shape.touched_of(run.individuals) for shape, run in self.alike))
+        return self.others.union(*(star.touched for star in self.alike))

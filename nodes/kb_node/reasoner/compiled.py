@@ -117,20 +117,28 @@ class CompiledEngine:
         self, triples: Sequence[Triple], added: list[Triple], touched: set[Term], alike: list[Alike]
     ) -> None:
         """Insert triples: run by run as far as what follows is known, and the others together."""
-        shapes = self._shapes
+        shapes, at = self._shapes, 0
         rest: list[Triple] = []
-        for run in shapes.runs(triples):
-            known = None if self._abox.is_mixed or run.key is None else shapes.known.get(run.key, run)
-            if isinstance(known, Written) and shapes.write(known, run):
-                added += run.triples
-                alike.append(Alike(known, run))
-            elif known is run:
-                self._insert(run.triples, added, touched)
-                shapes.learn(run)
-            elif isinstance(known, Contradiction) and not added:
-                raise Refused(known.of(run.individuals))
-            else:
-                rest += run.triples
+        while at < len(triples):
+            stars, end = ([], len(triples)) if self._abox.is_mixed else shapes.write_all(triples, at)
+            if stars:
+                added += triples[at:end]
+                alike += stars
+                at = end
+                continue
+            for run in shapes.runs(triples, at, end):
+                at += len(run.triples)
+                known = None if self._abox.is_mixed or run.form is None else shapes.known.get(run.shape, run)
+                if isinstance(known, Written) and shapes.write(known, run):
+                    added += run.triples
+                    alike.append(Alike(known, run))
+                elif known is run:
+                    self._insert(run.triples, added, touched)
+                    shapes.learn(run)
+                elif isinstance(known, Contradiction) and not added:
+                    raise Refused(known.of(run))
+                else:
+                    rest += run.triples
         if rest:
             self._insert(rest, added, touched)
 

@@ -7,28 +7,23 @@ from typing import NamedTuple
 from nodes.kb_node.reasoner.kinds import Kind
 
 
-class NewEdge(NamedTuple):
-    """An edge of a layout: its ends by place, its neighbours by their index in the layout or NONE."""
-
-    subject: int
-    predicate: int
-    object: int
-    source: int
-    after: int
-    before: int
-    group: int
-
-
 class Layout(NamedTuple):
     """New individuals and the edges that leave from them.
 
-    A *place* counts the new individuals first, then the other objects.
+    A *place* counts the new individuals first, then the other objects. Edges are counted, too.
     """
 
     kinds: tuple[Kind, ...]
     """Those of the individuals."""
     others: tuple[Kind, ...]
     """Those of the other objects, which they have already if they are there."""
-    edges: tuple[NewEdge, ...]
-    heads: tuple[int, ...]
-    """The index of each individual's first edge, or NONE."""
+    edges: tuple[tuple[int, int, int], ...]
+    """The place of the subject, the predicate, the place of the object."""
+    values: tuple[int, ...]
+    """The edges that come with classes; the others are asserted."""
+    heads: tuple[tuple[int, int], ...]
+    """The place of an individual, its first edge."""
+    groups: tuple[tuple[int, int], ...]
+    """The first edge of a group, that of the next group."""
+    pairs: tuple[tuple[int, int], ...]
+    """An edge, the one after it in its group."""

@@ -7,8 +7,8 @@ object. Freed numbers are used again.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Collection, Iterable, Set
-from typing import Final
+from collections.abc import Iterable, Mapping, MutableSequence, Sequence, Set
+from typing import Any, Final
 
 from nodes.kb_node.reasoner.adjacency import NONE, Adjacency
 from nodes.kb_node.reasoner.kinds import Kind, Kinds
@@ -18,9 +18,11 @@ from schemas.explanations import Term
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
-_ROOM: Final = array("i", [NONE]) * BLOCK
 ASSERTED, VALUE, DERIVED = 0, 1, 2
 """Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
+
+
+Terms = tuple[Term, ...]
 
 
 class Store:
@@ -64,12 +66,17 @@ class Store:
         """At least so many free numbers to pop; such nodes are bare and filed nowhere."""
         free = self._free_nodes
         while len(free) < count:
-            free.extend(range(len(self.terms) + BLOCK - 1, len(self.terms) - 1, -1))
-            self.terms.extend([""] * BLOCK)
-            self.kind.extend([self._kinds.nothing] * BLOCK)
-            for column in (self._places, self.out.heads, self.into.heads):
-                column.extend(_ROOM)
+            free.extend(reversed(self._more_nodes(BLOCK)))
         return free
+
+    def _more_nodes(self, count: int) -> range:
+        """Make room for so many nodes."""
+        first, room = len(self.terms), array("i", [NONE]) * count
+        self.terms.extend([""] * count)
+        self.kind.extend([self._kinds.nothing] * count)
+        for column in (self._places, self.out.heads, self.into.heads):
+            column.extend(room)
+        return range(first, first + count)
 
     def is_bare(self, node: int) -> bool:
         """Whether a node has no edges."""
@@ -106,6 +113,11 @@ class Store:
 
     # Edges
 
+    @property
+    def holes(self) -> int:
+        """For how many nodes or edges, whichever is more, there is room between others."""
+        return max(len(self._free_nodes), len(self._free_edges))
+
     def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
         """Store a new edge."""
         edge = self._free_edges_for(1).pop()
@@ -116,23 +128,15 @@ class Store:
         self.into.link(object_, edge, predicate)
         return edge
 
-    def write(self, layout: Layout, individuals: Collection[Term], others: Collection[Term]) -> None:
+    def write(self, layout: Layout, individuals: Terms, others: Terms) -> None:
         """Add new individuals with their edges, all of which leave from them."""
         terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self._places
         free = self._free_nodes_for(len(individuals) + len(others))
         nodes: list[int] = []
-        free_edges = self._free_edges_for(len(layout.edges))
-        left = len(free_edges) - len(layout.edges)
-        edges = free_edges[left:]
-        del free_edges[left:]
-        edges.append(NONE)  # which is also its index
-        heads = self.out.heads
-        for term, kind, first in zip(individuals, layout.kinds, layout.heads, strict=True):
+        for term, kind in zip(individuals, layout.kinds, strict=True):
             node = free.pop()
             nodes.append(node)
             terms[node], kinds[node], numbers[term] = term, kind, node
-            if first != NONE:
-                heads[node] = edges[first]
             if kind.mask:
                 places[node] = len(kind.nodes)
                 kind.nodes.append(node)
@@ -142,33 +146,88 @@ class Store:
                 node = free.pop()
                 terms[node], kinds[node], numbers[term] = term, kind, node
             nodes.append(node)
+        free = self._free_edges_for(len(layout.edges))
+        left = len(free) - len(layout.edges)
+        edges = free[left:]
+        del free[left:]
         subject, predicate, object_ = self.subject, self.predicate, self.object
-        group, heads, link = self.out.group, self.into.heads, self.into.link
-        for edge, (s, p, o, source, after, before, next_group) in zip(edges, layout.edges, strict=False):
+        heads, link = self.into.heads, self.into.link
+        for edge, (s, p, o) in zip(edges, layout.edges, strict=True):
             node = nodes[o]
             subject[edge], predicate[edge], object_[edge] = nodes[s], p, node
-            if next_group != NONE:
-                group[edge] = edges[next_group]
-            if source != ASSERTED or after != NONE or before != NONE:
-                self.source[edge] = source
-                self.out.after[edge], self.out.before[edge] = edges[after], edges[before]
             if heads[node] == NONE:
                 heads[node] = edge
             else:
                 link(node, edge, p)
+        heads, group, after, before = self.out.heads, self.out.group, self.out.after, self.out.before
+        for place, at in layout.heads:
+            heads[nodes[place]] = edges[at]
+        for at, to in layout.groups:
+            group[edges[at]] = edges[to]
+        for at, to in layout.pairs:
+            after[edges[at]], before[edges[to]] = edges[to], edges[at]
+        for at in layout.values:
+            self.source[edges[at]] = VALUE
+
+    def append(self, layout: Layout, individuals: Sequence[Terms], others: Sequence[Terms]) -> None:
+        """Like `write` for many, in new rows side by side; the other objects are there.
+
+        `individuals` and `others` are column by column.
+        """
+        count, width, length = len(individuals[0]), len(layout.kinds), len(layout.edges)
+        rows, edges = self._more_nodes(count * width), self._more_edges(count * length)
+        _put(self.kind, rows, layout.kinds * count)
+        _put(self.predicate, edges, [p for _, p, _ in layout.edges] * count)
+        nodes: list[list[int]] = []  # of the same objects wherever a number stands, for memory's sake
+        for place, (terms, kind) in enumerate(zip(individuals, layout.kinds, strict=True)):
+            here = rows[place::width]
+            nodes.append(list(here))
+            self.numbers.update(zip(terms, nodes[place], strict=True))
+            _put(self.terms, here, terms)
+            if kind.mask:
+                _put(self._places, here, range(len(kind.nodes), len(kind.nodes) + count))
+                kind.nodes.extend(here)
+        nodes += [list(map(self.numbers.__getitem__, terms)) for terms in others]
+        for at, (s, p, o) in enumerate(layout.edges):
+            here = edges[at::length]
+            _put(self.subject, here, nodes[s])
+            _put(self.object, here, nodes[o])
+            self.into.link_each(nodes[o], here, p)
+        for place, at in layout.heads:
+            _put(self.out.heads, rows[place::width], edges[at::length])
+        for at, to in layout.groups:
+            _put(self.out.group, edges[at::length], edges[to::length])
+        for at, to in layout.pairs:
+            _put(self.out.after, edges[at::length], edges[to::length])
+            _put(self.out.before, edges[to::length], edges[at::length])
+        for at in layout.values:
+            _put(self.source, edges[at::length], bytes([VALUE]) * count)
+
+    def add_literals(self, kinds: Mapping[Term, Kind]) -> None:
+        """Make room for literals, of known kinds, that edges will enter; what is there already stays."""
+        new = [term for term in kinds if term not in self.numbers]
+        rows = self._more_nodes(len(new))
+        self.numbers.update(zip(new, rows, strict=True))
+        _put(self.terms, rows, new)
+        _put(self.kind, rows, [kinds[term] for term in new])
 
     def _free_edges_for(self, count: int) -> list[int]:
         """At least so many free numbers to pop; such edges are in no list, and asserted."""
         free = self._free_edges
         while len(free) < count:
-            free.extend(range(len(self.subject) + BLOCK - 1, len(self.subject) - 1, -1))
-            for row in (self.subject, self.predicate, self.object):
-                row.extend(_ROOM)
-            for side in (self.out, self.into):
-                for column in (side.after, side.before, side.group):
-                    column.extend(_ROOM)
-            self.source.extend(bytes(BLOCK))
+            free.extend(reversed(self._more_edges(BLOCK)))
         return free
+
+    def _more_edges(self, count: int) -> range:
+        """Make room for so many edges."""
+        first, room = len(self.subject), array("i", [NONE]) * count
+        for row in (self.subject, self.predicate, self.object):
+            row.extend(room)
+        for side in (self.out, self.into):
+            for column in (side.after, side.before, side.group):
+                column.extend(room)
+        self.source.extend(bytes(count))
+        return range(first, first + count)
 
     def remove(self, edge: int) -> None:
         """Forget an edge."""
@@ -219,3 +278,10 @@ class Store:
             if self.subject[other] == subject:
                 return other
         return NONE
+
+
+def _put(column: MutableSequence[Any], rows: range, values: Iterable[Any]) -> None:
+    """Write values into rows at equal distances."""
+    if isinstance(column, array):
+        values = array("i", values)
+    column[rows.start : rows.stop : rows.step] = values

@@ -24,7 +24,8 @@ from nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, 
 from nodes.kb_node.sparql.readers import Reader, cause_of_death
 from nodes.kb_node.sparql.standing import Standing
 from schemas import errors
-from schemas.commands import Done, Renew, Watch
+from schemas.commands import Renew, Watch
+from schemas.replies import Done
 from schemas.sparql import RowsChanged, SparqlResult, Watching
 
 STANDING: Final = 64

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from nodes.kb_node.sparql.dataset import Delta
-from nodes.kb_node.sparql.footprint import Footprint, footprint
 from schemas.commands import Watch
 from schemas.sparql import Row, RowsChanged
+
+if TYPE_CHECKING:
+    from nodes.kb_node.sparql.footprint import Footprint
 
 
 @dataclass
@@ -27,6 +30,9 @@ class Standing:
     @classmethod
     def of(cls, command: Watch, name: str, now: float) -> Standing:
         """The one that a command asks for, without its rows."""
+        # rdflib's parser takes longer to load than all else that the first look-up waits for
+        from nodes.kb_node.sparql.footprint import footprint
+
         return cls(
             watch=name,
             query=command.query,

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.files import lzf
-from nodes.perception_node.files.columns import MAX_POINTS, Column, cloud_of
+from nodes.perception_node.files.columns import MAX_POINTS, Column, Field, cloud_of, columns_of_text
 
 _KINDS = {"F": "f", "U": "u", "I": "i"}
 _LONGEST_HEADER = 4096
@@ -18,9 +17,9 @@ _LONGEST_HEADER = 4096
 
 @dataclass(frozen=True)
 class Header:
-    """What a PCD file says of itself. `fields`: name, type of an element, elements a point."""
+    """What a PCD file says of itself."""
 
-    fields: tuple[tuple[str, np.dtype[Any], int], ...]
+    fields: tuple[Field, ...]
     width: int
     height: int
     encoding: str
@@ -62,27 +61,13 @@ def read_columns(header: Header, body: bytes) -> dict[str, Column]:
     """Each field of one element a point, (points,). Raises ValueError for a truncated body."""
     match header.encoding:
         case "ascii":
-            return _of_text(header, body)
+            return columns_of_text(body, header.fields, header.points)
         case "binary":
             return _of_rows(header, body)
         case "binary_compressed":
             return _of_packed(header, body)
         case other:
             raise ValueError(f"its points are encoded as '{other}', not ascii, binary or binary_compressed")
-
-
-def _of_text(header: Header, body: bytes) -> dict[str, Column]:
-    per_point = sum(count for _, _, count in header.fields)
-    words = body.split()
-    if len(words) < header.points * per_point:
-        raise ValueError(f"truncated: {len(words) // per_point} of {header.points} points")
-    table = np.array(words[: header.points * per_point], dtype=np.float64).reshape(header.points, per_point)
-    columns, place = {}, 0
-    for name, dtype, count in header.fields:
-        if count == 1:
-            columns[name] = table[:, place].astype(dtype)
-        place += count
-    return columns
 
 
 def _of_rows(header: Header, body: bytes) -> dict[str, Column]:

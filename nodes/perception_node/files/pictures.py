@@ -1,4 +1,4 @@
-"""A frame as two pictures: colour, and depth with what the camera's lens does."""
+"""A frame as two pictures, one of colour and one of depth, and the camera that took them."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from msgspec import Struct
 from PIL import Image
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.projection import cloud_of, fits
+from nodes.perception_node.projection import cloud_of, fits, is_pose
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
 
 
-class Lens(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A pinhole camera [pixel], the middle of the first pixel at 0.
 
     `depth_scale` makes metres of a depth picture's numbers.
@@ -31,17 +31,19 @@ class Lens(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     map_from_camera: tuple[float, ...] | None = None
 
 
-def read_lens(path: Path) -> Lens:
-    """The lens in a JSON file. Raises ValueError saying what is wrong, and OSError."""
+def read_camera(path: Path) -> PinholeCamera:
+    """The camera in a JSON file. Raises ValueError saying what is wrong, and OSError."""
     try:
-        lens = msgspec.json.decode(path.read_bytes(), type=Lens)
+        camera = msgspec.json.decode(path.read_bytes(), type=PinholeCamera)
     except msgspec.DecodeError as error:
         raise ValueError(f"no intrinsics: {error}") from None
-    if not (lens.fx > 0 and lens.fy > 0 and lens.depth_scale > 0):
+    if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):
         raise ValueError("no intrinsics: fx, fy and depth_scale must be above 0")
-    if lens.map_from_camera is not None and len(lens.map_from_camera) != 16:
-        raise ValueError(f"map_from_camera must have 16 numbers, not {len(lens.map_from_camera)}")
-    return lens
+    if camera.map_from_camera is not None:
+        numbers = np.array(camera.map_from_camera)
+        if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
+            raise ValueError("map_from_camera is no pose of 16 numbers: a rotation, a position, 0 0 0 1")
+    return camera
 
 
 def is_depth(path: Path) -> bool:
@@ -50,10 +52,10 @@ def is_depth(path: Path) -> bool:
         return image.mode in _DEPTH_MODES
 
 
-def read_pictures(depth: Path, color: Path | None, lens: Lens) -> Cloud:
+def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Cloud:
     """The frame of a depth picture and one of colour. Raises ValueError saying what is wrong, and OSError."""
     with _opened(depth) as image:
-        depth_m = np.asarray(image, dtype=np.float32) * np.float32(lens.depth_scale)
+        depth_m = np.asarray(image, dtype=np.float32) * np.float32(camera.depth_scale)
     colors = None
     if color is not None:
         with _opened(color) as image:
@@ -61,14 +63,12 @@ def read_pictures(depth: Path, color: Path | None, lens: Lens) -> Cloud:
         if colors.shape[:2] != depth_m.shape:
             (h, w), (height, width) = colors.shape[:2], depth_m.shape
             raise ValueError(f"colour is {w} x {h} pixels, depth {width} x {height}")
-    intrinsics = np.array([[lens.fx, 0, lens.cx + 0.5], [0, lens.fy, lens.cy + 0.5], [0, 0, 1]])
+    intrinsics = np.array([[camera.fx, 0, camera.cx + 0.5], [0, camera.fy, camera.cy + 0.5], [0, 0, 1]])
     height, width = depth_m.shape
     if not fits(intrinsics, width, height):
-        raise ValueError(
-            f"a lens of fx {lens.fx:g} fy {lens.fy:g} cx {lens.cx:g} cy {lens.cy:g} does not fit a picture of"
-            f" {width} x {height} pixels"
-        )
-    pose = None if lens.map_from_camera is None else np.reshape(lens.map_from_camera, (4, 4))
+        said = " ".join(f"{name} {getattr(camera, name):g}" for name in ("fx", "fy", "cx", "cy"))
+        raise ValueError(f"the intrinsics {said} do not fit a picture of {width} x {height} pixels")
+    pose = None if camera.map_from_camera is None else np.reshape(camera.map_from_camera, (4, 4))
     return cloud_of(depth_m, colors, intrinsics, pose)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.files.columns import MAX_POINTS, Column, cloud_of
+from nodes.perception_node.files.columns import MAX_POINTS, Column, cloud_of, columns_of_text
 
 _TYPES = {
     **{"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1"},
@@ -21,8 +21,10 @@ def decode(data: bytes) -> Cloud:
     """The vertices in a PLY file's bytes, in a single row. Raises ValueError saying what is wrong."""
     encoding, count, properties, start = _read_header(data)
     body = data[start:]
-    columns = _of_text(body, count, properties) if encoding == "ascii" else _of_rows(body, count, properties)
-    return cloud_of(columns, 1, count)
+    if encoding == "ascii":
+        fields = [(name, np.dtype(kind), 1) for name, kind in properties]
+        return cloud_of(columns_of_text(body, fields, count), 1, count)
+    return cloud_of(_of_rows(body, count, properties), 1, count)
 
 
 def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
@@ -51,21 +53,13 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
     if encoding != "ascii" and encoding not in _ORDERS:
         raise ValueError(f"its format is '{encoding}', not ascii, {' or '.join(_ORDERS)}")
     if not 0 <= count <= MAX_POINTS or not properties:
-        raise ValueError(f"its header speaks of {count} vertices with {len(properties)} properties")
+        raise ValueError(f"its header speaks of {count} points with {len(properties)} properties")
     return encoding, count, properties, end + 1
-
-
-def _of_text(body: bytes, count: int, properties: list[tuple[str, str]]) -> dict[str, Column]:
-    words = body.split()
-    if len(words) < count * len(properties):
-        raise ValueError(f"truncated: {len(words) // len(properties)} of {count} vertices")
-    table = np.array(words[: count * len(properties)], dtype=np.float64).reshape(count, len(properties))
-    return {name: table[:, i].astype(dtype) for i, (name, dtype) in enumerate(properties)}
 
 
 def _of_rows(body: bytes, count: int, properties: list[tuple[str, str]]) -> dict[str, Column]:
     row = np.dtype(properties)
     if len(body) < count * row.itemsize:
-        raise ValueError(f"truncated: {len(body) // row.itemsize} of {count} vertices")
+        raise ValueError(f"truncated: {len(body) // row.itemsize} of {count} points")
     rows = np.frombuffer(body, row, count)
     return {name: rows[name].astype(row[name].newbyteorder("=")) for name, _ in properties}

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from nodes.perception_node.cloud import FEWEST_POINTS, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
 from nodes.perception_node.files import pcd, pictures, ply
 from schemas.errors import BadFile, BadRequest
+from schemas.wording import counted
 
 _DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
 _PICTURES = (".png", ".tif", ".tiff")
 
 
-def read_frames(files: Sequence[Path], lens: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
+def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
     """Each frame in the order of the files, with the file that gave its points.
 
-    A depth picture takes the colour picture that stands before or after it; both need `lens`, a JSON file of
-    intrinsics. Raises BadFile and BadRequest.
+    A depth picture takes the colour picture that stands before or after it; both need `camera`, a JSON
+    file of its intrinsics. Raises BadFile and BadRequest.
     """
     waiting: Path | None = None  # a picture whose partner has not come
     for path in files:
@@ -27,9 +28,9 @@ def read_frames(files: Sequence[Path], lens: Path | None = None) -> Iterator[tup
             waiting = path
         else:
             pair, waiting = (waiting, path), None
-            yield _frame(pair, lens)
+            yield _frame(pair, camera)
     if waiting is not None:
-        yield _frame((waiting,), lens)
+        yield _frame((waiting,), camera)
 
 
 def read_cloud(path: Path) -> Cloud:
@@ -52,18 +53,19 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
         raise BadFile(f"{path} is empty: it has no points")
     if cloud.measured < FEWEST_POINTS:
         raise BadFile(
-            f"{path} has {cloud.measured} points in front of the camera; at least {FEWEST_POINTS} are needed"
+            f"{path} has {counted(cloud.measured, 'point')} from {NEAREST_M:g} to {FARTHEST_M:g} m before the"
+            f" camera; at least {FEWEST_POINTS} are needed"
         )
     return cloud
 
 
-def _frame(files: Sequence[Path], lens_file: Path | None) -> tuple[Path, Cloud]:
+def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
     """The frame of one depth picture and at most one of colour."""
-    if lens_file is None:
+    if camera_file is None:
         raise BadRequest(f"{files[0]} is a picture: give the camera's intrinsics too, --intrinsics FILE.json")
-    of = lens_file
+    of = camera_file
     try:
-        lens = pictures.read_lens(of)
+        camera = pictures.read_camera(of)
         depths = []
         for of in files:
             depths.append(pictures.is_depth(of))
@@ -72,7 +74,7 @@ def _frame(files: Sequence[Path], lens_file: Path | None) -> tuple[Path, Cloud]:
             raise BadFile(f"{' and '.join(map(str, files))}: {said} a depth picture of 16 bits; one must be")
         of = files[depths.index(True)]
         color = files[depths.index(False)] if len(files) > 1 else None
-        return of, checked(pictures.read_pictures(of, color, lens), of)
+        return of, checked(pictures.read_pictures(of, color, camera), of)
     except OSError as error:
         raise BadFile(f"{of} cannot be read: {error.strerror}") from None
     except ValueError as error:

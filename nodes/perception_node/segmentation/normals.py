@@ -1,4 +1,4 @@
-"""Surface normals from the picture's neighbourhoods."""
+"""Surface normals from the picture's neighbourhoods: least-squares planes in disparity."""
 
 from __future__ import annotations
 

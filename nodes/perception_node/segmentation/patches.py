@@ -1,4 +1,4 @@
-"""Small smooth patches: too many on purpose, so that none spans two objects."""
+"""Over-segmentation by local convexity: small smooth patches, too many so that none spans two objects."""
 
 from __future__ import annotations
 

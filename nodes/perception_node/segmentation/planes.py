@@ -1,4 +1,8 @@
-"""Dominant planes: floor, walls, and what carries things."""
+"""Dominant planes, by RANSAC: floor, walls, and what carries things.
+
+Three points near one another make a hypothesis. All hypotheses are drawn and voted on at once; each plane
+that is taken off leaves fewer voters, and the best one left is fitted to its own by least squares.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""A person's own models: MJCF, OBJ, STL and GLB files."""
+"""Models read from MJCF, OBJ, STL and GLB files."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,6 @@ import numpy as np
 from nodes.sim_node import build
 from nodes.sim_node.bodies import Floats
 from nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
-from nodes.sim_node.models.library import build as built_in
 from nodes.sim_node.models.parts import Colour, Mesh, Part, Role, Shape, Vec3, bounds
 
 MESHES = (".obj", ".stl", ".glb")
@@ -29,39 +27,6 @@ _SHAPES = {
     int(mujoco.mjtGeom.mjGEOM_CAPSULE): Shape.CAPSULE,
     int(mujoco.mjtGeom.mjGEOM_MESH): Shape.MESH,
 }
-
-
-@dataclass(frozen=True)
-class Models:
-    """Where models come from: a file in `folder` or at a path, before the library's own.
-
-    `chair.glb` in the folder takes the place of the model `chair`. A model that is itself a path
-    (`/home/me/sofa.obj`) is read from there. Called with a model's name and a size, it answers the model;
-    raises ModelError for a file that cannot be used.
-    """
-
-    folder: Path | None = None
-
-    def __call__(self, name: str, size_m: Vec3 | None) -> Model:
-        """The model `name` at `size_m`, or at its own size."""
-        path = self._path(name)
-        if path is None:
-            return built_in(name, size_m)
-        try:
-            return read_model(path, size_m, path.stat().st_mtime_ns)
-        except OSError as error:
-            raise ModelError(f"the model file {path} cannot be read: {error.strerror}") from None
-
-    def _path(self, name: str) -> Path | None:
-        if name.endswith(SUFFIXES):
-            if self.folder is None and not Path(name).is_absolute():
-                raise ModelError(
-                    f"the model file {name} is looked for in the folder of `semmap up --models DIR`,"
-                    " and none was given; or the TBox gives its whole path"
-                )
-            return (self.folder or Path()) / name
-        candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []
-        return next((path for path in candidates if path.is_file()), None)
 
 
 @lru_cache(maxsize=256)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -207,3 +209,11 @@ def test_no_system_is_no_answer(system, monkeypatch):
     system_elsewhere = "tcp/127.0.0.1:9"
     said = system.cli("list", "--connect", system_elsewhere, status=3)
     assert "no system answers at tcp/127.0.0.1:9" in said
+
+
+def test_a_verb_that_only_asks_imports_nothing_heavy():
+    heavy = {"mujoco", "numpy", "open3d", "owlrl", "rdflib", "rerun", "scipy", "supervisor", "trimesh"}
+    code = "import sys; from nodes.extern.cli import verbs; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "nodes.extern.cli.ask" in run.stdout.split()
+    assert not heavy & set(run.stdout.split())

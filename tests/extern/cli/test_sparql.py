@@ -75,7 +75,8 @@ ASK = "query=ASK {:chair1 a dm:Seat}"
 
 def test_a_selector_asks_too(system):
     with system.client() as client:
-        (reply,) = client.session.get(f"{keys.CMD}/sparql?{ASK};inferred=true;format=json")
+        selector = f"{keys.CMD}/sparql?{ASK};inferred=true;format=json"
+        (reply,) = until(lambda: list(client.session.get(selector)), "a new peer has met the others")
         assert json.loads(reply.ok.payload.to_bytes())["verdict"] is True
 
 

@@ -4,11 +4,12 @@ import io
 from collections import Counter
 
 import pytest
+from msgspec import structs
 from rich.console import Console
 
 from nodes.extern.cli import show, show_past, tables
-from schemas.commands import LoggedCommit, NodeStatus, SystemStatus
-from schemas.entities import Entity, Pose, Provenance
+from schemas.entities import BodyState, Entity, Pose, Provenance
+from schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
 
 def entity(name, size_m=(0.0802, 0.125, 0.095)):
@@ -88,3 +89,10 @@ def test_errors_have_a_column_only_if_there_are_any():
 
 def test_large_sizes_are_written_out():
     assert "1000 x 99.5 x 0.0802" in drawn(show.entity_table([entity("hall", (1000.0, 99.5, 0.0802))]), 200)
+
+
+def test_bodies_that_could_not_be_made_are_told_below_the_list():
+    failed = BodyState(status="failed", detail="too long")
+    chairs = [entity("chair1"), structs.replace(entity("chair2"), body=failed)]
+    assert show.entity_line(chairs) == "2 entities; 1 body could not be made: semmap status says why"
+    assert show.entity_line(chairs[:1]) == "1 entity"

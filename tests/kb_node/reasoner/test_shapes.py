@@ -4,9 +4,10 @@ import pytest
 from hypothesis import given, note
 from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, batches
 from nodes.kb_node.reasoner.sentences import sentence
-from nodes.kb_node.reasoner.shapes import Contradiction, Written
+from nodes.kb_node.reasoner.shapes import Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.store import Store
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed
 from tests.kb_node.reasoner.graphs import (
@@ -28,6 +29,13 @@ LINKS = st.tuples(
     st.one_of(st.integers(0, 2), st.sampled_from(OTHERS)),
 )
 VALUES = st.tuples(st.integers(0, 2), st.sampled_from(prefixed("", DATA_PROPERTIES)), st.just("value"))
+
+
+def sorted_by_subject(run):
+    """As people write it, an individual with what is said of it, beginning with the first."""
+    return sorted(run, key=lambda part: part[0])
+
+
 RUNS = st.lists(st.one_of(TYPES, TYPES, LINKS, VALUES), min_size=1, max_size=6)
 """Runs without names: individuals by number, literals to be chosen."""
 BEFORE = [triple(text) for text in (":old a :F", ":older a :F", ":older :free :i2")]
@@ -44,6 +52,15 @@ def named(run, name, values):
     return [triple(" ".join(map(word, part))) for part in run]
 
 
+@pytest.fixture(params=[False, True], ids=["singly", "in batches"])
+def by_columns(request, monkeypatch):
+    """Whether few runs are read and written together, as else many are."""
+    if request.param:
+        monkeypatch.setattr(batches, "_MANY", 1)
+        monkeypatch.setattr(Store, "holes", 0)
+
+
+@pytest.mark.usefixtures("by_columns")
 @sequences(100)
 @given(
     RUNS, st.lists(st.sampled_from(sorted(set(LITERALS) - {KNOWN})), min_size=24, max_size=24), st.booleans()
@@ -76,6 +93,7 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
         check_same(reasoner, asserted, BASE)
 
 
+@pytest.mark.usefixtures("by_columns")
 @sequences(30)
 @given(st.lists(RUNS, min_size=1, max_size=5), st.permutations(range(24)), st.data())
 def test_all_at_once_is_one_by_one(runs, order, data):
@@ -155,3 +173,106 @@ def test_a_constant_that_is_no_longer_as_it_was():
     assert reasoner.holds(triple(":here a :Place"))
     reasoner.apply(delete=triples(":b a :K ."))
     assert not reasoner.holds(triple(":here a :Place"))
+
+
+def load(names, value=lambda i: f"{i}.5"):
+    turtle = "".join(
+        f":{name} a :C , :K ; :p :{name}1 ; :n {value(i)} . :{name}1 :n 2 ." for i, name in enumerate(names)
+    )
+    return triples(turtle)
+
+
+def names(count, stem="a"):
+    return [f"{stem}{i}_" for i in range(count)]
+
+
+@pytest.fixture
+def batched(monkeypatch):
+    """How many runs were written together, each time."""
+    sizes = []
+    write_all = Shapes.write_all
+
+    def counted(self, triples, start):
+        alike, end = write_all(self, triples, start)
+        sizes.append(len(alike))
+        return alike, end
+
+    monkeypatch.setattr(Shapes, "write_all", counted)
+    return sizes
+
+
+def test_a_load_is_written_by_columns(batched):
+    home = triples(HOME)
+    reasoner = Reasoner(home)
+    reasoner.apply(insert=load(names(300)))
+    assert max(batched) > 200
+    assert reasoner.holds(triple(":a299_ :q :here"))
+    assert reasoner.holds(triple(":a299_1 a :D"))
+    for name in names(300):
+        reasoner.apply(delete=load([name], lambda _, name=name: f"{int(name[1:-1])}.5"))
+    assert set(reasoner.asserted()) == set(home)
+
+
+def test_what_is_free_is_filled_before_a_load_makes_room(batched):
+    reasoner = Reasoner(triples(HOME))
+    reasoner.apply(insert=load(names(300)))
+    reasoner.apply(delete=load(names(300)))
+    room = len(reasoner._engine._abox.store.subject)
+    reasoner.apply(insert=load(names(300, "b")))
+    assert len(reasoner._engine._abox.store.subject) == room
+
+
+def test_a_load_that_says_more_of_one_is_as_if_said_singly(batched):
+    reasoner = Reasoner(triples(HOME))
+    reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "7.5")])
+    assert len(list(reasoner.asserted(triple(":a7_ :p :a7_1")[0]))) == 4
+
+
+def test_a_load_with_a_contradiction_in_it_is_undone(batched):
+    home = triples(HOME)
+    reasoner = Reasoner(home)
+    with pytest.raises(Inconsistent, match="a7_"):  # :n is functional
+        reasoner.apply(insert=[*load(names(300)), *load(["a7_"], lambda _: "8")])
+    assert set(reasoner.asserted()) == set(home)
+
+
+PLAIN = st.lists(
+    st.one_of(
+        st.tuples(st.integers(0, 2), st.just("a"), st.sampled_from([":B", ":C", ":K"])),
+        st.tuples(st.integers(0, 2), st.sampled_from([":r", ":t"]), st.sampled_from([0, 1, 2, ":d", ":e"])),
+        st.tuples(st.integers(0, 2), st.sampled_from([":v", ":w"]), st.just("value")),
+    ),
+    min_size=2,
+    max_size=12,
+    unique=True,
+).map(sorted_by_subject)
+
+
+@sequences(60)
+@given(
+    PLAIN, st.lists(st.sampled_from(['"1.5"^^xsd:float', '"2"^^xsd:float', '"x"']), min_size=80, max_size=80)
+)
+def test_what_is_written_by_columns_is_what_is_written_singly(run, literals):
+    home = [*triples(HOME), *triples(":d a :B . :e a :B .")]
+    values = iter(literals)
+    loads = [[fact for name in group for fact in named(run, name, values)] for group in ("a", "bcd", "efg")]
+    singly, by_columns = Reasoner(home), Reasoner(home)
+    for insert in loads:
+        singly.apply(insert=insert)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(batches, "_MANY", 1)
+        patch.setattr(Store, "holes", 0)
+        for insert in loads:
+            by_columns.apply(insert=insert)
+    gone = loads[1][::2]
+    for delete in ([], gone, loads[2]):
+        for reasoner in (singly, by_columns):
+            reasoner.apply(delete=delete)
+        assert set(singly.asserted()) == set(by_columns.asserted())
+        assert set(singly.inferred()) == set(by_columns.inferred())
+        for cls in (":B", ":C", ":D", ":K", ":Place"):
+            term = triple(f":x a {cls}")[2]
+            assert set(singly.instances(term)) == set(by_columns.instances(term))
+        for s, p, o in singly.asserted():
+            assert list(by_columns.asserted(s, p, o)) == [(s, p, o)]
+            assert set(by_columns.asserted(None, p, o)) == set(singly.asserted(None, p, o))

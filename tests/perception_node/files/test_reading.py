@@ -12,7 +12,7 @@ from nodes.perception_node.files.reading import read_cloud, read_frames
 from schemas.errors import BadFile, BadRequest
 from tests.perception_node.files.made import COLORS, POINTS, header, pcd, ply
 
-LENS = {"fx": 500.0, "fy": 500.0, "cx": 3.5, "cy": 2.5}
+CAMERA = {"fx": 50.0, "fy": 50.0, "cx": 3.5, "cy": 2.5}
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "binary", "binary_compressed"])
@@ -51,52 +51,61 @@ def write_pictures(folder, *, color=(8, 6), depth=(8, 6)):
     values = np.full((depth[1], depth[0]), 2000, np.uint16)
     values[0, 0] = 0
     Image.fromarray(values).save(folder / "depth.png")
-    (folder / "lens.json").write_text(json.dumps(LENS))
-    return folder / "rgb.png", folder / "depth.png", folder / "lens.json"
+    (folder / "camera.json").write_text(json.dumps(CAMERA))
+    return folder / "rgb.png", folder / "depth.png", folder / "camera.json"
 
 
 @pytest.mark.parametrize("swapped", [False, True])
 def test_pictures(tmp_path, swapped):
-    rgb, depth, lens = write_pictures(tmp_path)
+    rgb, depth, camera = write_pictures(tmp_path)
     files = (depth, rgb) if swapped else (rgb, depth)
-    [(file, cloud)] = read_frames(files, lens)
+    [(file, cloud)] = read_frames(files, camera)
     assert file == depth
     assert cloud.points_camera.shape == (6, 8, 3)
     assert np.isnan(cloud.points_camera[0, 0]).all()
-    np.testing.assert_allclose(cloud.points_camera[5, 7], [3.5 * 2 / 500, 2.5 * 2 / 500, 2.0], rtol=1e-6)
+    np.testing.assert_allclose(cloud.points_camera[5, 7], [3.5 * 2 / 50, 2.5 * 2 / 50, 2.0], rtol=1e-6)
     assert (cloud.colors == 7).all()
 
 
 def test_pictures_of_different_sizes_are_refused(tmp_path):
-    rgb, depth, lens = write_pictures(tmp_path, depth=(4, 3))
+    rgb, depth, camera = write_pictures(tmp_path, depth=(4, 3))
     with pytest.raises(BadFile, match="colour is 8 x 6 pixels, depth 4 x 3"):
-        list(read_frames((rgb, depth), lens))
+        list(read_frames((rgb, depth), camera))
 
 
 def test_pictures_need_intrinsics_and_depth(tmp_path):
-    rgb, depth, lens = write_pictures(tmp_path)
+    rgb, depth, camera = write_pictures(tmp_path)
     with pytest.raises(BadRequest, match="--intrinsics"):
         list(read_frames((rgb, depth)))
     with pytest.raises(BadFile, match="depth picture"):
-        list(read_frames((rgb, rgb), lens))
+        list(read_frames((rgb, rgb), camera))
+
+
+SCALED = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
 
 
 @pytest.mark.parametrize(
     "content",
-    ["", "[]", '{"fx": 0, "fy": 1, "cx": 1, "cy": 1}', json.dumps({**LENS, "map_from_camera": [1]})],
+    [
+        "",
+        "[]",
+        '{"fx": 0, "fy": 1, "cx": 1, "cy": 1}',
+        json.dumps({**CAMERA, "map_from_camera": [1]}),
+        json.dumps({**CAMERA, "map_from_camera": SCALED}),
+    ],
 )
 def test_bad_intrinsics_are_refused(tmp_path, content):
-    rgb, depth, lens = write_pictures(tmp_path)
-    lens.write_text(content)
-    with pytest.raises(BadFile, match=r"lens\.json"):
-        list(read_frames((rgb, depth), lens))
+    rgb, depth, camera = write_pictures(tmp_path)
+    camera.write_text(content)
+    with pytest.raises(BadFile, match=r"camera\.json"):
+        list(read_frames((rgb, depth), camera))
 
 
-def test_the_lens_of_another_camera_is_told(tmp_path):
-    rgb, depth, lens = write_pictures(tmp_path)
-    lens.write_text(json.dumps({**LENS, "cx": 319.5}))
-    with pytest.raises(BadFile, match=r"a lens of .* cx 319\.5 .* does not fit a picture of 8 x 6 pixels"):
-        list(read_frames((rgb, depth), lens))
+def test_the_intrinsics_of_another_camera_is_told(tmp_path):
+    rgb, depth, camera = write_pictures(tmp_path)
+    camera.write_text(json.dumps({**CAMERA, "cx": 319.5}))
+    with pytest.raises(BadFile, match=r"fx 50 .* cx 319\.5 .* do not fit a picture of 8 x 6 pixels"):
+        list(read_frames((rgb, depth), camera))
 
 
 def test_what_is_no_cloud_is_refused_in_one_line(tmp_path):
@@ -114,6 +123,7 @@ def test_what_is_no_cloud_is_refused_in_one_line(tmp_path):
         "flat.pcd": header("ascii", fields="x y label rgba rgba"),
         "empty.pcd": header("binary", width=0, height=0),
         "one.pcd": header("ascii", fields="x y z", width=1, height=1) + b"0 0 1\n",
+        "millimetres.pcd": header("ascii", fields="x y z") + b"300 200 1000\n" * 12,
         "blind.pcd": header("ascii", fields="x y z") + b"nan nan nan\n" * 12,
         "nothing.ply": b"",
         "truncated.ply": ply("binary_little_endian")[:-40],
@@ -130,3 +140,13 @@ def test_what_is_no_cloud_is_refused_in_one_line(tmp_path):
     (tmp_path / "folder.pcd").mkdir()
     with pytest.raises(BadFile, match="directory"):
         read_cloud(tmp_path / "folder.pcd")
+
+
+def test_odd_numbers_in_text_are_no_trouble(tmp_path):
+    rows = b"nan nan nan nan 0\n" + b"0 0 1 7 0\n" * 11
+    (tmp_path / "labels.pcd").write_bytes(header("ascii", fields="x y z label rgba") + rows)
+    assert read_cloud(tmp_path / "labels.pcd").measured == 11
+    head = b"ply\nformat ascii 1.0\nelement vertex 10\n"
+    head += b"".join(b"property float %s\n" % name for name in (b"x", b"y", b"z", b"red", b"green", b"blue"))
+    (tmp_path / "colours.ply").write_bytes(head + b"end_header\n" + b"0 0 1 nan 300 -1\n" * 10)
+    assert read_cloud(tmp_path / "colours.ply").colors[0, 0].tolist() == [0, 255, 0]

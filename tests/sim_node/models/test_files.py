@@ -1,9 +1,9 @@
 import pytest
 import trimesh
 
-from nodes.sim_node.models.files import Models
 from nodes.sim_node.models.library import ModelError
 from nodes.sim_node.models.parts import Role, Shape
+from nodes.sim_node.models.sources import Models
 from nodes.sim_node.world import World
 from tests.sim_node.orders import order, pose
 

@@ -1,4 +1,7 @@
-"""What a depth picture says of a place: whether a thing that should stand there is there."""
+"""What depth pictures say of a box in the map: whether it is free, occupied, or out of their sight.
+
+Rays are cast through the box from each pixel that it covers, as in an occupancy grid.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,10 @@ from numpy.typing import NDArray
 from nodes.perception_node.cloud import Cloud, Transform
 from schemas.entities import Pose, Size
 
-Sight = Literal["open", "filled", "hidden"]
-"""`open`: one looks through where the thing should be; `filled`: there is something; else nobody can tell."""
-Looks = Callable[[Pose, Size], Sight]
+Occupancy = Literal["free", "occupied", "unknown"]
+"""`free`: one looks through where the thing should be; `occupied`: there is something."""
+OccupancyOf = Callable[[Pose, Size], Occupancy]
+"""The occupancy of the box of a size that stands at a pose."""
 
 _SHRINK = 0.8
 """Only the inner part of a box is looked at: its neighbours reach into what was measured too wide."""
@@ -22,28 +26,29 @@ _MOST_RAYS = 2000
 _FEWEST_RAYS = 12
 _IN_FRONT_M = 0.02
 _NEAREST_M = 0.05
-_IN_VIEW, _UNHIDDEN, _OPEN = 0.7, 0.5, 0.75
+_IN_VIEW, _UNHIDDEN, _FREE = 0.7, 0.5, 0.75
 _THROUGH = 0.7
 """A ray that ends behind this share of its way through the box has met nothing in it."""
 
 
-def looking(clouds: Sequence[Cloud]) -> Looks:
+def occupancy_in(clouds: Sequence[Cloud]) -> OccupancyOf:
     """What these organised clouds of one moment say of the box that stands at a pose (map frame)."""
-    return partial(_sight, [cloud for cloud in clouds if cloud.organised and cloud.intrinsics is not None])
+    usable = [cloud for cloud in clouds if cloud.organised and cloud.intrinsics is not None]
+    return partial(_occupancy, usable)
 
 
-def _sight(clouds: Sequence[Cloud], pose: Pose, size_m: Size) -> Sight:
-    sights = {_sight_of(cloud, pose, size_m) for cloud in clouds}
-    return "filled" if "filled" in sights else "open" if "open" in sights else "hidden"
+def _occupancy(clouds: Sequence[Cloud], pose: Pose, size_m: Size) -> Occupancy:
+    said = {_occupancy_by(cloud, pose, size_m) for cloud in clouds}
+    return "occupied" if "occupied" in said else "free" if "free" in said else "unknown"
 
 
-def _sight_of(cloud: Cloud, pose: Pose, size_m: Size) -> Sight:
+def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
     assert cloud.intrinsics is not None
     camera_from_box = np.linalg.inv(_pose_of(cloud)) @ _map_from_box(pose, size_m)
     half = np.array([size_m[0] * _SHRINK, size_m[1] * _SHRINK, size_m[2]]) / 2.0
     rows, columns = _pixels(cloud, camera_from_box, half)
     if rows.size < _FEWEST_RAYS:
-        return "hidden"
+        return "unknown"
     depth = cloud.points_camera[rows, columns, 2].astype(float)
     enter, leave = _crossing(_rays(rows, columns, cloud.intrinsics), camera_from_box, half)
     way = leave - enter
@@ -51,9 +56,9 @@ def _sight_of(cloud: Cloud, pose: Pose, size_m: Size) -> Sight:
     depth, enter, way = depth[crossing], enter[crossing], way[crossing]
     unhidden = depth > enter - _IN_FRONT_M  # NaN is hidden
     if depth.size < _FEWEST_RAYS or unhidden.mean() < _UNHIDDEN:
-        return "hidden"
+        return "unknown"
     through = (depth[unhidden] - enter[unhidden]) / way[unhidden]
-    return "open" if (through > _THROUGH).mean() >= _OPEN else "filled"
+    return "free" if (through > _THROUGH).mean() >= _FREE else "occupied"
 
 
 def _pixels(
@@ -89,7 +94,7 @@ def _rays(rows: NDArray[np.intp], columns: NDArray[np.intp], intrinsics: Transfo
 def _crossing(
     rays: Transform, camera_from_box: Transform, half: Transform
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The depths [m] at which each ray enters and leaves the box; it misses where they are not in order."""
+    """The depths [m] at which each ray enters and leaves the box, by slabs; it misses where out of order."""
     rotation, middle = camera_from_box[:3, :3], camera_from_box[:3, 3]
     eye = -middle @ rotation
     directions = rays @ rotation

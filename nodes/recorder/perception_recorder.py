@@ -1,4 +1,4 @@
-"""What cameras and perception publish is drawn: looks as they come, pictures and clouds seldom."""
+"""Draws what cameras and perception publish: looks as they come, pictures and clouds seldom."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from nodes import bus
 from nodes.loop import Node
-from nodes.recorder import sightings
+from nodes.recorder import perception_archetypes as archetypes
 from nodes.recorder.recording import Recording
 from schemas import keys
 from schemas.perception import Observations, SegmentedCloud
@@ -19,7 +19,7 @@ _PICTURE_S = 1.0
 """A camera's picture is recorded no more often."""
 
 
-class Watching:
+class PerceptionRecorder:
     """Binds the drawing of what is seen to the wire."""
 
     def __init__(self, node: Node, recording: Recording, at: Callable[[int], None]) -> None:
@@ -37,11 +37,11 @@ class Watching:
     def _on_observations(self, seen: Observations) -> None:
         self._seen = seen
         self._at(seen.stamp_ns)
-        self._recording.show(sightings.BOXES, *sightings.boxes_of(seen))
+        self._recording.show(archetypes.BOXES, *archetypes.boxes_of(seen))
 
     def _on_cloud(self, cloud: SegmentedCloud) -> None:
         self._at(cloud.stamp_ns)
-        self._recording.show(sightings.CLOUD, sightings.points_of(cloud, self._seen))
+        self._recording.show(archetypes.CLOUD, archetypes.points_of(cloud, self._seen))
 
     def _keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
         """On a thread of Zenoh's: only the newest picture of each camera is kept."""
@@ -51,12 +51,12 @@ class Watching:
         for camera in list(self._pictures):
             frame, read = self._pictures.pop(camera)
             try:
-                drawn, stand = sightings.picture_of(frame, read()), sightings.stand_of(frame)
+                drawn, pose = archetypes.picture_of(frame, read()), archetypes.camera_pose(frame)
             except ValueError as error:
                 log.warning("camera %s: its picture cannot be recorded: %s", camera, error)
                 continue
             self._at(frame.stamp_ns)
-            self._recording.show(sightings.camera_path(camera), *drawn)
+            self._recording.show(archetypes.camera_path(camera), *drawn)
             if camera not in self._arranged:
                 self._arranged.add(camera)
-                self._recording.arrange([stand], [camera])
+                self._recording.arrange([pose], [camera])

@@ -7,10 +7,9 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from nodes.perception_node.cloud import FEWEST_POINTS, Cloud
+from nodes.perception_node.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
 from nodes.perception_node.frames import Frames, Pair, read_cloud, thinning
 from nodes.perception_node.pipeline import Look
-from nodes.perception_node.projection import FARTHEST_M
 from schemas.errors import BadRequest
 from schemas.scenes import CameraFrame
 
@@ -22,19 +21,19 @@ Seen = Callable[[Sequence[Cloud], Look, float], None]
 """Told of clouds of one moment, what they show, and how long the look took [s]."""
 
 
-class Eye:
+class FrameWorker:
     """Looks at frames as fast as it can; those that come meanwhile are passed over."""
 
     def __init__(
         self, look: Callable[[Sequence[Cloud]], Look], on_look: Seen, complain: Callable[[str], None]
     ) -> None:
-        """`on_look` and `complain` are called on this eye's thread; `complain(text)` says what is wrong."""
+        """`on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
         self._look = look
         self._on_look = on_look
         self._complain = complain
         self._frames = Frames()
         self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="eye", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="frames", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
@@ -74,5 +73,5 @@ class Eye:
             size = f"{frame.width} x {frame.height} pixels"
             self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
         if cloud.measured < FEWEST_POINTS:
-            self._complain(f"camera {frame.camera} measures no depth between 0 and {FARTHEST_M:g} m")
+            self._complain(f"camera {frame.camera} measures no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
         return cloud

@@ -1,19 +1,19 @@
-"""How unlike an observation is a thing that is known, by place, size and class."""
+"""What it costs to take an observation for a known thing: how unlike they are in place, size and class."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from nodes.perception_node.kinship import ANYTHING, Kinship
-from nodes.perception_node.overlap import Place
+from nodes.perception_node.class_hierarchy import ANYTHING, ClassHierarchy
+from nodes.perception_node.overlap import OrientedBox
 from schemas.entities import Pose, Size
 from schemas.perception import Observation
 
 FORBIDDEN = math.inf
 _NEARBY_M = 0.05
 _SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
-"""What stands in place is the thing if its size is no more unlike (`size_unlike`)."""
+"""What stands in place is the thing if its size is no more unlike (`size_difference`)."""
 _OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
 """The same for what is recognised somewhere else: by a class and size, or by its size alone."""
 _VAGUE = 0.1
@@ -37,44 +37,45 @@ class Target(NamedTuple):
     usual_m: Size | None = None
 
     @property
-    def place(self) -> Place | None:
+    def box(self) -> OrientedBox | None:
         """The box that it fills, as far as one can tell."""
         size_m = self.size_m or self.usual_m
-        return None if size_m is None else Place(self.pose, size_m)
+        return None if size_m is None else OrientedBox(self.pose, size_m)
 
 
-def cost_in_place(target: Target, seen: Observation, kinship: Kinship) -> float:
+def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
     """How unlike an observation is a thing that hardly moved, if at all; FORBIDDEN if it cannot be it."""
     size_m = target.size_m or seen.size_m
     aside, above = _apart(target.pose, size_m, seen)
     reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
     if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
         return FORBIDDEN
-    unlike, alien = size_unlike(target, seen), class_unlike(target.class_, seen, kinship)
+    unlike, alien = size_difference(target, seen), class_difference(target.class_, seen, classes)
     if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
         return FORBIDDEN
     return aside / reach + unlike + alien
 
 
-def cost_anywhere(target: Target, seen: Observation, kinship: Kinship) -> float:
+def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
     """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind.
 
     Where it is hardly counts, but what has come back to its place may be less like it.
     """
-    place = target.place
-    if place is None:
+    box = target.box
+    if box is None:
         return FORBIDDEN
     vague = ANYTHING in (seen.class_, target.class_)
-    unlike = size_unlike(target._replace(size_m=place.size_m), seen)
-    alike = kinship.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
-    if not alike and cost_in_place(target, seen, kinship) == FORBIDDEN:
+    unlike = size_difference(target._replace(size_m=box.size_m), seen)
+    alike = classes.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
+    if not alike and cost_in_place(target, seen, classes) == FORBIDDEN:
         return FORBIDDEN
-    aside, above = _apart(place.pose, place.size_m, seen)
-    doubt = _VAGUE if vague and target.class_ != seen.class_ else class_unlike(target.class_, seen, kinship)
-    return unlike + doubt + 0.1 * math.hypot(aside, above)
+    aside, above = _apart(box.pose, box.size_m, seen)
+    vaguely = vague and target.class_ != seen.class_
+    alien = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
+    return unlike + alien + 0.1 * math.hypot(aside, above)
 
 
-def size_unlike(target: Target, seen: Observation) -> float:
+def size_difference(target: Target, seen: Observation) -> float:
     """How unlike the extents are, however turned: the mean of |log ratio|, or half the worst if that is more.
 
     What is seen in part may be smaller. A single extent that is twice too large is that of a thing with its
@@ -89,11 +90,11 @@ def size_unlike(target: Target, seen: Observation) -> float:
     return max(sum(unlike) / 3.0, max(unlike) / 2.0)
 
 
-def class_unlike(class_name: str, seen: Observation, kinship: Kinship) -> float:
+def class_difference(class_name: str, seen: Observation, classes: ClassHierarchy) -> float:
     """From 0 for one that is related to what was seen, to 1 for one that it can hardly be."""
-    if kinship.related(class_name, seen.class_):
+    if classes.related(class_name, seen.class_):
         return 0.0
-    return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if kinship.is_a(leaf, class_name)))
+    return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if classes.is_a(leaf, class_name)))
 
 
 def _upright(size_m: Size) -> tuple[float, float, float]:

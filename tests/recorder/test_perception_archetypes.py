@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nodes.recorder import sightings
+from nodes.recorder import perception_archetypes as archetypes
 from nodes.recorder.palette import colour_of
 from nodes.recorder.recording import open_recording
 from schemas.entities import Pose
@@ -43,19 +43,19 @@ def recorded(tmp_path, path, *archetypes):
 
 
 def test_a_look_comes_back_with_boxes_class_and_probability(tmp_path):
-    read = recorded(tmp_path, sightings.BOXES, *sightings.boxes_of(SEEN))
+    read = recorded(tmp_path, archetypes.BOXES, *archetypes.boxes_of(SEEN))
     assert read("Boxes3D:half_sizes") == [pytest.approx((0.04, 0.05, 0.06))]
     assert read("Boxes3D:centers") == [pytest.approx((1.0, 2.0, 0.81))]
     assert read("Boxes3D:quaternions") == [pytest.approx((0.0, 0.0, 0.8, 0.6))]
     assert read("Boxes3D:labels") == ["cup1: Cup 93%"]
-    assert read(f"{sightings.OBSERVATION_FIELDS}:class") == ["Cup"]
-    assert read(f"{sightings.OBSERVATION_FIELDS}:probability") == [pytest.approx(0.934)]
-    assert read(f"{sightings.OBSERVATION_FIELDS}:entity") == ["cup1"]
+    assert read(f"{archetypes.OBSERVATION_FIELDS}:class") == ["Cup"]
+    assert read(f"{archetypes.OBSERVATION_FIELDS}:probability") == [pytest.approx(0.934)]
+    assert read(f"{archetypes.OBSERVATION_FIELDS}:entity") == ["cup1"]
 
 
 def test_a_look_that_shows_nothing_leaves_no_box(tmp_path):
     nothing = Observations(stamp_ns=START_NS, views=(), observations=())
-    read = recorded(tmp_path, sightings.BOXES, *sightings.boxes_of(nothing))
+    read = recorded(tmp_path, archetypes.BOXES, *archetypes.boxes_of(nothing))
     assert read("Boxes3D:half_sizes") == []
 
 
@@ -67,7 +67,7 @@ def test_points_of_things_have_the_colours_of_their_classes():
         colors=bytes([9] * 9),
         labels=np.array([0, 1, 7], "<u2").tobytes(),
     )
-    points = sightings.points_of(cloud, SEEN)
+    points = archetypes.points_of(cloud, SEEN)
     packed = points.colors.as_arrow_array().to_pylist()
     red, green, blue = colour_of("Cup")
     assert packed == [0x090909FF, red << 24 | green << 16 | blue << 8 | 0xFF, 0x090909FF]
@@ -76,7 +76,7 @@ def test_points_of_things_have_the_colours_of_their_classes():
 def test_a_picture_is_recorded_small_with_its_camera(tmp_path):
     pixels = np.zeros((480, 640, 3), np.uint8)
     pixels[:, 320:] = (200, 100, 50)
-    read = recorded(tmp_path, sightings.camera_path("left"), *sightings.picture_of(FRAME, pixels.tobytes()))
+    read = recorded(tmp_path, archetypes.camera_path("left"), *archetypes.picture_of(FRAME, pixels.tobytes()))
     assert read("Transform3D:translation") == [(3.0, 4.0, 5.0)] or read("Transform3D:translation") == [
         [3, 4, 5]
     ]
@@ -90,4 +90,4 @@ def test_a_picture_is_recorded_small_with_its_camera(tmp_path):
 
 def test_pixels_that_are_not_the_frames_are_refused():
     with pytest.raises(ValueError, match="not enough"):
-        sightings.picture_of(FRAME, b"too few")
+        archetypes.picture_of(FRAME, b"too few")

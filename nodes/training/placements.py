@@ -44,28 +44,28 @@ def spread(
     *,
     crowded: bool = False,
 ) -> list[Rectangle | None]:
-    """A free spot in an area around the origin for each thing, None where there is none left.
+    """A free placement in an area around the origin for each thing, None where there is none left.
 
     Crowded things come as near to the others as `gap_m` lets them, or are pushed together.
     """
     if crowded and rng.random() < _PUSHED:
         return _pushed(sizes, area_m, float(rng.uniform(0.0, 0.004)), rng)
     taken: list[Rectangle] = []
-    spots: list[Rectangle | None] = []
+    placements: list[Rectangle | None] = []
     for (x, y, _), _kind in zip(sizes, kinds, strict=True):
         free: list[Rectangle] = []
         for _ in range(60 if crowded else 25):
             at = rng.uniform(-0.5, 0.5, 2) * (np.array(area_m) - 0.7 * max(x, y))
-            spot = (float(at[0]), float(at[1]), x, y, float(rng.uniform(-math.pi, math.pi)))
-            if not any(overlap(spot, other, gap_m) for other in taken):
-                free.append(spot)
+            placement = (float(at[0]), float(at[1]), x, y, float(rng.uniform(-math.pi, math.pi)))
+            if not any(overlap(placement, other, gap_m) for other in taken):
+                free.append(placement)
                 if not crowded:
                     break
-        best = min(free, key=lambda spot: _nearest(spot, taken), default=None)
-        spots.append(best)
+        best = min(free, key=lambda placement: _nearest(placement, taken), default=None)
+        placements.append(best)
         if best is not None:
             taken.append(best)
-    return spots
+    return placements
 
 
 def _pushed(
@@ -73,7 +73,7 @@ def _pushed(
 ) -> list[Rectangle | None]:
     """Each comes from somewhere towards about the middle, until it meets another."""
     taken: list[Rectangle] = []
-    spots: list[Rectangle | None] = []
+    placements: list[Rectangle | None] = []
     grid, square = float(rng.uniform(-math.pi, math.pi)), rng.random() < _SQUARE
     for x, y, _ in sizes:
         best = None
@@ -81,13 +81,13 @@ def _pushed(
             yaw = float(grid + rng.integers(4) * math.pi / 2 if square else rng.uniform(-math.pi, math.pi))
             azimuth = rng.uniform(-math.pi, math.pi)
             way = np.array([math.cos(azimuth), math.sin(azimuth)])
-            spot = _until_it_touches((x, y, yaw), rng.normal(0.0, 0.08, 2), way, taken, gap_m)
-            if (np.abs(spot[:2]) < np.array(area_m) / 2 - 0.3 * max(x, y)).all():
-                best = spot
-                taken.append(spot)
+            placement = _until_it_touches((x, y, yaw), rng.normal(0.0, 0.08, 2), way, taken, gap_m)
+            if (np.abs(placement[:2]) < np.array(area_m) / 2 - 0.3 * max(x, y)).all():
+                best = placement
+                taken.append(placement)
                 break
-        spots.append(best)
-    return spots
+        placements.append(best)
+    return placements
 
 
 def _until_it_touches(
@@ -119,5 +119,5 @@ def _until_it_touches(
     return at(clear)
 
 
-def _nearest(spot: Rectangle, others: Sequence[Rectangle]) -> float:
-    return min((math.dist(spot[:2], other[:2]) for other in others), default=0.0)
+def _nearest(placement: Rectangle, others: Sequence[Rectangle]) -> float:
+    return min((math.dist(placement[:2], other[:2]) for other in others), default=0.0)

@@ -1,12 +1,12 @@
-"""What the map is to be told of a track: what is believed, compared with what the map says. Pure."""
+"""What the map is to be told: what the tracks say, compared with what the map says. Pure."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Set
 from typing import Any
 
+from nodes.perception_node.class_hierarchy import ClassHierarchy
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.kinship import Kinship
 from nodes.perception_node.tracks import Track, slack_m, turn_between
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Size, distance_m, free_name, rounded
@@ -33,18 +33,18 @@ def subject_of(command: Command) -> str:
     raise TypeError(f"perception does not say {type(command).__name__}")
 
 
-def is_sure(track: Track, kinship: Kinship, config: TrackingConfig) -> bool:
+def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
     """Whether a thing was seen at rest often enough to become an entity."""
-    clear = track.whole and track.votes.share(track.votes.belief(kinship), kinship) >= config.clear
+    clear = track.whole and track.votes.share(track.votes.belief(classes), classes) >= config.clear
     enough = config.clear_looks if clear else config.confirm_looks
     return track.looks >= enough and not track.unseen
 
 
-def proposals(tracks: Iterable[Track], taken: Set[str], kinship: Kinship) -> dict[str, Add]:
+def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:
     """A new entity for each track, in order, by names that are not taken."""
     added: dict[str, Add] = {}
     for track in tracks:
-        class_name = track.votes.belief(kinship)
+        class_name = track.votes.belief(classes)
         name = free_name(class_name, {*taken, *added})
         pose = rounded(track.pose)
         added[name] = Add(
@@ -56,13 +56,15 @@ def proposals(tracks: Iterable[Track], taken: Set[str], kinship: Kinship) -> dic
             at=pose.position_m,
             orientation=pose.orientation_wxyz,
             size=_to_millimetres(track.size_m),
-            ref=kinship.label(class_name),
-            confidence=_confidence(track, class_name, kinship),
+            ref=classes.label(class_name),
+            confidence=_confidence(track, class_name, classes),
         )
     return added
 
 
-def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig) -> Update | Remove | None:
+def update_of(
+    entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig
+) -> Update | Remove | None:
     """What the map must be told of an entity, if anything; what it is only of perception's own."""
     own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
     if track.is_gone(config):
@@ -75,16 +77,16 @@ def news(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig)
             return None
         pose = rounded(track.pose)
         changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
-    class_name = _other_class(entity, track, kinship, config)
+    class_name = _other_class(entity, track, classes, config)
     if own:
-        changes |= _described(entity, track, class_name, kinship, config)
-    conflict = "" if own else _conflict(entity, track, class_name, kinship)
+        changes |= _described(entity, track, class_name, classes, config)
+    conflict = "" if own else _conflict(entity, track, class_name, classes)
     if conflict != entity.conflict:
         changes["conflict"] = conflict
     if not changes:
         return None
     reason = f"{entity.name} has moved" if "at" in changes else f"a closer look at {entity.name}"
-    confidence = _confidence(track, class_name or track.votes.belief(kinship), kinship)
+    confidence = _confidence(track, class_name or track.votes.belief(classes), classes)
     return Update(
         source="perception", agent=AGENT, reason=reason, name=entity.name, confidence=confidence, **changes
     )
@@ -109,28 +111,28 @@ def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
     return distance_m(entity.pose, track.pose) > slack or turn_between(track, entity.pose) > config.turned_rad
 
 
-def _other_class(entity: Entity, track: Track, kinship: Kinship, config: TrackingConfig) -> str:
+def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
     """The class that a thing turns out to be, if that is more special than the map's, or contradicts it."""
-    believed = track.votes.belief(kinship)
-    if track.looks < config.confirm_looks or kinship.is_a(entity.class_, believed):
+    believed = track.votes.belief(classes)
+    if track.looks < config.confirm_looks or classes.is_a(entity.class_, believed):
         return ""
-    if kinship.is_a(believed, entity.class_):
+    if classes.is_a(believed, entity.class_):
         return believed
     contradicts = (
-        track.votes.share(believed, kinship) > _SURE and track.votes.share(entity.class_, kinship) < _UNSURE
+        track.votes.share(believed, classes) > _SURE and track.votes.share(entity.class_, classes) < _UNSURE
     )
     return believed if contradicts else ""
 
 
 def _described(
-    entity: Entity, track: Track, class_name: str, kinship: Kinship, config: TrackingConfig
+    entity: Entity, track: Track, class_name: str, classes: ClassHierarchy, config: TrackingConfig
 ) -> dict[str, Any]:
     """What is seen better than before: the class, with what it is called after it, and the size."""
     changes: dict[str, Any] = {}
     if class_name:
         changes["class_"] = class_name
-        if entity.preferred_reference == kinship.label(entity.class_):
-            changes["ref"] = kinship.label(class_name)
+        if entity.preferred_reference == classes.label(entity.class_):
+            changes["ref"] = classes.label(class_name)
     if track.whole and track.looks >= config.nudge_looks and _is_resized(entity, track, config):
         changes["size"] = _to_millimetres(track.size_m)
     return changes
@@ -143,18 +145,18 @@ def _is_resized(entity: Entity, track: Track, config: TrackingConfig) -> bool:
     )
 
 
-def _conflict(entity: Entity, track: Track, class_name: str, kinship: Kinship) -> str:
+def _conflict(entity: Entity, track: Track, class_name: str, classes: ClassHierarchy) -> str:
     """What is seen against an operator's word; what was seen before stays until the word is borne out."""
-    if class_name and not kinship.is_a(class_name, entity.class_):
+    if class_name and not classes.is_a(class_name, entity.class_):
         return f"looks like a {class_name}"
-    borne_out = entity.conflict in (MISSING, DISPLACED) or kinship.is_a(
-        track.votes.belief(kinship), entity.class_
+    borne_out = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
+        track.votes.belief(classes), entity.class_
     )
     return "" if borne_out else entity.conflict
 
 
-def _confidence(track: Track, class_name: str, kinship: Kinship) -> float:
-    return round(min(1.0, track.votes.share(class_name, kinship)), 3)
+def _confidence(track: Track, class_name: str, classes: ClassHierarchy) -> float:
+    return round(min(1.0, track.votes.share(class_name, classes)), 3)
 
 
 def _to_millimetres(size_m: Size) -> Size:

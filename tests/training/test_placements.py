@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nodes.training.spots import overlap, spread
+from nodes.training.placements import overlap, spread
 
 
 @pytest.mark.parametrize(
@@ -22,23 +22,23 @@ def test_rectangles_meet_or_not(other, gap, meets):
 @pytest.mark.parametrize("crowded", [False, True])
 def test_things_never_stand_in_one_another(crowded):
     for seed in range(8):
-        taken = [spot for spot in _spots(seed, crowded=crowded) if spot]
+        taken = [p for p in _placements(seed, crowded=crowded) if p]
         assert len(taken) > 4
         assert not any(overlap(a, b, 0.0) for n, a in enumerate(taken) for b in taken[:n])
 
 
 def test_what_is_pushed_together_touches():
-    touching = [_touching([spot for spot in _spots(seed, crowded=True) if spot]) for seed in range(8)]
+    touching = [_touching([p for p in _placements(seed, crowded=True) if p]) for seed in range(8)]
     assert sum(touching) >= 3
-    assert not any(_touching([s for s in _spots(seed, crowded=False) if s]) for seed in range(8))
+    assert not any(_touching([s for s in _placements(seed, crowded=False) if s]) for seed in range(8))
 
 
-def _spots(seed, *, crowded):
+def _placements(seed, *, crowded):
     sizes = [(0.1, 0.2, 0.1), (0.08, 0.08, 0.2), (0.3, 0.2, 0.2)] * 3
     rng = np.random.default_rng(seed)
     return spread(["box"] * len(sizes), sizes, (1.0, 1.5), 0.03, rng, crowded=crowded)
 
 
-def _touching(spots):
+def _touching(placements):
     """Whether each is within half a centimetre of another."""
-    return all(any(overlap(a, b, 0.005) for b in spots if b is not a) for a in spots)
+    return all(any(overlap(a, b, 0.005) for b in placements if b is not a) for a in placements)

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.occupancy import occupancy_in
 from nodes.perception_node.projection import cloud_of
-from nodes.perception_node.visibility import looking
 from schemas.entities import Pose, orientation_from_yaw
 
 WIDTH, HEIGHT, FOCAL = 320, 240, 300.0
@@ -19,7 +19,7 @@ CUP = (0.08, 0.08, 0.1)
 
 
 def looking_down(angle_rad=0.7, distance_m=1.2) -> np.ndarray:
-    """A camera south of the table's middle and above it, looking at it."""
+    """A camera south of the table's middle and above it, occupancy_in at it."""
     forward = np.array([0.0, np.cos(angle_rad), -np.sin(angle_rad)])
     right = np.array([1.0, 0.0, 0.0])
     pose = np.eye(4)
@@ -52,43 +52,46 @@ def stands(x, y, z=TABLE_Z, yaw=0.0) -> Pose:
 @pytest.mark.parametrize("size", [CUP, (0.07, 0.07, 0.28), (0.2, 0.15, 0.03), (0.18, 0.03, 0.015)])
 def test_a_thing_is_there_or_is_gone(size, noise_m):
     there = picture([((0.1, 0.05, TABLE_Z), size)], noise_m=noise_m)
-    assert looking([there])(stands(0.1, 0.05), size) == "filled"
-    assert looking([picture(noise_m=noise_m)])(stands(0.1, 0.05), size) == "open"
+    assert occupancy_in([there])(stands(0.1, 0.05), size) == "occupied"
+    assert occupancy_in([picture(noise_m=noise_m)])(stands(0.1, 0.05), size) == "free"
 
 
 def test_what_stands_behind_something_is_hidden():
     screen = ((0.0, -0.15, TABLE_Z), (0.4, 0.02, 0.4))
-    assert looking([picture([screen])])(stands(0.0, 0.1), CUP) == "hidden"
+    assert occupancy_in([picture([screen])])(stands(0.0, 0.1), CUP) == "unknown"
 
 
 def test_a_neighbour_does_not_fill_a_place():
     neighbour = ((0.09, 0.0, TABLE_Z), CUP)
-    assert looking([picture([neighbour])])(stands(0.0, 0.0), CUP) == "open"
+    assert occupancy_in([picture([neighbour])])(stands(0.0, 0.0), CUP) == "free"
 
 
 @pytest.mark.parametrize(
     "place", [stands(5.0, 0.0), stands(0.0, -3.0), stands(0.66, 0.0), stands(0.0, 0.0, 5.0)]
 )
 def test_what_is_out_of_view_nobody_can_tell(place):
-    assert looking([picture()])(place, CUP) == "hidden"
+    assert occupancy_in([picture()])(place, CUP) == "unknown"
 
 
 def test_where_nothing_is_measured_nobody_can_tell():
     nothing = cloud_of(np.zeros((HEIGHT, WIDTH), np.float32), None, INTRINSICS, looking_down())
-    assert looking([nothing])(stands(0.0, 0.0), CUP) == "hidden"
-    assert looking([])(stands(0.0, 0.0), CUP) == "hidden"
+    assert occupancy_in([nothing])(stands(0.0, 0.0), CUP) == "unknown"
+    assert occupancy_in([])(stands(0.0, 0.0), CUP) == "unknown"
 
 
 def test_of_two_views_the_one_that_sees_something_counts():
     screen = ((0.0, -0.15, TABLE_Z), (0.4, 0.02, 0.4))
     above = looking_down(1.4)
-    assert looking([picture([screen]), picture([screen], above)])(stands(0.0, 0.1), CUP) == "open"
+    assert occupancy_in([picture([screen]), picture([screen], above)])(stands(0.0, 0.1), CUP) == "free"
     cup = ((0.0, 0.1, TABLE_Z), CUP)
-    assert looking([picture([screen, cup]), picture([screen, cup], above)])(stands(0.0, 0.1), CUP) == "filled"
+    assert (
+        occupancy_in([picture([screen, cup]), picture([screen, cup], above)])(stands(0.0, 0.1), CUP)
+        == "occupied"
+    )
 
 
 @settings(deadline=None, max_examples=40)
 @given(st.floats(-0.3, 0.3), st.floats(-0.2, 0.2), st.floats(-3.1, 3.1), st.floats(0.4, 1.4))
-def test_an_empty_table_is_open_everywhere_in_view(x, y, yaw, angle_rad):
-    view = looking([picture(pose=looking_down(angle_rad))])
-    assert view(stands(x, y, yaw=yaw), (0.1, 0.06, 0.12)) == "open"
+def test_an_empty_table_is_free_everywhere_in_view(x, y, yaw, angle_rad):
+    view = occupancy_in([picture(pose=looking_down(angle_rad))])
+    assert view(stands(x, y, yaw=yaw), (0.1, 0.06, 0.12)) == "free"

@@ -1,4 +1,4 @@
-"""The points of a look for the eye: in the map frame, thinned out, each with its observation."""
+"""The points of a look for viewers: in the map frame, thinned out, each with its observation."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def points_of(cloud: SegmentedCloud, seen: Observations) -> rr.Points3D:
     return rr.Points3D(np.frombuffer(cloud.positions, "<f4").reshape(-1, 3), colors=colors, radii=[_POINT_M])
 
 
-def stand_of(frame: CameraFrame) -> Pose:
+def camera_pose(frame: CameraFrame) -> Pose:
     """Where a camera is. Raises ValueError when the frame does not say it."""
     x, y, z = np.array(frame.map_from_camera).reshape(4, 4)[:3, 3].tolist()
     return Pose(position_m=(x, y, z))

@@ -1,0 +1,59 @@
+"""Where models come from: a person's own files, or the library."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+from nodes.sim_node.models.files import SUFFIXES, read_model
+from nodes.sim_node.models.library import Model, ModelError
+from nodes.sim_node.models.library import build as built_in
+from nodes.sim_node.models.parts import Vec3
+from schemas.errors import did_you_mean
+
+
+@dataclass(frozen=True)
+class Models:
+    """Models of files in `folder` or at a path, before the library's own.
+
+    `chair.glb` in the folder takes the place of the model `chair`. A model that is itself a path
+    (`/home/me/sofa.obj`) is read from there. Called with a model's name and a size, it answers the model;
+    raises ModelError for a file that cannot be used.
+    """
+
+    folder: Path | None = None
+
+    def __call__(self, name: str, size_m: Vec3 | None) -> Model:
+        """The model `name` at `size_m`, or at its own size."""
+        path = self._path(name)
+        if path is None:
+            return built_in(name, size_m)
+        try:
+            return read_model(path, size_m, path.stat().st_mtime_ns)
+        except OSError as error:
+            raise ModelError(f"the model file {path} cannot be read: {error.strerror}") from None
+
+    def _path(self, name: str) -> Path | None:
+        if name.endswith(SUFFIXES):
+            if self.folder is None and not Path(name).is_absolute():
+                raise ModelError(
+                    f"the model file {name} is looked for in the folder of `semmap up --models DIR`,"
+                    " and none was given; or the TBox gives its whole path"
+                )
+            return (self.folder or Path()) / name
+        candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []
+        return next((path for path in candidates if path.is_file()), None)
+
+
+def passed_over(folder: Path, models: Collection[str]) -> list[str]:
+    """The model files of `folder` that are none of `models`, those of the classes, and what they are near."""
+    return [
+        path.name + (f" ({hint.removeprefix('; ')})" if (hint := did_you_mean(path.stem, models)) else "")
+        for path in sorted(folder.iterdir())
+        if path.suffix.lower() in SUFFIXES and not _is_one_of(path, models)
+    ]
+
+
+def _is_one_of(path: Path, models: Collection[str]) -> bool:
+    return path.suffix in SUFFIXES and any(name in models for name in (path.stem, path.name, str(path)))

@@ -1,0 +1,128 @@
+"""What commands are answered with; `schemas.commands.REPLIES` says which with what."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from msgspec import Struct
+
+from schemas.entities import Pose, Probability, Provenance, Source
+from schemas.errors import ErrorMessage
+from schemas.explanations import Explanation, Triple
+
+
+class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The map has changed (or, without `commit`, there was nothing to change)."""
+
+    commit: int | None
+    text: str
+    names: tuple[str, ...] = ()
+    skipped: tuple[str, ...] = ()
+    """What was left out, and why."""
+    notes: tuple[str, ...] = ()
+    """How the request was understood, where it was not taken literally."""
+
+
+class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The verdict."""
+
+    consistent: bool
+    engine: str
+    triples: int
+    elapsed_s: float
+    text: str
+    explanation: Explanation | None = None
+
+
+class Inferred(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Triples that follow, grouped by subject in the order of names."""
+
+    triples: tuple[Triple, ...]
+    text: tuple[str, ...]
+    """One line a triple, with local names."""
+
+
+class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A serialised map, as it was after commit `seq`."""
+
+    content: bytes
+    media_type: str
+    triples: int
+    seq: int
+
+
+class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One node, as its heartbeats tell."""
+
+    node: str
+    state: Literal["starting", "ready", "silent"]
+    pid: int
+    uptime_s: float
+    heartbeat_age_s: float
+    detail: str = ""
+    last_error: str = ""
+
+
+class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The whole system."""
+
+    truth: str
+    commit: int
+    entities: int
+    bodies: int
+    in_agreement: bool | None
+    """Map and scene are the same, to within the thresholds; None when no simulator runs."""
+    nodes: tuple[NodeStatus, ...]
+    problems: tuple[str, ...] = ()
+
+
+class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A commit without its triples: who, when, why, how sure, and what it touched."""
+
+    seq: int
+    stamp_ns: int
+    source: Source
+    agent: str
+    verb: str
+    reason: str
+    confidence: Probability | None
+    undoes: tuple[int, ...]
+    tbox: bool
+    inserted: int
+    """How many triples came."""
+    retracted: int
+    """How many went."""
+    changed: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where an entity was last, and by whose word. `removed` is the commit that took it out since."""
+
+    name: str
+    pose: Pose | None
+    provenance: Provenance
+    removed: Provenance | None
+
+
+class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The body was taken and released."""
+
+    name: str
+    text: str
+
+
+class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """It was done."""
+
+    text: str
+
+
+class Ack(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The answer to a command that came as a put."""
+
+    id: str
+    verb: str
+    ok: bool
+    reply: Any = None
+    error: ErrorMessage | None = None
