@@ -205,7 +205,7 @@ class Undo(Command, frozen=True, kw_only=True, tag="undo"):
     Without `commit`: the newest that a client asked for, with the settling that followed it.
     """
 
-    commit: Annotated[int, Meta(ge=1)] | None = None
+    commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
 
 
 # To query

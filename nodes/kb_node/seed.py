@@ -29,10 +29,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     path = data / FILENAME
     if path.exists() and not fresh:
         Journal(path).close()  # one that cannot be read is told before anything starts
-        return (
-            f"going on with the map in {data}; --tbox and --abox are for a new one"
-            " (--fresh begins anew and keeps this one aside)"
-        )
+        return f"going on with the map in {data} (--fresh begins anew and keeps this one aside)"
     tbox_triples = read_triples(tbox, "t")
     reasoner = tboxes.compiled(tbox_triples, str(tbox))
     closed = reasoner.closed  # as it is before the ABox may add to the schema

@@ -175,5 +175,12 @@ def _format_of(file: Path) -> commands.RdfFormat:
         ".nt": "ntriples",
         ".jsonld": "jsonld",
         ".json": "jsonld",
+        ".owl": "rdfxml",
+        ".rdf": "rdfxml",
+        ".xml": "rdfxml",
     }
-    return endings.get(file.suffix.lower(), "rdfxml")
+    if (known := endings.get(file.suffix.lower())) is None:
+        raise errors.BadRequest(
+            f"what format is {file.name}? End it with {', '.join(endings)}, or say --format"
+        )
+    return known

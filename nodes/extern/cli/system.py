@@ -151,7 +151,9 @@ def _settings(
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
-    before = None if fresh or abox is not None else _settings_before(folder)
+    before = None if fresh else _settings_before(folder)
+    if abox is not None and (folder / JOURNAL).exists() and not fresh:
+        complain(f"--abox is for a new map, and the one in {folder} goes on; --fresh begins a new one")
     if world is None:
         world = before.world if before is not None else str(FLAT_WORLD if abox is None else EMPTY_WORLD)
     if truth is None:

@@ -1,8 +1,10 @@
 """What a map was last run with."""
 
+import click
 import pytest
+from click.testing import CliRunner
 
-from nodes.extern.cli.system import _settings_before
+from nodes.extern.cli.system import _settings_before, settings_options
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec
@@ -37,3 +39,16 @@ def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
     before = _settings_before(data)
     assert (before.truth, before.world) == ("perceived", str(FLAT_WORLD))
     assert "the world /nowhere/world.xml is no longer there" in capsys.readouterr().err
+
+
+def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
+    @click.command()
+    @settings_options
+    def tell(settings: Settings):
+        click.echo(f"{settings.truth} {settings.world}")
+
+    goes_on = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none"])
+    assert goes_on.stdout == f"perceived {EMPTY_WORLD}\n"
+    assert "--abox is for a new map" in goes_on.stderr
+    anew = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
+    assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")
