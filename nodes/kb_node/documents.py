@@ -13,6 +13,7 @@ from schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"
+_FEW = 5
 _FLOATS = frozenset((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
 _OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
 
@@ -49,7 +50,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
     doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
     kept = _without(gone, [t for t in triples if t not in doubtful])
-    return SortedOut(kept, words, _unknown_properties(kept, classes))
+    return SortedOut(kept, words, [*_unknown_properties(kept, classes), *_own_classes(declared, classes)])
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
@@ -77,6 +78,15 @@ def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]
         if p.startswith(_TBOX) and p not in known:
             users.setdefault(v.local_name(p), []).append(v.local_name(s))
     return [errors.unknown_properties(users, map(v.local_name, sorted(known)))] if users else []
+
+
+def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
+    """A word on classes that the TBox does not have: nobody can ask the map for things of them."""
+    names = sorted(v.local_name(c) for c in declared.difference(classes.names))
+    if not names:
+        return []
+    few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
+    return [f"the classes of the map stay those of its TBox, without {few}; --tbox loads others"]
 
 
 def is_built_in(term: Term) -> bool:

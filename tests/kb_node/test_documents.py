@@ -55,9 +55,13 @@ def test_of_two_classes_only_the_unknown_one_is_skipped(classes):
     assert words == ["c (unknown class 'Antique')"]
 
 
-def test_a_class_that_the_document_declares_is_known(classes):
+def test_a_class_that_the_document_declares_is_known_but_none_of_the_map(classes):
     triples = turtle(":s a dm:Sofa . dm:Sofa a owl:Class ; rdfs:subClassOf dm:Seat .")
-    assert documents.sort_out(triples, classes, skip_unknown=False).skipped == []
+    sorted_out = documents.sort_out(triples, classes, skip_unknown=False)
+    assert sorted_out.skipped == []
+    assert sorted_out.notes == [
+        "the classes of the map stay those of its TBox, without Sofa; --tbox loads others"
+    ]
 
 
 def test_a_literal_as_class_is_unknown(classes):
