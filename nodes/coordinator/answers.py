@@ -54,7 +54,7 @@ class Answers:
         """The nodes, the map, the scene."""
         return SystemStatus(
             truth=self._truth,
-            commit=self._door.seq,
+            commit=max(0, self._door.seq),
             entities=len(self._door.entities),
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),

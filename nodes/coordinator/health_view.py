@@ -8,6 +8,7 @@ from schemas.health import Health
 from schemas.replies import NodeStatus
 
 SILENT_AFTER_S = 3.0
+_HEARD_WITHIN_S = 2.0
 
 
 class HealthView:
@@ -15,6 +16,7 @@ class HealthView:
 
     def __init__(self) -> None:
         self._last: dict[str, tuple[Health, float]] = {}
+        self._told_from = time.monotonic() + _HEARD_WITHIN_S
 
     def take(self, health: Health) -> bool:
         """Remember a heartbeat. True when the node is another process than before."""
@@ -25,6 +27,10 @@ class HealthView:
     def alive(self, node: str) -> bool:
         """Was the node heard of lately?"""
         return node in self._last and time.monotonic() - self._last[node][1] < SILENT_AFTER_S
+
+    def may_be_there(self, node: str) -> bool:
+        """Is the node alive, or is it too early to tell? A heart beats once a second."""
+        return self.alive(node) or time.monotonic() < self._told_from
 
     def ready(self, node: str) -> bool:
         """Is the node alive, and past its start? Any thread may ask."""

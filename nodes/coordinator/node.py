@@ -194,7 +194,7 @@ class Coordinator:
     def _answer_waiting(self) -> None:
         still = []
         undecided = {"pending"}
-        if self._health.alive("sim_node"):
+        if self._health.may_be_there("sim_node"):
             undecided.add("unknown")  # its scene is still to come
         for name, deadline, changed, future in self._waiting:
             entity = self._door.entities.get(name)

@@ -172,9 +172,11 @@ def _is_disturbed(
 
 
 def _what_rests_on(target: Commit, others: list[Commit]) -> str:
-    if not others:
+    """`others` are later, newest first; those that only took back one another do not count."""
+    seqs = {commit.seq for commit in others}
+    changes = (c for c in _in_force(others) if not (c.undoes and seqs.issuperset(c.undoes)))
+    if (newest := next(changes, None)) is None:
         return f"it is too late to undo commit {target.seq}: what it said was changed since"
-    newest = others[0]
     return (
         f"it is too late to undo commit {target.seq} ({target.reason}): commit {newest.seq} ({newest.reason})"
         f" rests on it; undo that one first: semmap undo {newest.seq}"

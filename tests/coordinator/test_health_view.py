@@ -33,3 +33,12 @@ def test_another_process_is_noticed(pid, is_another):
     view = HealthView()
     assert not view.take(beat("ready"))
     assert view.take(beat("ready", pid)) is is_another
+
+
+def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatch):
+    assert HealthView().may_be_there("sim_node")
+    monkeypatch.setattr(health_view, "_HEARD_WITHIN_S", 0.0)
+    view = HealthView()
+    assert not view.may_be_there("kb_node")
+    view.take(beat("starting"))
+    assert view.may_be_there("kb_node")

@@ -153,6 +153,19 @@ def test_the_refusal_names_the_commit_that_rests_on_it(semantic_map):
         take_back(semantic_map, 1)
 
 
+def test_the_refusal_does_not_name_what_was_taken_back(semantic_map):
+    """Nor the undo itself: to take that back, and then that again, leads nowhere."""
+    add(semantic_map, "chair1", reason="a chair")
+    order(semantic_map, "chair1", A, B)
+    says(":chair1 dm:hasPreferredReference :r . :r dm:lexicalReference 'stool' .")(semantic_map)
+    take_back(semantic_map, 3)
+    with pytest.raises(errors.Refused, match=r"commit 2 .* rests on it"):
+        take_back(semantic_map, 1)
+    take_back(semantic_map, 2)
+    take_back(semantic_map, 1)
+    assert not list(semantic_map.entities())
+
+
 def test_other_changes_of_the_same_entity_are_no_hindrance(semantic_map):
     add(semantic_map, "chair1")
     order(semantic_map, "chair1", A, B)
