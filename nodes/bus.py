@@ -204,7 +204,10 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def _nobody(key: str) -> NoReturn:
-    raise errors.NoAnswer(f"no answer on {key}: nobody serves it, or this client may not ask it")
+    raise errors.NoAnswer(
+        f"no answer on {key}: nobody serves it, or its node is just starting (see: semmap status), or this"
+        " client may not ask it"
+    )
 
 
 @dataclass(frozen=True)

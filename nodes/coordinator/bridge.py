@@ -7,7 +7,7 @@ from typing import Any
 
 from nodes import bus
 from nodes.loop import Node, Relay
-from schemas import errors, keys
+from schemas import keys
 from schemas.bridge import BRIDGE
 from schemas.commands import Command
 
@@ -27,14 +27,7 @@ class Bridge:
     def ask(self, verb: str, message: Any) -> Any:
         """The answer; nothing else is done until it comes. Raises its error."""
         kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
-        try:
-            return self._node.ask(
-                keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s
-            )
-        except errors.NoAnswer:
-            raise errors.NoAnswer(
-                "the knowledge base does not answer; it may be starting again, see: semmap status"
-            ) from None
+        return self._node.ask(keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s)
 
     def ask_later(self, verb: str, message: Any) -> Future[Any]:
         """The answer when it comes; while nobody serves the key an error, at once."""

@@ -234,10 +234,9 @@ class KnowledgeBase:
             retract=(t for t in before if t not in imports and self.map.has(t)),
             insert=(t for t in imports if not self.map.has(t)),
         )
-        is_old = self._journal.commit_of(load.id) is not None
-        says_more = is_old or transaction.retract or transaction.insert
-        if not says_more and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
-            return None
+        imports_differ = transaction.retract or transaction.insert
+        if not imports_differ and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+            return self._journal.commit_of(load.id)
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
     def on_check(self, query: Check) -> Future[Checked]:

@@ -6,19 +6,18 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields, replace
+from itertools import count
 from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
-from nodes.training import pairs as pairing
-from nodes.training import samples as sampling
 from nodes.training.arranging import Scene, heaps, training_scenes
-from nodes.training.pairs import Pairs
-from nodes.training.samples import Samples
+from nodes.training.pairs import Pairs, pairs_of
+from nodes.training.samples import Samples, samples_of
 from nodes.training.scenes import Item, Shot, Stage
 
-_SCENES, _HEAPS = 150, 40  # a part
+_SCENES, _HEAPS = 150, 40  # a part, at most
 _SEEDS = 10  # from the first of scenes to the first of heaps
 
 
@@ -36,28 +35,32 @@ def gather(scenes: int, heaped: int, seed: int) -> Gathered:
     They are made in parts, each by a process of its own: the same whatever the machine.
     """
     with ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), max_tasks_per_child=1) as pool:
-        things = list(pool.map(_things, range(seed, seed - (-scenes // _SCENES))))
-        pairs = list(pool.map(_pairs, range(seed + _SEEDS, seed + _SEEDS - (-heaped // _HEAPS))))
+        things = list(pool.map(_things, _shares(scenes, _SCENES), count(seed)))
+        pairs = list(pool.map(_pairs, _shares(heaped, _HEAPS), count(seed + _SEEDS)))
     return joined(things, pairs)
 
 
 def joined(things: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
     """All of all parts."""
     numbered = [replace(part, scene=part.scene + n * _SCENES) for n, part in enumerate(things)]
-    return Gathered(sampling.joined(numbered), pairing.joined(pairs))
+    return Gathered(Samples.joined(numbered), Pairs.joined(pairs))
 
 
-def _things(seed: int) -> Samples:
+def _shares(total: int, most: int) -> list[int]:
+    return [min(most, total - done) for done in range(0, total, most)]
+
+
+def _things(scenes: int, seed: int) -> Samples:
     rng = np.random.default_rng(seed)
-    shots = _photographed(training_scenes(_SCENES, rng), rng)
-    samples = (sampling.samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
-    return sampling.joined([found for found in samples if found is not None])
+    shots = _photographed(training_scenes(scenes, rng), rng)
+    samples = (samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
+    return Samples.joined([found for found in samples if found is not None])
 
 
-def _pairs(seed: int) -> Pairs:
+def _pairs(heaped: int, seed: int) -> Pairs:
     rng = np.random.default_rng(seed)
-    shots = _photographed(heaps(_HEAPS, rng), rng)
-    return pairing.joined([pairs for shot, items in shots for pairs in pairing.pairs_of(shot, items, rng)])
+    shots = _photographed(heaps(heaped, rng), rng)
+    return Pairs.joined([pairs for shot, items in shots for pairs in pairs_of(shot, items, rng)])
 
 
 def _photographed(scenes: Iterable[Scene], rng: np.random.Generator) -> Iterator[tuple[Shot, list[Item]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
@@ -16,6 +16,7 @@ from nodes.perception_node.recognition.joining import between, near
 from nodes.perception_node.sights import see
 from nodes.training.samples import NOTHING, shared_pixels, view_sets
 from nodes.training.scenes import Item, Shot
+from nodes.training.tables import Table
 
 _JOINED = 0.5
 
@@ -23,7 +24,7 @@ Members = tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Pairs:
+class Pairs(Table):
     """N pairs. `kinds`: (N, 2) the models, `NOTHING` for none. `one`: (N,) whether they are one thing.
 
     `geometry`, `shape`, `colour`: (N, 3, D) features of either and of both together. `known`: (N, 16), see
@@ -36,14 +37,6 @@ class Pairs:
     shape: NDArray[np.float64]
     colour: NDArray[np.float64]
     known: NDArray[np.float64]
-
-    def __getitem__(self, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Pairs:
-        return Pairs(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-
-def joined(parts: Sequence[Pairs]) -> Pairs:
-    """All pairs of all parts."""
-    return Pairs(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Pairs)))
 
 
 def pairs_of(shot: Shot, items: Sequence[Item], rng: np.random.Generator) -> list[Pairs]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -21,6 +21,7 @@ from nodes.perception_node.things import Thing
 from nodes.sim_node.models.parts import about, bounds, rotation_matrix
 from nodes.sim_node.models.parts import product as rotated
 from nodes.training.scenes import Item, Shot, tinted
+from nodes.training.tables import Table
 from schemas.scenes import Body
 
 _PURE, _WHOLE = 0.7, 0.5
@@ -31,7 +32,7 @@ NOTHING = ""
 
 
 @dataclass(frozen=True)
-class Samples:
+class Samples(Table):
     """N things. `kind`: (N,) the model, `NOTHING` for clutter. `scene`: (N,) the number of its scene.
 
     `geometry`, `shape`, `colour`: (N, D) features. `sides`: (N, 5, F) with an expected size of one metre;
@@ -46,17 +47,6 @@ class Samples:
     sides: NDArray[np.float64]
     shifts: NDArray[np.float64]
     size_m: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.kind)
-
-    def __getitem__(self, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Samples:
-        return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-
-def joined(parts: Sequence[Samples]) -> Samples:
-    """All samples of all parts."""
-    return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
 
 
 def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
