@@ -20,7 +20,8 @@ from nodes.coordinator.keeping import Keeping
 from nodes.coordinator.running import Running
 from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Results, Turns
-from nodes.loop import Node, open_node, settle
+from nodes.futures import settle
+from nodes.loop import Node, open_node
 from schemas import commands as c
 from schemas import errors, keys, wording
 from schemas.bridge import SnapshotQuery

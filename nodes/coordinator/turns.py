@@ -14,7 +14,7 @@ from concurrent.futures import Future
 from itertools import islice
 from typing import Any, NamedTuple
 
-from nodes.loop import settle
+from nodes.futures import settle
 from schemas import errors
 from schemas.commands import Add, Update
 from schemas.replies import Changed
