@@ -13,7 +13,8 @@ from typing import TypeVar
 from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.journal import FILENAME, Journal, NotWritten
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService

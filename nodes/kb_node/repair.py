@@ -8,7 +8,8 @@ from itertools import count
 from pathlib import Path
 
 from nodes.kb_node import rdf_files, seed, tboxes
-from nodes.kb_node.journal import FILENAME, InUse, Journal
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import InUse
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
 

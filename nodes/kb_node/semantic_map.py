@@ -22,7 +22,8 @@ from nodes.kb_node import (
 )
 from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
+from nodes.kb_node.journal import Checkpoint, Journal
+from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
