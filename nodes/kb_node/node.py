@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import uuid
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -10,7 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node import answers, documents, garbage, past, rdf_files, tboxes, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal
@@ -152,22 +151,16 @@ class KnowledgeBase:
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
-        """Lets the heartbeat tell how far the loading of a file is.
-
-        Meanwhile no garbage is collected: looking through millions of new objects would stop the whole
-        process, Zenoh's keep-alive included, for longer than a lease. They stay, so they are never looked at.
-        """
-        gc.disable()
+        """Lets the heartbeat tell how far the loading of a file is."""
 
         def tell(text: str) -> None:
             self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
             self._node.beat()
 
         try:
-            yield tell
+            with garbage.uncollected(freeze=True):
+                yield tell
         finally:
-            gc.freeze()
-            gc.enable()
             self._node.describe(self._summary())
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
@@ -302,10 +295,8 @@ def run(config: KbConfig) -> None:
     with open_node("kb_node", config.network) as node:
         journal = Journal(path)
         try:
-            gc.disable()  # a start makes much and drops little
-            knowledge_base = KnowledgeBase(node, journal)
-            gc.freeze()  # and what it made stays: the collector need not look through it again
-            gc.enable()
+            with garbage.uncollected(freeze=True):
+                knowledge_base = KnowledgeBase(node, journal)
             node.run()
             knowledge_base.close()
         finally:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import gc
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from contextlib import contextmanager
 
 from msgspec import structs
 
@@ -14,6 +12,7 @@ from nodes.kb_node import (
     effects,
     entities,
     fingerprint,
+    garbage,
     placing,
     preconditions,
     rdf_files,
@@ -33,8 +32,6 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
-_MUCH = 100_000
-"""Objects that a commit leaves."""
 
 
 class SemanticMap:
@@ -168,7 +165,7 @@ class SemanticMap:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
-        with _uncollected():
+        with garbage.uncollected():
             commit = self._signed(transaction, retracted, inserted)
             begun = bodies.early(commit)
             return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
@@ -379,17 +376,3 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """No garbage collection: a change of the map makes much and drops little."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            if gc.get_count()[0] > _MUCH:
-                gc.freeze()  # it stays: the collector need not look through it
-            gc.enable()
