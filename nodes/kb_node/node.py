@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, documents, garbage, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node import answers, garbage, loading, past, rdf_files, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal
@@ -47,7 +47,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Explanation, Triple
+from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -137,17 +137,9 @@ class KnowledgeBase:
                 progress=lambda count: tell(f"{count:,} triples read"),
             )
             tell(f"{len(triples):,} triples to check and write")
-            return self._load(load, triples)
-
-    def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
-        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
-        transaction = _loading(
-            load,
-            retract=self.map.abox() if load.replace else (),
-            insert=(t for t in sorted_out.triples if t not in self.map.tbox),
-        )
-        commit = self._commit(transaction)
-        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+            transaction, sorted_out = loading.of_document(self.map, load, triples)
+            commit = self._commit(transaction)
+            return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -222,14 +214,8 @@ class KnowledgeBase:
     def on_load_tbox(self, load: LoadTBox) -> Commit | None:
         """Another TBox, in one commit; none for the one that holds."""
         tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
-        imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
-        transaction = _loading(
-            load,
-            retract=(t for t in before if t not in imports and self.map.has(t)),
-            insert=(t for t in imports if not self.map.has(t)),
-        )
-        imports_differ = transaction.retract or transaction.insert
-        if not imports_differ and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+        transaction = loading.of_tbox(self.map, load, tbox)
+        if transaction is None:
             return self._journal.commit_of(load.id)
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
@@ -265,20 +251,6 @@ class KnowledgeBase:
     def _summary(self) -> str:
         entities = wording.entities(len(self.map))
         return f"{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
-
-
-def _loading(
-    load: LoadDocument | LoadTBox, *, retract: Iterable[Triple], insert: Iterable[Triple]
-) -> Transaction:
-    return Transaction(
-        id=load.id,
-        source=load.source,
-        agent=load.agent,
-        verb="load",
-        reason=load.reason,
-        retract=tuple(retract),
-        insert=tuple(insert),
-    )
 
 
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
