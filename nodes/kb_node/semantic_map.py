@@ -103,16 +103,7 @@ class SemanticMap:
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
-        asserted: dict[str, int] = {}
-        inferred: dict[str, int] = {}
-        for entity in self._entities.values():
-            asserted[entity.class_] = asserted.get(entity.class_, 0) + 1
-            for name in entity.types:
-                inferred[name] = inferred.get(name, 0) + 1
-        return (
-            structs.replace(row, asserted=asserted.get(row.name, 0), inferred=inferred.get(row.name, 0))
-            for row in self.classes.rows
-        )
+        return self.classes.counted(self._entities.values())
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
