@@ -26,6 +26,8 @@ from schemas.scenes import CameraFrame
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PATIENCE_S = 3.0
+RESTART_S = 30.0
+"""Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
 TIMEOUT_S = 30.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
@@ -204,9 +206,10 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def _nobody(key: str) -> NoReturn:
+    node = keys.SERVED_BY.get(key.rpartition("/")[0])
+    why = f"{node} does not run" if node else "nobody serves it"
     raise errors.NoAnswer(
-        f"no answer on {key}: nobody serves it, or its node is just starting (see: semmap status), or this"
-        " client may not ask it"
+        f"no answer on {key}: {why}, or is just starting (see: semmap status), or this client may not ask it"
     )
 
 
