@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node import answers, blank_nodes, documents, past, rdf_files, tboxes, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal, NotWritten
@@ -227,7 +227,8 @@ class KnowledgeBase:
 
     def on_load_tbox(self, load: LoadTBox) -> Commit | None:
         """Another TBox, in one commit; none for the one that holds."""
-        tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        tbox = blank_nodes.labelled_like(read, self.map.tbox)
         imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
         transaction = _loading(
             load,
@@ -235,7 +236,7 @@ class KnowledgeBase:
             insert=(t for t in imports if not self.map.has(t)),
         )
         imports_differ = transaction.retract or transaction.insert
-        if not imports_differ and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+        if not imports_differ and tbox == self.map.tbox:
             return self._journal.commit_of(load.id)
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 

@@ -90,12 +90,12 @@ def test_history_and_the_past_stay_right_across_it(furnished):
 REFUSED = {
     "unknown class": (
         TBOX_TURTLE.replace("dm:Kitchen", "dm:Cellar"),
-        errors.Refused,
+        tboxes.DoesNotFit,
         "the map does not fit the TBox: unknown class 'Kitchen' \\(of kitchen1\\)",
     ),
     "no thing in space": (
         TBOX_TURTLE.replace("dm:Chair a owl:Class ; rdfs:subClassOf dm:Seat", "dm:Chair a owl:Class"),
-        errors.Refused,
+        tboxes.DoesNotFit,
         "chair. would be no thing in space any more, because it does not say that Chair is a class of such",
     ),
     "inconsistent map": (
