@@ -125,7 +125,7 @@ class Journal:
         query = "SELECT value, digest FROM tboxes WHERE seq <= ? ORDER BY seq DESC LIMIT 1"
         with self._reading():
             row = self._row(query, (seq,))
-        if row is None or _chain(b"", row[0]) != row[1]:
+        if row is None or not _is_sound(b"", *row):
             raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_mend(self.path)}")
         return bytes(row[0])
 
@@ -249,7 +249,7 @@ class Journal:
         """The newest sound checkpoint; without any, the empty map before commit 1."""
         with self._reading():
             for seq, body, digest in self._db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
-                if _chain(b"", body) == digest:
+                if _is_sound(b"", body, digest):
                     return codec.decode(body, Checkpoint)
                 log.warning("%s: the checkpoint after commit %d is damaged and not used", self.path, seq)
         return Checkpoint(seq=0)
@@ -270,7 +270,7 @@ class Journal:
         while rows := self._page(seq, size):
             for number, body, digest in rows:
                 seq += 1
-                if number != seq or _chain(before, body) != digest:
+                if number != seq or not _is_sound(before, body, digest):
                     raise Damaged(self.path, seq)
                 before = digest
                 yield body
@@ -332,6 +332,11 @@ def _mend(path: Path) -> str:
     return (
         f"go on from the last good commit with: semmap repair --data {path.parent} (the damaged file is kept)"
     )
+
+
+def _is_sound(before: bytes, body: object, digest: object) -> bool:
+    """Is it what was written? Of a damaged page SQLite may read anything, numbers and NULL too."""
+    return isinstance(body, bytes) and _chain(before, body) == digest
 
 
 def _chain(before: bytes, body: bytes) -> bytes:
