@@ -77,6 +77,15 @@ def test_it_survives_a_restart(furnished, checkpoints):
     home.close(again)
 
 
+def test_the_next_start_need_not_work_it_out_again(furnished):
+    assert not furnished.checkpoint_is_due(quiet=True)
+    replace(furnished, "t", NEW_CLASSES)
+    assert furnished.checkpoint_is_due(quiet=True)
+    assert not furnished.checkpoint_is_due(quiet=False)
+    furnished.checkpoint()
+    assert not furnished.checkpoint_is_due(quiet=True)
+
+
 def test_history_and_the_past_stay_right_across_it(furnished):
     before = furnished.snapshot().entities
     replace(furnished, "t", NEW_CLASSES)
