@@ -113,11 +113,28 @@ class Node:
         self._idle.append(handle)
 
     def ask(
-        self, prefix: str, verb: str, message: Any, kind: Any, *, timeout_s: float, beating: bool = False
+        self,
+        prefix: str,
+        verb: str,
+        message: Any,
+        kind: Any,
+        *,
+        timeout_s: float,
+        patience_s: float = bus.PATIENCE_S,
+        beating: bool = False,
     ) -> Any:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
-        return bus.ask(self.session, prefix, verb, message, kind, timeout_s=timeout_s, meanwhile=meanwhile)
+        return bus.ask(
+            self.session,
+            prefix,
+            verb,
+            message,
+            kind,
+            timeout_s=timeout_s,
+            patience_s=patience_s,
+            meanwhile=meanwhile,
+        )
 
     def ask_later(
         self,
@@ -256,7 +273,7 @@ class Node:
             message,
             kind,
             timeout_s=timeout_s,
-            patience_s=bus.PATIENCE_S,
+            patience_s=bus.RESTART_S,
             decoded=not request.plain,
         )
         future.add_done_callback(lambda done: self._answer_later(request, done))

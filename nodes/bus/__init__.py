@@ -3,11 +3,12 @@
 from nodes.bus.asking import TIMEOUT_S, Encoded, ask, ask_later, read_reply
 from nodes.bus.pubsub import follow, follow_cameras, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
-from nodes.bus.session import DEFAULT_ENDPOINT, PATIENCE_S, Network, open_session
+from nodes.bus.session import DEFAULT_ENDPOINT, PATIENCE_S, RESTART_S, Network, open_session
 
 __all__ = [
     "DEFAULT_ENDPOINT",
     "PATIENCE_S",
+    "RESTART_S",
     "TIMEOUT_S",
     "Encoded",
     "Network",

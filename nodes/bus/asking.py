@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 import zenoh
 
 from nodes.bus.session import PATIENCE_S
-from schemas import codec, errors
+from schemas import codec, errors, keys
 
 TIMEOUT_S = 30.0
 
@@ -136,7 +136,8 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def _nobody(key: str) -> NoReturn:
+    node = keys.SERVED_BY.get(key.rpartition("/")[0])
+    why = f"{node} does not run" if node else "nobody serves it"
     raise errors.NoAnswer(
-        f"no answer on {key}: nobody serves it, or its node is just starting (see: semmap status), or this"
-        " client may not ask it"
+        f"no answer on {key}: {why}, or is just starting (see: semmap status), or this client may not ask it"
     )

@@ -18,6 +18,8 @@ from schemas import errors
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PATIENCE_S = 3.0
+RESTART_S = 30.0
+"""Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 

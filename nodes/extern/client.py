@@ -25,7 +25,7 @@ from nodes import bus
 from nodes.extern.connection import endpoint, open_session
 from nodes.extern.files import read_file
 from nodes.extern.sparql_client import StandingQuery
-from schemas import codec, commands, keys, replies
+from schemas import codec, commands, errors, keys, replies
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
 from schemas.explanations import Explanation
@@ -294,8 +294,10 @@ class Client:
     # To watch
 
     @contextlib.contextmanager
-    def commits(self) -> Iterator[Iterator[Commit]]:
+    def commits(self, *, timeout: float | None = None) -> Iterator[Iterator[Commit]]:
         """`with client.commits() as commits: for commit in commits: ...`: every commit from now on.
+
+        The next one is waited for without end, or for `timeout` seconds, which then raises NoAnswer.
 
         A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over.
         """
@@ -303,7 +305,7 @@ class Client:
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
-            yield (commit for commit in iter(events.get, None) if commit.seq > now)
+            yield (commit for commit in _each(events, timeout) if commit.seq > now)
         finally:
             subscriber.undeclare()
 
@@ -311,6 +313,14 @@ class Client:
         command = codec.convert({**_given(kind, fields), **self._signed}, kind)
         changed: replies.Changed = self.send(command)
         return changed
+
+
+def _each(events: queue.SimpleQueue[Commit], timeout_s: float | None) -> Iterator[Commit]:
+    while True:
+        try:
+            yield events.get(timeout=timeout_s)
+        except queue.Empty:
+            raise errors.NoAnswer(f"no commit came within {timeout_s:g} s") from None
 
 
 def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
-from nodes.kb_node import documents, rdf_files, tboxes
+from nodes.kb_node import documents, tboxes
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commits import Transaction
@@ -27,7 +27,7 @@ def of_document(
     return transaction, sorted_out
 
 
-def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: Sequence[Triple]) -> Transaction | None:
+def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:
     """What another TBox changes of the ABox: its imports. None if it is the one that holds."""
     imports, before = tboxes.imports(tbox), tboxes.imports(semantic_map.tbox)
     transaction = _transaction(
@@ -36,7 +36,7 @@ def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: Sequence[Triple]) -
         insert=(t for t in imports if not semantic_map.has(t)),
     )
     imports_differ = transaction.retract or transaction.insert
-    if not imports_differ and rdf_files.say_the_same(frozenset(tbox), semantic_map.tbox):
+    if not imports_differ and tbox == semantic_map.tbox:
         return None
     return transaction
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, garbage, loading, past, rdf_files, terms, undo
+from nodes.kb_node import answers, blank_nodes, garbage, loading, past, rdf_files, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal
@@ -213,7 +213,8 @@ class KnowledgeBase:
 
     def on_load_tbox(self, load: LoadTBox) -> Commit | None:
         """Another TBox, in one commit; none for the one that holds."""
-        tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = loading.of_tbox(self.map, load, tbox)
         if transaction is None:
             return self._journal.commit_of(load.id)

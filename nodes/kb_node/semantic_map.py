@@ -219,7 +219,9 @@ class SemanticMap:
         return results
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
-        """Would the next start have much to replay? Unless it is `quiet`, very much?"""
+        """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
+        if quiet and self._journal.tbox_changes(after=self._checkpointed):
+            return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     def checkpoint(self) -> None:

@@ -4,7 +4,8 @@ import pytest
 
 from nodes import bus
 from nodes.extern.client import connect
-from schemas import errors, keys
+from schemas import codec, errors, keys, replies
+from schemas.commits import Commit
 from tests.conftest import free_endpoint
 
 
@@ -17,3 +18,18 @@ def test_a_coordinator_that_is_too_busy_to_say_how_things_stand_is_told():
             client.status(timeout_s=0.3)
         queryable.undeclare()
     assert len(kept) == 1
+
+
+def test_a_commit_that_does_not_come_is_waited_for_so_long():
+    endpoint = free_endpoint()
+    status = replies.SystemStatus(commit=3, entities=0, bodies=0, truth="map", in_agreement=True, nodes=())
+    network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
+    with bus.open_session(network) as session, connect(endpoint) as client:
+        bus.serve(session, keys.CMD, lambda request: request.reply(status))
+        publisher = bus.publisher(session, keys.COMMIT)
+        with client.commits(timeout=0.5) as commits:
+            for seq in (3, 4):
+                publisher.put(codec.encode(Commit(seq=seq, stamp_ns=1, id=str(seq), source="operator")))
+            assert next(commits).seq == 4
+            with pytest.raises(errors.NoAnswer, match=r"no commit came within 0\.5 s"):
+                next(commits)
