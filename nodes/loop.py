@@ -9,7 +9,6 @@ from __future__ import annotations
 import heapq
 import logging
 import math
-import os
 import queue
 import signal
 import time
@@ -17,15 +16,17 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from itertools import count
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import zenoh
 
 from nodes import bus
-from schemas import codec, errors, keys
-from schemas.health import Health
+from nodes.heartbeat import Heartbeat
+from schemas import errors, keys
 
 log = logging.getLogger(__name__)
+
+_AGAIN_S = 0.05
 
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
 """Verb to (type of the message, function of the message). A function may return a Future, or a Relay."""
@@ -41,11 +42,6 @@ class Relay(NamedTuple):
     timeout_s: float
 
 
-HEARTBEAT_S = 1.0
-ERROR_SHOWN_S = 3600.0
-_AGAIN_S = 0.05
-
-
 class Node:
     """A running node: bind handlers, then `run`. Use `open_node`."""
 
@@ -58,13 +54,7 @@ class Node:
         self._idle: list[Callable[[], None]] = []
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
-        self._started_ns = time.time_ns()
-        self._state: Literal["starting", "ready"] = "starting"
-        self._detail = ""
-        self._last_error = ""
-        self._error_shown_until = 0.0
-        self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
-        self._beat_due = 0.0
+        self._heartbeat = Heartbeat(name, session)
 
     def serve(
         self,
@@ -123,11 +113,28 @@ class Node:
         self._idle.append(handle)
 
     def ask(
-        self, prefix: str, verb: str, message: Any, kind: Any, *, timeout_s: float, beating: bool = False
+        self,
+        prefix: str,
+        verb: str,
+        message: Any,
+        kind: Any,
+        *,
+        timeout_s: float,
+        patience_s: float = bus.PATIENCE_S,
+        beating: bool = False,
     ) -> Any:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
-        return bus.ask(self.session, prefix, verb, message, kind, timeout_s=timeout_s, meanwhile=meanwhile)
+        return bus.ask(
+            self.session,
+            prefix,
+            verb,
+            message,
+            kind,
+            timeout_s=timeout_s,
+            patience_s=patience_s,
+            meanwhile=meanwhile,
+        )
 
     def ask_later(
         self,
@@ -179,40 +186,19 @@ class Node:
 
     def beat(self) -> None:
         """Send the heartbeat if it is due. Long work calls this between its steps."""
-        now = time.monotonic()
-        if now < self._beat_due:
-            return
-        self._beat_due = now + HEARTBEAT_S
-        health = Health(
-            node=self.name,
-            pid=os.getpid(),
-            started_ns=self._started_ns,
-            stamp_ns=time.time_ns(),
-            state=self._state,
-            detail=self._detail,
-            last_error=self._last_error if now < self._error_shown_until else "",
-        )
-        self._health.put(codec.encode(health))
+        self._heartbeat.beat()
 
     def ready(self, detail: str) -> None:
         """Tell the others: the liveliness token appears and the next heartbeat says so."""
-        if self._state != "ready":
-            self._state = "ready"
-            self._token = self.session.liveliness().declare_token(keys.live_key(self.name, str(os.getpid())))
-            log.info("ready: %s", detail)
-            self._beat_due = 0.0
-        self.describe(detail)
-        self.beat()
+        self._heartbeat.ready(detail)
 
     def describe(self, detail: str) -> None:
         """What the heartbeats say of the node's state, from the next one on."""
-        self._detail = detail
+        self._heartbeat.describe(detail)
 
     def report(self, text: str) -> None:
         """Log an error and show it in the heartbeat, with the time of the day, for an hour."""
-        log.error("%s", text)
-        self._last_error, self._beat_due = f"{time.strftime('%H:%M:%S')} {text}", 0.0
-        self._error_shown_until = time.monotonic() + ERROR_SHOWN_S
+        self._heartbeat.report(text)
 
     def stop(self) -> None:
         """End `run` after the event in hand."""
@@ -223,17 +209,18 @@ class Node:
         now = time.monotonic()
         while self._timers and self._timers[0][0] <= now:
             self._guard(heapq.heappop(self._timers)[-1])
-        self.beat()
+        self._heartbeat.beat()
 
     def run(self) -> None:
         """Handle events until stopped."""
+        heartbeat = self._heartbeat
         while not self._stopping:
             self.tick()
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
-                self.beat()
-            due_s = min(self._beat_due, self._timers[0][0] if self._timers else math.inf)
+                heartbeat.beat()
+            due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
             wait_s = max(0.0, due_s - time.monotonic())
             try:
                 self._guard(self._events.get(timeout=wait_s))
@@ -286,7 +273,7 @@ class Node:
             message,
             kind,
             timeout_s=timeout_s,
-            patience_s=bus.PATIENCE_S,
+            patience_s=bus.RESTART_S,
             decoded=not request.plain,
         )
         future.add_done_callback(lambda done: self._answer_later(request, done))
@@ -306,33 +293,6 @@ class Node:
                 f"a fault in {self.name}, which goes on: {type(error).__name__}: {error}"
             )
         request.refuse(error)
-
-
-def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
-    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
-    try:
-        result = execute()
-    except Exception as error:
-        future.set_exception(error)
-        return
-    if isinstance(result, Future):
-        result.add_done_callback(lambda done: settle(future, done.result))
-    else:
-        future.set_result(result)
-
-
-def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
-    """The future of `function(result)`; errors pass through."""
-    following: Future[Any] = Future()
-
-    def on_done(done: Future[Any]) -> None:
-        try:
-            following.set_result(function(done.result()))
-        except Exception as error:
-            following.set_exception(error)
-
-    future.add_done_callback(on_done)
-    return following
 
 
 @contextmanager

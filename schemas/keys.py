@@ -21,6 +21,7 @@ ROOT = "semmap"
 CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
+SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
 
 OF_THE_MAP = frozenset({"sparql"})
 """Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""

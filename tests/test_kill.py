@@ -69,3 +69,17 @@ def test_every_acknowledged_commit_is_there_and_no_other_one_half(tmp_path, kill
     seqs = [c.seq for c in commits]
     assert seqs == list(range(seqs[0], seqs[-1] + 1))
     assert seqs[-1] == len(there) + 1
+
+
+def test_whoever_asks_right_after_a_kill_waits_for_the_restart(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
+        for i, ask in enumerate(
+            (
+                lambda: client.add("Chair", "chair1", at=(1.0, 2.0, 0.0)).commit,
+                lambda: client.undo().commit,
+                lambda: client.history()[-1].seq,
+            )
+        ):
+            until(lambda: client.history(), "the knowledge base answers")
+            os.kill(system.pid("kb_node"), signal.SIGKILL)
+            assert ask() == min(i + 2, 3)

@@ -6,8 +6,9 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes import bus
+from nodes.futures import settle
 from nodes.loop import Node, Relay
-from schemas import keys
+from schemas import errors, keys
 from schemas.bridge import BRIDGE
 from schemas.commands import Command
 
@@ -16,6 +17,7 @@ _LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
 _BESIDE_S = {"check": 660.0, "sparql": 180.0, "watch": 180.0}
 """What is worked out beside its other work."""
 _USUALLY_S = 10.0
+_AT_ONCE_S = 3.0
 
 
 class Bridge:
@@ -26,18 +28,38 @@ class Bridge:
 
     def ask(self, verb: str, message: Any) -> Any:
         """The answer; nothing else is done until it comes. Raises its error."""
-        kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
-        return self._node.ask(keys.BRIDGE, verb, message, kind, beating=verb in _LONG_S, timeout_s=timeout_s)
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_USUALLY_S)
 
     def ask_later(self, verb: str, message: Any) -> Future[Any]:
         """The answer when it comes; while nobody serves the key an error, at once."""
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
 
+    def change(self, verb: str, message: Any) -> Future[Any]:
+        """The same as `change_later`, waited for here while somebody is there: that takes less time."""
+        timeout_s, beating = _LONG_S.get(verb, _AT_ONCE_S), verb in _LONG_S
+        future: Future[Any] = Future()
+        settle(
+            future,
+            lambda: self._node.ask(
+                keys.BRIDGE,
+                verb,
+                message,
+                BRIDGE[verb][1],
+                timeout_s=timeout_s,
+                patience_s=0.0,
+                beating=beating,
+            ),
+        )
+        return self.change_later(verb, message) if _is_unanswered(future) else future
+
     def change_later(self, verb: str, message: Any) -> Future[Any]:
-        """The same, as long and as patient as `ask`."""
-        kind = BRIDGE[verb][1]
+        """The answer when it comes; while nobody serves the key it is asked again, over a restart.
+
+        What is asked has the id of its command, so that it is done once.
+        """
+        kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
         return self._node.ask_later(
-            keys.BRIDGE, verb, message, kind, timeout_s=_USUALLY_S, patience_s=bus.PATIENCE_S
+            keys.BRIDGE, verb, message, kind, timeout_s=timeout_s, patience_s=bus.RESTART_S
         )
 
     def relay(self, command: Command) -> Relay:
@@ -45,3 +67,7 @@ class Bridge:
         verb = str(command.__struct_config__.tag)
         timeout_s = _BESIDE_S.get(verb, bus.TIMEOUT_S)
         return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], timeout_s)
+
+
+def _is_unanswered(asked: Future[Any]) -> bool:
+    return isinstance(asked.exception(), errors.NoAnswer)

@@ -12,7 +12,7 @@ a body without an entity has not been seen yet, and a pose that differs will be 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import NamedTuple
 
 from nodes.coordinator.config import Thresholds, Truth
@@ -50,6 +50,7 @@ def reconcile(
         return Actions()
     failed = failed or {}
     delete, spawn, place, follow, adopt, missing = [], [], [], [], [], []
+    coming = {latest(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)}
     for name, entity in entities.items():
         body = bodies.get(name)
         if entity.place:
@@ -60,7 +61,7 @@ def reconcile(
                 missing.append(name)
             elif _moved(entity, body, thresholds):
                 follow.append(Placement(name=name, pose=body.pose))
-        elif body is None or _reshaped(entity, body):
+        elif body is None or _reshaped(entity, body) or _comes_with(entity, body, coming):
             if entity.pose is not None and failed.get(name) != latest(entity):
                 spawn.append(order(entity, entity.pose))
                 if body is not None:
@@ -99,6 +100,11 @@ def latest(entity: Entity) -> int:
 
 def _reshaped(entity: Entity, body: Body) -> bool:
     return body.entity and entity.shape_provenance.commit > body.shape_commit
+
+
+def _comes_with(entity: Entity, body: Body, coming: Set[int]) -> bool:
+    """Does one commit put it elsewhere and bring others? All are set down together, what carries first."""
+    return body.entity and _ordered_since(entity, body) and entity.pose_provenance.commit in coming
 
 
 def _ordered_since(entity: Entity, body: Body) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 from msgspec import structs
 
+from nodes import bus
 from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.class_names import ClassNames
@@ -19,8 +20,9 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
 from nodes.coordinator.running import Running
 from nodes.coordinator.talking import hold_later
-from nodes.coordinator.turns import Results, Turns
-from nodes.loop import Node, open_node, settle
+from nodes.coordinator.turns import Change, Results, Turns
+from nodes.futures import settle, then
+from nodes.loop import Node, open_node
 from schemas import commands as c
 from schemas import errors, keys, wording
 from schemas.bridge import SnapshotQuery
@@ -31,8 +33,11 @@ from schemas.replies import Changed
 from schemas.scenes import Poses
 
 _WAIT_S = 20.0
-_EARLY_S = 10.0
 _SIM_TIMEOUT_S = 120.0
+_COMES_BACK = {
+    "scene": "the scene is the truth here: what still stands in it comes back",
+    "perceived": "perception is the truth here: what it still sees comes back",
+}
 _RELAYED: tuple[type[c.Command], ...] = (
     c.History,
     c.LastSeen,
@@ -68,12 +73,12 @@ class Coordinator:
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
         running = Running(config.truth, door, self._keeping, self._ask_sim)
         functions: dict[type[c.Command], Callable[[Any], Any]] = {
-            c.Add: self._change,
-            c.Update: self._change,
-            c.Remove: self._noted(door.remove),
-            c.Clear: self._noted(door.clear),
-            c.Load: door.load,
-            c.Undo: door.undo,
+            c.Add: self._with_body,
+            c.Update: self._with_body,
+            c.Remove: self._noted,
+            c.Clear: self._noted,
+            c.Load: self._turns.change,
+            c.Undo: self._turns.change,
             c.List: answers.list,
             c.Get: answers.get,
             c.Status: answers.status,
@@ -169,8 +174,8 @@ class Coordinator:
 
     # Changing
 
-    def _change(self, command: c.Add | c.Update) -> Future[Any]:
-        """In its turn; the reply waits for the body if that is wanted."""
+    def _with_body(self, command: c.Add | c.Update) -> Future[Any]:
+        """The reply waits for the body if that is wanted."""
         made = self._turns.change(command)
         if not command.wait:
             return made
@@ -178,13 +183,9 @@ class Coordinator:
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
-    def _change_together(self, changes: Sequence[c.Add | c.Update]) -> Future[Results]:
-        """A change that comes alone is waited for: to be woken by another thread takes longer."""
-        if len(changes) > 1:
-            return hold_later(self._door.together(changes), self._bridge.change_later)
-        future: Future[Results] = Future()
-        settle(future, lambda: [self._door.change(changes[0])])
-        return future
+    def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
+        ask = self._bridge.change_later if len(changes) > 1 else self._bridge.change
+        return hold_later(self._door.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
         future: Future[Changed] = Future()
@@ -206,25 +207,17 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _noted(self, change: Callable[[Any], Changed]) -> Callable[[Any], Changed]:
+    def _noted(self, command: c.Remove | c.Clear) -> Future[Changed]:
         """Where the map does not own existence, what is removed from it only comes back."""
-        if self._config.truth == "map":
-            return change
-        note = {
-            "scene": "the scene is the truth here: what still stands in it comes back",
-            "perceived": "perception is the truth here: what it still sees comes back",
-        }[self._config.truth]
-
-        def noted(command: Any) -> Changed:
-            changed = change(command)
-            return structs.replace(changed, notes=(*changed.notes, note))
-
-        return noted
+        made, note = self._turns.change(command), _COMES_BACK.get(self._config.truth)
+        if note is None:
+            return made
+        return then(made, lambda changed: structs.replace(changed, notes=(*changed.notes, note)))
 
     def _once_there_is_a_map(self, execute: Callable[[], Any]) -> Future[Any]:
         """For a moment after a start the map is not known yet: commands wait for it rather than fail."""
         future: Future[Any] = Future()
-        self._early.append((time.monotonic() + _EARLY_S, execute, future))
+        self._early.append((time.monotonic() + bus.RESTART_S, execute, future))
         return future
 
     def _answer_early(self) -> None:
@@ -242,7 +235,7 @@ class Coordinator:
         def guarded(command: Any) -> Any:
             if not self._has_map:
                 return self._once_there_is_a_map(lambda: guarded(command))
-            if isinstance(command, c.Add | c.Update):
+            if isinstance(command, Change):
                 return handle(command)
             return self._turns.after(lambda: handle(command))
 

@@ -3,7 +3,7 @@
 Changes of different entities do not depend on one another: those that wait are asked of the knowledge base as
 one group, and the next group is sent while one is under way, so that neither waits for the other. Everything
 else, an entity without a name or a place among it (they have to suit the others), waits until what came
-before is done.
+before is done, and what comes after a change waits for that.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from concurrent.futures import Future
 from itertools import islice
 from typing import Any, NamedTuple
 
-from nodes.loop import settle
+from nodes.futures import settle
 from schemas import errors
-from schemas.commands import Add, Update
+from schemas.commands import Add, Clear, Load, Remove, Undo, Update
 from schemas.replies import Changed
 
 GROUP = 16
@@ -24,7 +24,7 @@ GROUP = 16
 AT_ONCE = 2
 """How many groups may be under way: one that the knowledge base works on, and one that waits there."""
 
-Change = Add | Update
+Change = Add | Update | Remove | Clear | Load | Undo
 Results = list[Changed | errors.SemmapError]
 
 
@@ -36,19 +36,18 @@ class _Waiting(NamedTuple):
     future: Future[Any]
 
 
-class _Group(NamedTuple):
-    names: frozenset[str | None]
-    alone: bool
+Group = frozenset[str | None]
+"""The entities that a group of changes is about; None for one that goes alone."""
 
 
 class Turns:
     """Owned by the coordinator's thread, which calls `go_on` when it has nothing else to do."""
 
     def __init__(self, together: Callable[[Sequence[Change]], Future[Results]]) -> None:
-        """`together(changes)` makes changes of different entities."""
+        """`together(changes)` makes changes of different entities, or one that goes alone."""
         self._together = together
         self._waiting: deque[_Waiting] = deque()
-        self._under_way: list[_Group] = []
+        self._under_way: list[Group] = []
 
     def change(self, change: Change) -> Future[Changed]:
         """The result of a change, in its turn."""
@@ -85,22 +84,23 @@ class Turns:
 
         None of them begin beside a larger group: more will have come when that is done.
         """
-        if len(self._under_way) == AT_ONCE or any(group.alone for group in self._under_way):
+        if len(self._under_way) == AT_ONCE or any(None in group for group in self._under_way):
             return []
-        names = {name for group in self._under_way for name in group.names}
+        names = {name for group in self._under_way for name in group}
         members: list[Change] = []
         for change, _, _ in islice(self._waiting, GROUP):
-            if change is not None and _is_alone(change) and not members and not self._under_way:
+            name = None if change is None else _entity(change)
+            if change is not None and name is None and not members and not self._under_way:
                 return [change]
-            if change is None or _is_alone(change) or change.name in names:
+            if change is None or name is None or name in names:
                 break
-            names.add(change.name)
+            names.add(name)
             members.append(change)
-        return members if all(len(members) >= len(group.names) for group in self._under_way) else []
+        return members if all(len(members) >= len(group) for group in self._under_way) else []
 
     def _begin(self, members: Sequence[_Waiting]) -> None:
         changes = [change for change, _, _ in members if change is not None]
-        group = _Group(frozenset(change.name for change in changes), any(map(_is_alone, changes)))
+        group = frozenset(map(_entity, changes))
         self._under_way.append(group)
 
         def on_done(done: Future[Results]) -> None:
@@ -111,8 +111,11 @@ class Turns:
         self._together(changes).add_done_callback(on_done)
 
 
-def _is_alone(change: Change) -> bool:
-    return isinstance(change, Add) and (change.name is None or change.at is None)
+def _entity(change: Change) -> str | None:
+    """The one that it is about; None when it depends on others."""
+    if isinstance(change, Add):
+        return change.name if change.at is not None else None
+    return change.name if isinstance(change, Update) else None
 
 
 def _result(result: Changed | errors.SemmapError) -> Changed:

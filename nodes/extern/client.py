@@ -14,9 +14,7 @@ quaternions `wxyz`. Errors are those of `schemas.errors`: Refused, BadRequest, N
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal
@@ -24,9 +22,9 @@ from typing import Any, Literal
 import zenoh
 
 from nodes import bus
+from nodes.extern.connection import endpoint, open_session
 from nodes.extern.files import read_file
 from nodes.extern.sparql_client import StandingQuery
-from nodes.supervisor import presence
 from schemas import codec, commands, errors, keys, replies
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, Quaternion, Size, Source, Vector
@@ -35,16 +33,7 @@ from schemas.moments import When, with_offset
 from schemas.scenes import Picture
 from schemas.sparql import SparqlResult
 
-CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _LONG_S = 700.0
-_START_S = 15.0
-"""Seconds: a system that is starting is waited for."""
-_AGAIN_S = 0.1
-
-
-def endpoint() -> str:
-    """The system that is meant when nothing else is said: `SEMMAP_CONNECT`, or the usual one."""
-    return os.environ.get(CONNECT_VARIABLE) or bus.DEFAULT_ENDPOINT
 
 
 @contextlib.contextmanager
@@ -55,36 +44,8 @@ def connect(
 
     That is said at once where this machine refuses the connection and no system is starting.
     """
-    with _open_session(where or endpoint(), namespace) as session:
+    with open_session(where or endpoint(), namespace) as session:
         yield Client(session, source=source, agent=agent)
-
-
-@contextlib.contextmanager
-def _open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
-    """A session with whoever listens at `where`, or will do so when the system has started.
-
-    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
-    """
-    here = presence.is_loopback(where)
-    network = bus.Network(
-        connect=(where,),
-        mode="peer" if here else "client",
-        namespace=namespace,
-        patience_s=0.0 if here else bus.PATIENCE_S,
-    )
-    deadline_s = time.monotonic() + _START_S
-    with contextlib.ExitStack() as stack:
-        while True:
-            try:
-                session = stack.enter_context(bus.open_session(network))
-                break
-            except errors.NoAnswer:
-                if not presence.is_announced(where):
-                    raise
-                if time.monotonic() > deadline_s:
-                    raise errors.NoAnswer(f"the system at {where} has not started yet") from None
-                time.sleep(_AGAIN_S)
-        yield session
 
 
 class Client:
@@ -333,8 +294,10 @@ class Client:
     # To watch
 
     @contextlib.contextmanager
-    def commits(self) -> Iterator[Iterator[Commit]]:
+    def commits(self, *, timeout: float | None = None) -> Iterator[Iterator[Commit]]:
         """`with client.commits() as commits: for commit in commits: ...`: every commit from now on.
+
+        The next one is waited for without end, or for `timeout` seconds, which then raises NoAnswer.
 
         A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over.
         """
@@ -342,7 +305,7 @@ class Client:
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
-            yield (commit for commit in iter(events.get, None) if commit.seq > now)
+            yield (commit for commit in _each(events, timeout) if commit.seq > now)
         finally:
             subscriber.undeclare()
 
@@ -350,6 +313,14 @@ class Client:
         command = codec.convert({**_given(kind, fields), **self._signed}, kind)
         changed: replies.Changed = self.send(command)
         return changed
+
+
+def _each(events: queue.SimpleQueue[Commit], timeout_s: float | None) -> Iterator[Commit]:
+    while True:
+        try:
+            yield events.get(timeout=timeout_s)
+        except queue.Empty:
+            raise errors.NoAnswer(f"no commit came within {timeout_s:g} s") from None
 
 
 def _given(kind: type[commands.Command], fields: dict[str, Any]) -> dict[str, Any]:

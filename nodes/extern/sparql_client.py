@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import queue
 import time
 import uuid
@@ -44,14 +45,21 @@ class StandingQuery:
         self.rows = self._seen.rows
         self.seq = self._seen.seq
 
-    def changes(self) -> Iterator[RowsChanged]:
-        """The news, in order, without end. Raises Refused when the query had to be cancelled."""
+    def changes(self, *, timeout: float | None = None) -> Iterator[RowsChanged]:
+        """The news, in order, without end.
+
+        Raises Refused when the query had to be cancelled, NoAnswer when `timeout` seconds have brought none.
+        """
         rows, seq = Counter(self.rows), self.seq
         renew_at = time.monotonic() + _RENEW_S
+        patience_s = math.inf if timeout is None else timeout
+        end_at = time.monotonic() + patience_s
         while True:
             try:
-                news = self._news.get(timeout=max(0.0, renew_at - time.monotonic()))
+                news = self._news.get(timeout=max(0.0, min(renew_at, end_at) - time.monotonic()))
             except queue.Empty:
+                if time.monotonic() >= end_at:
+                    raise errors.NoAnswer(f"no rows came or went within {patience_s:g} s") from None
                 renew_at = time.monotonic() + _RENEW_S
                 if (again := self._renew()) is None:
                     continue
@@ -66,6 +74,7 @@ class StandingQuery:
             seq = news.seq
             rows = rows - Counter(news.disappeared) + Counter(news.appeared)
             yield news
+            end_at = time.monotonic() + patience_s
 
     def close(self) -> None:
         """End it."""

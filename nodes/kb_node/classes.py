@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
+
+from msgspec import structs
 
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.entities import ClassInfo
+from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term
 
 _CHUNK = re.compile(r"[^/*$?#\s]+")
@@ -84,6 +86,19 @@ class ClassTable:
     def rows(self) -> list[ClassInfo]:
         """One row a class, by name, without counts."""
         return sorted(map(self._row, self.names), key=lambda row: row.name)
+
+    def counted(self, entities: Iterable[Entity]) -> Iterator[ClassInfo]:
+        """The rows with the number of entities of each class, asserted and inferred."""
+        asserted: dict[str, int] = {}
+        inferred: dict[str, int] = {}
+        for entity in entities:
+            asserted[entity.class_] = asserted.get(entity.class_, 0) + 1
+            for name in entity.types:
+                inferred[name] = inferred.get(name, 0) + 1
+        return (
+            structs.replace(row, asserted=asserted.get(row.name, 0), inferred=inferred.get(row.name, 0))
+            for row in self.rows
+        )
 
     def _row(self, c: Term) -> ClassInfo:
         labels = {

@@ -1,7 +1,7 @@
 """The truth on disk: every commit in an append-only SQLite file, with checkpoints to start from.
 
-A commit is durable when `append` returns: WAL with `synchronous=FULL`. Everything in the file has a digest,
-that of a commit chained to the one before it, so that damage is noticed and the damaged commit named.
+A commit is durable when `append` returns. Everything in the file has a digest, that of a commit chained to
+the one before it, so that damage is noticed and the damaged commit named.
 """
 
 from __future__ import annotations
@@ -9,16 +9,15 @@ from __future__ import annotations
 import hashlib
 import logging
 import sqlite3
-import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 from msgspec import Struct
 
 from nodes.kb_node import bodies
+from nodes.kb_node.journal_file import ANEW, JournalFile, mend
 from schemas import codec, errors
 from schemas.commits import Commit
 from schemas.entities import Entity
@@ -38,25 +37,16 @@ CREATE TABLE touches (name TEXT, seq INTEGER, PRIMARY KEY (name, seq)) STRICT, W
 CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 """
 _FORMAT = b"4"
-_ANEW = "start anew with --fresh (it is kept)"
 _PAGE = 256
 _DENSE_FROM = 1 << 16
 """Bytes: what is larger takes less time to compress than to write."""
-
-
-class InUse(errors.Refused):
-    """Another process has the journal open."""
-
-
-class NotWritten(errors.Refused):
-    """The disk did not take it; nothing was written."""
 
 
 class Damaged(errors.Refused):
     """A commit is not as it was written. `last_good` is the number of the one before."""
 
     def __init__(self, path: Path, seq: int) -> None:
-        super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {_mend(path)}")
+        super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {mend(path)}")
         self.last_good = seq - 1
 
 
@@ -76,20 +66,15 @@ class Journal:
     def __init__(self, path: Path) -> None:
         """Open the journal at `path`. Raises InUse, Refused when it is damaged or of another version."""
         self.path = path
-        self._lock = threading.RLock()
+        self._file = JournalFile(path)
         self._digest: bytes | None = None  # that of the last commit, once it is known
-        with self._reading():
-            self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         try:
-            with self._reading():
-                self._db.execute("PRAGMA locking_mode=EXCLUSIVE")
-                self._db.execute("PRAGMA journal_mode=WAL")
-                self._db.execute("PRAGMA synchronous=FULL")
-                form = self._row("SELECT value FROM meta WHERE key='format'")
+            with self._file.reading() as db:
+                form = db.execute("SELECT value FROM meta WHERE key='format'").fetchone()
             if form != (_FORMAT,):
-                raise errors.Refused(f"{path} was written by another version of semmap; {_ANEW}")
+                raise errors.Refused(f"{path} was written by another version of semmap; {ANEW}")
         except errors.Refused:
-            self._db.close()
+            self._file.close()
             raise
 
     @classmethod
@@ -110,29 +95,28 @@ class Journal:
 
     def close(self) -> None:
         """Release the file."""
-        with self._lock:
-            self._db.close()
+        self._file.close()
 
     @property
     def last(self) -> int:
         """The number of the last commit; 0 before the first."""
-        with self._reading():
-            (seq,) = self._row("SELECT max(seq) FROM commits") or (None,)
-        return seq or 0
+        with self._file.reading() as db:
+            row: tuple[int | None] = db.execute("SELECT max(seq) FROM commits").fetchone()
+        return row[0] or 0
 
     def tbox(self, seq: int) -> bytes:
         """The TBox (N-Triples) that holds after commit `seq`. Raises Refused when it is damaged."""
         query = "SELECT value, digest FROM tboxes WHERE seq <= ? ORDER BY seq DESC LIMIT 1"
-        with self._reading():
-            row = self._row(query, (seq,))
-        if row is None or _chain(b"", row[0]) != row[1]:
-            raise errors.Refused(f"{self.path}: the TBox in it is damaged; {_mend(self.path)}")
+        with self._file.reading() as db:
+            row = db.execute(query, (seq,)).fetchone()
+        if row is None or not _is_sound(b"", *row):
+            raise errors.Refused(f"{self.path}: the TBox in it is damaged; {mend(self.path)}")
         return bytes(row[0])
 
     def tbox_changes(self, after: int) -> list[int]:
         """The numbers of the commits later than `after` that replaced the TBox, newest first."""
-        with self._reading():
-            rows = self._db.execute("SELECT seq FROM tboxes WHERE seq > ? ORDER BY seq DESC", (after,))
+        with self._file.reading() as db:
+            rows = db.execute("SELECT seq FROM tboxes WHERE seq > ? ORDER BY seq DESC", (after,))
             return [seq for (seq,) in rows]
 
     def append(
@@ -145,18 +129,18 @@ class Journal:
         Raises NotWritten when the disk does not take it.
         """
         if self._digest is None:
-            with self._reading():
-                self._digest = self._digest_of(self.last)
+            with self._file.reading() as db:
+                self._digest = _digest_of(db, self.last)
         whole = None if begun is None else begun.finish(commit)
-        with self._writing(f"commit {commit.seq}"):
+        with self._file.writing(f"commit {commit.seq}") as db:
             touches = [(name, commit.seq) for name in commit.names]
-            self._db.executemany("INSERT INTO touches VALUES (?, ?)", touches)
+            db.executemany("INSERT INTO touches VALUES (?, ?)", touches)
             body = codec.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
             digest = _chain(self._digest, body)
-            self._db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
+            db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
             if tbox is not None:
                 row = (commit.seq, tbox, _chain(b"", tbox))
-                self._db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
+                db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
 
     @contextmanager
@@ -167,7 +151,7 @@ class Journal:
         """
         digest = self._digest
         try:
-            with self._writing("several commits"):
+            with self._file.writing("several commits"):
                 yield
         except BaseException:
             self._digest = digest
@@ -181,18 +165,19 @@ class Journal:
         """Read every commit and TBox. Raises Damaged at the first damaged commit, Refused for a TBox."""
         for _ in self._bodies(0):
             progress()
-        with self._reading():
-            rows = self._db.execute("SELECT seq FROM tboxes").fetchall()
+        with self._file.reading() as db:
+            rows = db.execute("SELECT seq FROM tboxes").fetchall()
         for (seq,) in rows:
             self.tbox(seq)
 
     def is_whole(self) -> bool:
         """Can SQLite read all of the file, and do its indexes fit its tables?"""
         try:
-            with self._reading():
-                return self._row("PRAGMA integrity_check(1)") == ("ok",)
+            with self._file.reading() as db:
+                found: list[tuple[str]] = db.execute("PRAGMA integrity_check(1)").fetchall()
         except errors.Refused:
             return False
+        return found == [("ok",)]
 
     def commit(self, seq: int) -> Commit:
         """The commit with that number, which must be there. Raises Damaged."""
@@ -202,22 +187,22 @@ class Journal:
 
     def commit_of(self, command_id: str) -> Commit | None:
         """The commit that a command made, if it made one."""
-        with self._reading():
-            row = self._row("SELECT seq FROM commits WHERE command_id = ?", (command_id,))
+        with self._file.reading() as db:
+            row = db.execute("SELECT seq FROM commits WHERE command_id = ?", (command_id,)).fetchone()
         return None if row is None else self.commit(row[0])
 
     def touching(self, name: str, after: int = 0, until: int | None = None) -> list[int]:
         """The numbers of the commits that touched an entity, in order."""
         query = "SELECT seq FROM touches WHERE name = ? AND seq > ? AND seq <= ? ORDER BY seq"
-        with self._reading():
-            rows = self._db.execute(query, (name, after, self.last if until is None else until))
+        with self._file.reading() as db:
+            rows = db.execute(query, (name, after, self.last if until is None else until))
             return [seq for (seq,) in rows]
 
     def last_touches(self, until: int) -> list[tuple[str, int]]:
         """Each entity's name with the last commit up to `until` that touched it."""
         query = "SELECT name, max(seq) FROM touches WHERE seq <= ? GROUP BY name"
-        with self._reading():
-            return self._db.execute(query, (until,)).fetchall()
+        with self._file.reading() as db:
+            return db.execute(query, (until,)).fetchall()
 
     def seq_at(self, stamp_ns: int) -> int:
         """The last commit up to a time, as far as the clock ran forward; 0 before the first."""
@@ -225,8 +210,8 @@ class Journal:
 
     def stamp_of(self, seq: int) -> int:
         """When a commit was made [ns since 1970]."""
-        with self._reading():
-            row = self._row("SELECT body FROM commits WHERE seq = ?", (seq,))
+        with self._file.reading() as db:
+            row = db.execute("SELECT body FROM commits WHERE seq = ?", (seq,)).fetchone()
         if row is None:
             raise Damaged(self.path, seq)
         return codec.decode(row[0], _Stamp).stamp_ns
@@ -238,39 +223,30 @@ class Journal:
         """
         body = codec.encode(checkpoint, dense_from=_DENSE_FROM)
         row = (checkpoint.seq, body, _chain(b"", body))
-        with self._writing(f"the checkpoint after commit {checkpoint.seq}"):
-            self._db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
-            self._db.execute(
+        with self._file.writing(f"the checkpoint after commit {checkpoint.seq}") as db:
+            db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
+            db.execute(
                 "DELETE FROM checkpoints"
                 " WHERE seq NOT IN (SELECT seq FROM checkpoints ORDER BY seq DESC LIMIT 2)"
             )
 
     def last_checkpoint(self) -> Checkpoint:
         """The newest sound checkpoint; without any, the empty map before commit 1."""
-        with self._reading():
-            for seq, body, digest in self._db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
-                if _chain(b"", body) == digest:
+        with self._file.reading() as db:
+            for seq, body, digest in db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
+                if _is_sound(b"", body, digest):
                     return codec.decode(body, Checkpoint)
                 log.warning("%s: the checkpoint after commit %d is damaged and not used", self.path, seq)
         return Checkpoint(seq=0)
 
-    def _row(self, query: str, values: tuple[Any, ...] = ()) -> tuple[Any, ...] | None:
-        row: tuple[Any, ...] | None = self._db.execute(query, values).fetchone()
-        return row
-
-    def _digest_of(self, seq: int) -> bytes:
-        """That of a commit; empty before the first."""
-        row = self._row("SELECT digest FROM commits WHERE seq = ?", (seq,))
-        return b"" if row is None else bytes(row[0])
-
     def _bodies(self, after: int, size: int = _PAGE) -> Iterator[bytes]:
-        with self._reading():
-            before = self._digest_of(after)
+        with self._file.reading() as db:
+            before = _digest_of(db, after)
         seq = after
         while rows := self._page(seq, size):
             for number, body, digest in rows:
                 seq += 1
-                if number != seq or _chain(before, body) != digest:
+                if number != seq or not _is_sound(before, body, digest):
                     raise Damaged(self.path, seq)
                 before = digest
                 yield body
@@ -279,46 +255,12 @@ class Journal:
         """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
         query = "SELECT seq, body, digest FROM commits WHERE seq > ? ORDER BY seq LIMIT ?"
         try:
-            with self._lock:
-                return self._db.execute(query, (after, size)).fetchall()
-        except sqlite3.ProgrammingError:
-            raise
-        except sqlite3.DatabaseError:
+            with self._file.reading() as db:
+                return db.execute(query, (after, size)).fetchall()
+        except errors.Refused:
             if size == 1:
                 raise Damaged(self.path, after + 1) from None
             return self._page(after, 1)
-
-    @contextmanager
-    def _reading(self) -> Iterator[None]:
-        try:
-            with self._lock:
-                yield
-        except sqlite3.OperationalError as error:
-            if "locked" in str(error):
-                raise InUse(f"another knowledge base is using {self.path}") from None
-            raise errors.Refused(f"{self.path} cannot be read: {error}; {_ANEW}") from None
-        except sqlite3.ProgrammingError:
-            raise
-        except sqlite3.DatabaseError as error:
-            raise errors.Refused(f"{self.path} is damaged: {error}; {_mend(self.path)}") from None
-
-    @contextmanager
-    def _writing(self, what: str) -> Iterator[None]:
-        """One transaction of the file, or a part of the one that is open: all of it or nothing."""
-        try:
-            with self._lock:
-                if self._db.in_transaction:
-                    yield
-                    return
-                self._db.execute("BEGIN IMMEDIATE")
-                try:
-                    yield
-                    self._db.execute("COMMIT")
-                finally:
-                    if self._db.in_transaction:
-                        self._db.execute("ROLLBACK")
-        except sqlite3.Error as error:
-            raise NotWritten(f"{what} could not be written to {self.path}: {error}") from None
 
 
 class _Stamp(Struct):
@@ -327,14 +269,18 @@ class _Stamp(Struct):
     stamp_ns: int
 
 
-def _mend(path: Path) -> str:
-    """How one goes on."""
-    return (
-        f"go on from the last good commit with: semmap repair --data {path.parent} (the damaged file is kept)"
-    )
+def _is_sound(before: bytes, body: object, digest: object) -> bool:
+    """Is it what was written? Of a damaged page SQLite may read anything, numbers and NULL too."""
+    return isinstance(body, bytes) and _chain(before, body) == digest
 
 
 def _chain(before: bytes, body: bytes) -> bytes:
     digest = hashlib.blake2b(before, digest_size=16)
     digest.update(body)
     return digest.digest()
+
+
+def _digest_of(db: sqlite3.Connection, seq: int) -> bytes:
+    """That of a commit; empty before the first."""
+    row = db.execute("SELECT digest FROM commits WHERE seq = ?", (seq,)).fetchone()
+    return b"" if row is None else bytes(row[0])

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import gc
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, documents, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node import answers, blank_nodes, garbage, loading, past, rdf_files, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.journal import FILENAME, Journal, NotWritten
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
@@ -47,7 +47,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
-from schemas.explanations import Explanation, Triple
+from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -137,36 +137,22 @@ class KnowledgeBase:
                 progress=lambda count: tell(f"{count:,} triples read"),
             )
             tell(f"{len(triples):,} triples to check and write")
-            return self._load(load, triples)
-
-    def _load(self, load: LoadDocument, triples: list[Triple]) -> Loaded:
-        sorted_out = documents.sort_out(triples, self.map.classes, skip_unknown=load.skip_unknown)
-        transaction = _loading(
-            load,
-            retract=self.map.abox() if load.replace else (),
-            insert=(t for t in sorted_out.triples if t not in self.map.tbox),
-        )
-        commit = self._commit(transaction)
-        return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+            transaction, sorted_out = loading.of_document(self.map, load, triples)
+            commit = self._commit(transaction)
+            return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
-        """Lets the heartbeat tell how far the loading of a file is.
-
-        Meanwhile no garbage is collected: looking through millions of new objects would stop the whole
-        process, Zenoh's keep-alive included, for longer than a lease. They stay, so they are never looked at.
-        """
-        gc.disable()
+        """Lets the heartbeat tell how far the loading of a file is."""
 
         def tell(text: str) -> None:
             self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
             self._node.beat()
 
         try:
-            yield tell
+            with garbage.uncollected(freeze=True):
+                yield tell
         finally:
-            gc.freeze()
-            gc.enable()
             self._node.describe(self._summary())
 
     def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
@@ -227,15 +213,10 @@ class KnowledgeBase:
 
     def on_load_tbox(self, load: LoadTBox) -> Commit | None:
         """Another TBox, in one commit; none for the one that holds."""
-        tbox = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
-        imports, before = tboxes.imports(tbox), tboxes.imports(self.map.tbox)
-        transaction = _loading(
-            load,
-            retract=(t for t in before if t not in imports and self.map.has(t)),
-            insert=(t for t in imports if not self.map.has(t)),
-        )
-        imports_differ = transaction.retract or transaction.insert
-        if not imports_differ and rdf_files.say_the_same(frozenset(tbox), self.map.tbox):
+        read = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        tbox = blank_nodes.labelled_like(read, self.map.tbox)
+        transaction = loading.of_tbox(self.map, load, tbox)
+        if transaction is None:
             return self._journal.commit_of(load.id)
         return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
 
@@ -273,20 +254,6 @@ class KnowledgeBase:
         return f"{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
 
 
-def _loading(
-    load: LoadDocument | LoadTBox, *, retract: Iterable[Triple], insert: Iterable[Triple]
-) -> Transaction:
-    return Transaction(
-        id=load.id,
-        source=load.source,
-        agent=load.agent,
-        verb="load",
-        reason=load.reason,
-        retract=tuple(retract),
-        insert=tuple(insert),
-    )
-
-
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
     if isinstance(result, errors.SemmapError):
         return Outcome(error=errors.to_message(result))
@@ -301,10 +268,8 @@ def run(config: KbConfig) -> None:
     with open_node("kb_node", config.network) as node:
         journal = Journal(path)
         try:
-            gc.disable()  # a start makes much and drops little
-            knowledge_base = KnowledgeBase(node, journal)
-            gc.freeze()  # and what it made stays: the collector need not look through it again
-            gc.enable()
+            with garbage.uncollected(freeze=True):
+                knowledge_base = KnowledgeBase(node, journal)
             node.run()
             knowledge_base.close()
         finally:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable
 from xml.parsers import expat
 
 import pyoxigraph
@@ -125,26 +125,6 @@ def serialise(triples: Iterable[Triple], syntax: RdfFormat) -> bytes:
     if syntax == "jsonld":
         return json.dumps(json.loads(document), indent=1, ensure_ascii=False).encode()
     return _as_xml(document) if syntax == "rdfxml" else document
-
-
-def say_the_same(one: Collection[Triple], other: Collection[Triple]) -> bool:
-    """Do two graphs differ in nothing but the labels of their blank nodes?"""
-    if len(one) != len(other) or _ground(one) != _ground(other):
-        return False
-    return _canonical(one) == _canonical(other)
-
-
-def _ground(triples: Iterable[Triple]) -> set[Triple]:
-    return {(s, p, o) for s, p, o in triples if not s.startswith("_:") and not o.startswith("_:")}
-
-
-def _canonical(triples: Iterable[Triple]) -> pyoxigraph.Dataset:
-    """The graph with the labels that RDF Dataset Canonicalization gives."""
-    dataset = pyoxigraph.Dataset(
-        pyoxigraph.parse(serialise(triples, "ntriples"), pyoxigraph.RdfFormat.N_TRIPLES)
-    )
-    dataset.canonicalize(pyoxigraph.CanonicalizationAlgorithm.RDFC_1_0)
-    return dataset
 
 
 def _as_xml(document: bytes) -> bytes:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import os
+import struct
 import time
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
 from nodes.kb_node import rdf_files, seed, tboxes
-from nodes.kb_node.journal import FILENAME, InUse, Journal
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import InUse, NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
 
 _TOLD_EVERY_S = 2.0
+_MAGIC = b"SQLite format 3\0"
+_HEADER = struct.Struct(">16sH10xI")
+"""How an SQLite file begins: what it is, the size of a page [bytes], and how many pages there are."""
 
 
 def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox: Path | None = None) -> str:
@@ -28,12 +34,7 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     if not path.exists():
         raise errors.BadFile(f"there is no map in {data}")
     new = path.with_name(f"new-{FILENAME}")
-    try:
-        damaged = Journal(path)
-    except InUse:
-        raise
-    except errors.Refused as error:
-        raise errors.Refused(f"{_reason(error)}; start anew with --fresh (it is kept)") from None
+    damaged = _opened(path)
     try:
         if _is_sound(damaged, _counting("checked", tell)):
             return f"nothing is damaged: the map goes on from commit {damaged.last}"
@@ -42,6 +43,29 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
         damaged.close()
     kept = seed.put_in_place(new, path)
     return f"the map goes on from commit {good} ({reason}); the damaged file is kept in {kept}"
+
+
+def _opened(path: Path) -> Journal:
+    """The journal, also one whose end is missing."""
+    try:
+        return Journal(path)
+    except InUse:
+        raise
+    except errors.Refused as error:
+        if _filled_up(path):
+            return _opened(path)
+        raise errors.Refused(f"{_reason(error)}; start anew with --fresh (it is kept)") from None
+
+
+def _filled_up(path: Path) -> bool:
+    """Was its end missing? SQLite reads nothing of such a file, but what is there when zeros follow."""
+    with path.open("rb") as file:
+        magic, page_size, pages = _HEADER.unpack(file.read(_HEADER.size).ljust(_HEADER.size))
+    length = page_size * pages
+    if magic != _MAGIC or path.stat().st_size >= length:
+        return False
+    os.truncate(path, length)
+    return True
 
 
 def _counting(done: str, tell: Callable[[str], None]) -> Callable[[], None]:
@@ -93,13 +117,16 @@ def _copy(damaged: Journal, new: Path, tbox: bytes, tell: Callable[[str], None])
     good, reason = 0, "all of them are good"
     progress = _counting("saved", tell)
     try:
-        try:
-            for commit in damaged.commits():
-                journal.append(commit, damaged.tbox(commit.seq) if commit.tbox else None)
-                good = commit.seq
-                progress()
-        except errors.Refused as error:
-            reason = _reason(error).removeprefix(f"{damaged.path}: ")
+        with journal.together():
+            try:
+                for commit in damaged.commits():
+                    journal.append(commit, damaged.tbox(commit.seq) if commit.tbox else None)
+                    good = commit.seq
+                    progress()
+            except NotWritten:
+                raise
+            except errors.Refused as error:
+                reason = _reason(error).removeprefix(f"{damaged.path}: ")
         tell(f"the map is rebuilt from {good:,} commits")
         SemanticMap(journal).checkpoint()
     finally:

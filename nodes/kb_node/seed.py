@@ -9,7 +9,8 @@ from pathlib import Path
 
 from nodes.kb_node import documents, rdf_files, tbox_cache, tboxes
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import FILENAME, InUse, Journal
+from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import InUse
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import gc
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from contextlib import contextmanager
 
 from msgspec import structs
 
@@ -14,6 +12,7 @@ from nodes.kb_node import (
     effects,
     entities,
     fingerprint,
+    garbage,
     placing,
     preconditions,
     rdf_files,
@@ -22,7 +21,8 @@ from nodes.kb_node import (
 )
 from nodes.kb_node.alike import Patterns
 from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Checkpoint, Journal, NotWritten
+from nodes.kb_node.journal import Checkpoint, Journal
+from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from ontology import vocabulary as v
 from schemas import errors
@@ -32,8 +32,6 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
-_MUCH = 100_000
-"""Objects that a commit leaves."""
 
 
 class SemanticMap:
@@ -105,16 +103,7 @@ class SemanticMap:
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
-        asserted: dict[str, int] = {}
-        inferred: dict[str, int] = {}
-        for entity in self._entities.values():
-            asserted[entity.class_] = asserted.get(entity.class_, 0) + 1
-            for name in entity.types:
-                inferred[name] = inferred.get(name, 0) + 1
-        return (
-            structs.replace(row, asserted=asserted.get(row.name, 0), inferred=inferred.get(row.name, 0))
-            for row in self.classes.rows
-        )
+        return self.classes.counted(self._entities.values())
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
@@ -167,7 +156,7 @@ class SemanticMap:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
-        with _uncollected():
+        with garbage.uncollected():
             commit = self._signed(transaction, retracted, inserted)
             begun = bodies.early(commit)
             return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
@@ -230,7 +219,9 @@ class SemanticMap:
         return results
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
-        """Would the next start have much to replay? Unless it is `quiet`, very much?"""
+        """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
+        if quiet and self._journal.tbox_changes(after=self._checkpointed):
+            return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     def checkpoint(self) -> None:
@@ -378,17 +369,3 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """No garbage collection: a change of the map makes much and drops little."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            if gc.get_count()[0] > _MUCH:
-                gc.freeze()  # it stays: the collector need not look through it
-            gc.enable()

@@ -12,6 +12,10 @@ from schemas import errors
 from schemas.explanations import Triple
 
 
+class DoesNotFit(errors.Refused):
+    """The map says what a TBox has no room for."""
+
+
 def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
     """A reasoner with no more than the TBox. Raises Inconsistent, BadFile for what is no TBox."""
     what = f"the TBox {name}".strip()
@@ -29,17 +33,17 @@ def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
 
 
 def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -> None:
-    """Raises Refused when the ABox has classes that the TBox has not, or things in space would be none."""
+    """Raises DoesNotFit when the ABox has classes that the TBox has not, or things in space would be none."""
     abox = list(abox)
     try:
         documents.sort_out(abox, after, skip_unknown=False)
     except errors.UnknownClass as error:
-        raise errors.Refused(f"the map does not fit the TBox: {error.text.partition('; --')[0]}") from None
+        raise DoesNotFit(f"the map does not fit the TBox: {error.text.partition('; --')[0]}") from None
     types = [(s, o) for s, p, o in abox if p == v.RDF_TYPE]
     spatial = {s for s, o in types if o in after.spatial}
     lost = [(s, o) for s, o in types if o in before.spatial and s not in spatial]
     for individual, c in lost:
-        raise errors.Refused(
+        raise DoesNotFit(
             f"the map does not fit the TBox: {v.local_name(individual)} would be no thing in space any more,"
             f" because it does not say that {v.local_name(c)} is a class of such"
         )

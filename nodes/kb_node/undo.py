@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from nodes.kb_node import tboxes
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
@@ -29,6 +30,11 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
     except errors.Inconsistent as error:
         raise errors.Inconsistent(
             f"commit {target.seq} cannot be undone: {error.text}", explanation=error.explanation
+        ) from None
+    except tboxes.DoesNotFit as error:
+        raise errors.Refused(
+            f"commit {target.seq} cannot be undone: {error.text}; first remove or update what does not fit,"
+            " or let another TBox hold: semmap load --tbox FILE"
         ) from None
     if commit is None:
         raise errors.Refused(f"nothing is left of commit {target.seq} that could be taken back")

@@ -13,9 +13,9 @@ CHANGES = {
     "size": lambda d, s: d.change(c.Update(name="chair1", size=(1.0, 1.0, 1.0), source=s)),
     "reference": lambda d, s: d.change(c.Update(name="chair1", ref="stool", source=s)),
     "no references": lambda d, s: d.change(c.Update(name="chair1", alt=(), source=s)),
-    "existence": lambda d, s: d.remove(c.Remove(names=("chair1",), source=s)),
-    "all existence": lambda d, s: d.clear(c.Clear(source=s)),
-    "another map": lambda d, s: d.load(c.Load(content=SCENE, filename="s.json", replace=True, source=s)),
+    "existence": lambda d, s: d.change(c.Remove(names=("chair1",), source=s)),
+    "all existence": lambda d, s: d.change(c.Clear(source=s)),
+    "another map": lambda d, s: d.change(c.Load(content=SCENE, filename="s.json", replace=True, source=s)),
 }
 changes = pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys())
 
@@ -61,11 +61,11 @@ def test_an_operator_s_word_on_a_thing_that_perception_brought_in_counts(door, c
 def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(door):
     add(door, name="chair1")
     with pytest.raises(errors.Refused, match="only an operator may replace the TBox"):
-        door.load(c.Load(content=b"x", tbox=True, source="perception"))
+        door.change(c.Load(content=b"x", tbox=True, source="perception"))
     with pytest.raises(errors.Refused, match="commit 1 is an operator's"):
-        door.undo(c.Undo(source="perception"))
+        door.change(c.Undo(source="perception"))
     with pytest.raises(errors.BadRequest, match="takes the place"):
-        door.load(c.Load(content=b"x", tbox=True, replace=True))
+        door.change(c.Load(content=b"x", tbox=True, replace=True))
 
 
 def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic_map):
@@ -90,7 +90,7 @@ def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic
 def test_a_conflict_goes_with_its_entity(door, semantic_map):
     add(door, name="chair1")
     door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
-    door.remove(c.Remove(names=("chair1",)))
+    door.change(c.Remove(names=("chair1",)))
     assert semantic_map.abox() == []
 
 

@@ -9,7 +9,7 @@ import pytest
 from nodes.coordinator.door import Door
 from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Turns
-from nodes.loop import settle
+from nodes.futures import settle
 from ontology import vocabulary as v
 from schemas import commands as c
 from schemas import errors
@@ -104,7 +104,7 @@ def test_an_update_that_changes_nothing_is_no_commit(door):
 def test_a_removed_entity_leaves_nothing(door, semantic_map):
     before = everything(semantic_map)
     add(door, name="chair1", at=(1.0, 2.0, 0.0), yaw=1.0, size=(1.0, 1.0, 1.0), ref="seat", alt=("a", "b"))
-    door.remove(c.Remove(names=("chair1",)))
+    door.change(c.Remove(names=("chair1",)))
     assert everything(semantic_map) == before
     assert door.entities == {}
 
@@ -112,14 +112,14 @@ def test_a_removed_entity_leaves_nothing(door, semantic_map):
 def test_remove_takes_all_or_none(door):
     add(door, name="chair1")
     with pytest.raises(errors.UnknownName, match="chair2"):
-        door.remove(c.Remove(names=("chair1", "chair2")))
+        door.change(c.Remove(names=("chair1", "chair2")))
     assert set(door.entities) == {"chair1"}
 
 
 def test_clear_on_an_empty_map_is_no_commit(door):
-    assert door.clear(c.Clear()).commit is None
+    assert door.change(c.Clear()).commit is None
     add(door)
-    assert door.clear(c.Clear()).names == ("chair1",)
+    assert door.change(c.Clear()).names == ("chair1",)
     assert door.entities == {}
 
 
@@ -127,15 +127,15 @@ def test_a_name_can_be_used_again_after_removal_and_after_changes_of_references(
     for _ in range(3):
         add(door, name="chair1", ref="seat")
         door.change(c.Update(name="chair1", ref="stool"))
-        door.remove(c.Remove(names=("chair1",)))
+        door.change(c.Remove(names=("chair1",)))
 
 
 def test_the_same_command_id_is_executed_once(door):
     first = add(door, name="chair1", id="42")
     again = add(door, name="chair1", id="42")
     assert (again.commit, again.names) == (first.commit, first.names)
-    gone = door.remove(c.Remove(names=("chair1",), id="43"))
-    assert door.remove(c.Remove(names=("chair1",), id="43")).commit == gone.commit
+    gone = door.change(c.Remove(names=("chair1",), id="43"))
+    assert door.change(c.Remove(names=("chair1",), id="43")).commit == gone.commit
     assert add(door, name="chair1", id="42").commit == first.commit
     assert door.entities == {}
 
@@ -147,11 +147,11 @@ def test_perception_may_move_but_not_redefine_what_an_operator_put_in(door):
         with pytest.raises(errors.Refused, match="operator"):
             door.change(c.Update(name="chair1", source="perception", **change))
     with pytest.raises(errors.Refused, match="operator"):
-        door.remove(c.Remove(names=("chair1",), source="perception"))
+        door.change(c.Remove(names=("chair1",), source="perception"))
 
 
 def load(door: Door, text: str, **fields) -> Changed:
-    return door.load(c.Load(content=text.encode(), filename="scene.json", **fields))
+    return door.change(c.Load(content=text.encode(), filename="scene.json", **fields))
 
 
 def test_a_scene_is_loaded_whole_or_not_at_all(door):
@@ -212,12 +212,12 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     door.follow("chair1", Pose(position_m=(1.5, 1.0, 0.0)))
     add(door, name="chair2")
-    assert door.undo(c.Undo()).text == "took back commit 3"
-    reply = door.undo(c.Undo())
+    assert door.change(c.Undo()).text == "took back commit 3"
+    reply = door.change(c.Undo())
     assert (reply.text, reply.names) == ("took back commit 1 with the 1 that settled it", ("chair1",))
     assert door.entities == {}
     with pytest.raises(errors.Refused, match="nothing to undo"):
-        door.undo(c.Undo())
+        door.change(c.Undo())
 
 
 def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
@@ -228,7 +228,7 @@ def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
     assert (posed.source, posed.agent, posed.reason) == ("scene", "ann", "chair1 was moved by hand")
     door.follow("chair1", Pose(position_m=(3.5, 1.0, 0.0)))
     assert door.entity("chair1").pose_provenance.reason == "chair1 came to rest"
-    door.undo(c.Undo())
+    door.change(c.Undo())
     assert door.entity("chair1").pose.position_m == (1.0, 1.0, 0.0)
     assert door.entity("chair1").pose_provenance.source == "operator"
 
@@ -236,7 +236,7 @@ def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
 def test_an_undo_sent_again_is_answered_with_its_result(door):
     add(door, name="chair1")
     add(door, name="chair2")
-    assert door.undo(c.Undo(id="u")).commit == door.undo(c.Undo(id="u")).commit == 3
+    assert door.change(c.Undo(id="u")).commit == door.change(c.Undo(id="u")).commit == 3
     assert set(door.entities) == {"chair1"}
 
 

@@ -195,3 +195,15 @@ def test_mode_map_never_changes_who_exists_in_the_map(entities, bodies):
     actions = reconcile(entities, bodies, "map", THRESHOLDS)
     assert not actions.adopt
     assert not actions.missing
+
+
+def test_what_one_commit_brings_and_puts_elsewhere_is_set_down_together():
+    table, cup = entity("table1", at(1), posed=7), entity("cup1", at(1, 0, 0.7), posed=7, shaped=7)
+    actions = look([cup, table], [body("table1", at(3))])
+    assert actions.delete == ("table1",)
+    assert [order.name for order in actions.spawn] == ["cup1", "table1"]
+    assert actions.place == ()
+    other = entity("chair1", at(1), posed=8)
+    assert [p.name for p in look([cup, other], [body("chair1", at(3))]).place] == ["chair1"]
+    furniture = look([cup, table], [body("table1", at(3), of_entity=False)])
+    assert [p.name for p in furniture.place] == ["table1"]

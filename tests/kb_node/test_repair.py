@@ -1,11 +1,13 @@
 """Damaged journals: refused with the commit's number, and mended up to the last good one."""
 
+import os
 import random
 
 import pytest
 
 from nodes.kb_node import repair as repair_module
 from nodes.kb_node.journal import FILENAME, Journal
+from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.repair import repair
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
@@ -60,6 +62,39 @@ def test_it_goes_on_from_the_last_good_commit(data, broken):
     assert (seq, mended) == (broken - 1, commits[: broken - 1])
     assert {e.name for e in snapshot.entities} == {e.name for c in mended for e in c.changed}
     assert repair(data) == f"nothing is damaged: the map goes on from commit {broken - 1}"
+
+
+@pytest.mark.parametrize("left", [0.5, 0.75, 0.85, 0.95])
+def test_a_journal_that_was_cut_off_goes_on_from_what_is_left(data, left):
+    _, commits = opened(data)
+    path = data / FILENAME
+    os.truncate(path, int(path.stat().st_size * left))
+    with pytest.raises(errors.Refused, match=f"semmap repair --data {data} "):
+        opened(data)
+    first = data / "first.nt"
+    first.write_text("".join(f"{s} {p} {o} .\n" for s, p, o in home.TBOX))
+    assert repair(data, tbox=first).startswith("the map goes on from commit ")
+    (seq, _, _), mended = opened(data)
+    assert 0 < seq < 8
+    assert mended == commits[:seq]
+
+
+def test_a_full_disk_ends_the_repair_and_leaves_the_damaged_file(data, monkeypatch):
+    flip(data / FILENAME, "commits", 8)
+    damaged = (data / FILENAME).read_bytes()
+    append = Journal.append
+
+    def until_it_is_full(journal, commit, *others, **fields):
+        if commit.seq == 4:
+            raise NotWritten("the disk is full")
+        append(journal, commit, *others, **fields)
+
+    monkeypatch.setattr(Journal, "append", until_it_is_full)
+    with pytest.raises(errors.Refused, match="the disk is full"):
+        repair(data)
+    assert (data / FILENAME).read_bytes() == damaged
+    monkeypatch.undo()
+    assert repair(data).startswith("the map goes on from commit 7 ")
 
 
 def test_it_tells_how_far_it_is(data, monkeypatch):

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.kb_node import fingerprint
-from nodes.kb_node.journal import NotWritten
+from nodes.kb_node.journal_file import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
@@ -334,7 +334,8 @@ def test_a_restart_gives_the_same_map_with_and_without_checkpoints(tmp_path_fact
     expected, classes = state(semantic_map), list(semantic_map.class_table())
     again = home.reopened(semantic_map)
     assert (state(again), list(again.class_table())) == (expected, classes)
-    again._journal._db.execute("DELETE FROM checkpoints")
+    with again._journal._file.reading() as db:
+        db.execute("DELETE FROM checkpoints")
     from_nothing = home.reopened(again)
     assert (state(from_nothing), list(from_nothing.class_table())) == (expected, classes)
     home.close(from_nothing)

@@ -77,6 +77,15 @@ def test_it_survives_a_restart(furnished, checkpoints):
     home.close(again)
 
 
+def test_the_next_start_need_not_work_it_out_again(furnished):
+    assert not furnished.checkpoint_is_due(quiet=True)
+    replace(furnished, "t", NEW_CLASSES)
+    assert furnished.checkpoint_is_due(quiet=True)
+    assert not furnished.checkpoint_is_due(quiet=False)
+    furnished.checkpoint()
+    assert not furnished.checkpoint_is_due(quiet=True)
+
+
 def test_history_and_the_past_stay_right_across_it(furnished):
     before = furnished.snapshot().entities
     replace(furnished, "t", NEW_CLASSES)
@@ -90,12 +99,12 @@ def test_history_and_the_past_stay_right_across_it(furnished):
 REFUSED = {
     "unknown class": (
         TBOX_TURTLE.replace("dm:Kitchen", "dm:Cellar"),
-        errors.Refused,
+        tboxes.DoesNotFit,
         "the map does not fit the TBox: unknown class 'Kitchen' \\(of kitchen1\\)",
     ),
     "no thing in space": (
         TBOX_TURTLE.replace("dm:Chair a owl:Class ; rdfs:subClassOf dm:Seat", "dm:Chair a owl:Class"),
-        errors.Refused,
+        tboxes.DoesNotFit,
         "chair. would be no thing in space any more, because it does not say that Chair is a class of such",
     ),
     "inconsistent map": (

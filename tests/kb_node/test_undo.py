@@ -235,8 +235,10 @@ def test_a_tbox_that_the_map_needs_stays(semantic_map):
     replace(semantic_map, "t", NEW_CLASSES)
     semantic_map.commit(transaction("bench", turtle(":bench1 a dm:Bench .")))
     before = home.state(semantic_map)
-    with pytest.raises(errors.Refused, match="does not fit the TBox: unknown class 'Bench'"):
+    with pytest.raises(errors.Refused, match="does not fit the TBox: unknown class 'Bench'") as caught:
         take_back(semantic_map, 1)
+    assert caught.value.text.startswith("commit 1 cannot be undone: ")
+    assert caught.value.text.endswith("semmap load --tbox FILE")
     assert home.state(semantic_map) == before
 
 

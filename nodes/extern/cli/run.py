@@ -11,7 +11,8 @@ import click
 from nodes import bus
 from nodes.extern.cli import show
 from nodes.extern.cli.talking import complain, print_lines, run_words
-from nodes.extern.client import CONNECT_VARIABLE, Client, connect
+from nodes.extern.client import Client, connect
+from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
 

@@ -13,7 +13,7 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.extern.cli.talking import complain
-from nodes.extern.client import CONNECT_VARIABLE
+from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors

@@ -12,7 +12,8 @@ from typing import Any
 import click
 
 from nodes import bus
-from nodes.extern.client import CONNECT_VARIABLE, Client, connect
+from nodes.extern.client import Client, connect
+from nodes.extern.connection import CONNECT_VARIABLE
 from schemas import codec, errors
 
 

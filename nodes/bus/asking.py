@@ -1,0 +1,143 @@
+"""Ask, and wait for the reply or be told of it later.
+
+What was learnt by measuring (Zenoh 1.10.2): a `get` that finds nobody comes back empty at once, so an empty
+answer is asked again until patience ends, and never read as an answer; a time-out comes as an error reply
+that is not ours. The callback of a `get` is given a thread of its own unless it is declared direct, which
+takes longer than the whole round trip; and replies wait for the end of the query unless they need not be
+consolidated.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import zenoh
+
+from nodes.bus.session import PATIENCE_S
+from schemas import codec, errors, keys
+
+TIMEOUT_S = 30.0
+
+_ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
+_AS_THEY_COME = zenoh.ConsolidationMode.NONE
+
+
+@dataclass(frozen=True)
+class Encoded:
+    """A message as it came: to be decoded, or passed on."""
+
+    payload: zenoh.ZBytes
+    encoding: zenoh.Encoding
+    kind: Any
+
+    def decode(self) -> Any:
+        """The message, of type `kind`. Raises BadRequest."""
+        return codec.decode(self.payload.to_bytes(), self.kind)
+
+
+def ask(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    *,
+    timeout_s: float = TIMEOUT_S,
+    patience_s: float = PATIENCE_S,
+    meanwhile: Callable[[], None] | None = None,
+    first_hand: bool = False,
+) -> Any:
+    """Send `message` to `prefix/verb` and return the reply, of type `kind`.
+
+    `meanwhile` is called again and again while the answer takes its time. `first_hand`: whoever serves just
+    this verb is asked, and those who serve all verbs of the prefix only if there is no such one.
+
+    Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
+    that does takes longer than `timeout_s`.
+    """
+    key = f"{prefix}/{verb}"
+    payload, encoding = codec.encode(message), codec.encoding_of(message)
+    deadline = time.monotonic() + patience_s
+    while True:
+        replies = session.get(
+            key,
+            payload=payload,
+            encoding=encoding,
+            timeout=timeout_s,
+            consolidation=_AS_THEY_COME,
+            target=zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING,
+        )
+        for reply in replies if meanwhile is None else _polled(replies, meanwhile):
+            return read_reply(key, reply, kind, timeout_s).decode()
+        if first_hand:
+            first_hand = False
+            continue
+        if time.monotonic() > deadline:
+            _nobody(key)
+        time.sleep(0.01)
+
+
+def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:
+    while True:
+        try:
+            reply = replies.try_recv()
+        except zenoh.ZError:  # there will be no more
+            return
+        if reply is not None:
+            yield reply
+        else:
+            meanwhile()
+            time.sleep(0.02)
+
+
+def ask_later(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    answer: Callable[[Callable[[], Encoded]], None],
+    *,
+    timeout_s: float = TIMEOUT_S,
+) -> None:
+    """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
+
+    It is called once, on the thread with which Zenoh receives everything, so it should only queue.
+    """
+    key = f"{prefix}/{verb}"
+    waiting = [answer]
+
+    def on_reply(reply: zenoh.Reply) -> None:
+        if waiting:
+            waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
+
+    def on_end() -> None:
+        if waiting:
+            waiting.pop()(lambda: _nobody(key))
+
+    handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
+    payload, encoding = codec.encode(message), codec.encoding_of(message)
+    session.get(
+        key, handler, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
+    )
+
+
+def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
+    """The message of a reply, of type `kind`; raises the error that it carries."""
+    if reply.ok is not None:
+        return Encoded(reply.ok.payload, reply.ok.encoding, kind)
+    assert reply.err is not None
+    if str(reply.err.encoding) != _ERROR_ENCODING:
+        raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
+    raise errors.from_message(codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage))
+
+
+def _nobody(key: str) -> NoReturn:
+    node = keys.SERVED_BY.get(key.rpartition("/")[0])
+    why = f"{node} does not run" if node else "nobody serves it"
+    raise errors.NoAnswer(
+        f"no answer on {key}: {why}, or is just starting (see: semmap status), or this client may not ask it"
+    )

@@ -1,0 +1,95 @@
+"""Publish and follow: both ends of a topic, with its quality of service."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, Literal
+
+import zenoh
+from zenoh import ext
+
+from schemas import codec, errors, keys
+from schemas.scenes import CameraFrame
+
+
+def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None) -> Any:
+    """A publisher with the topic's quality of service."""
+    key = key or topic.key
+    if topic.qos == "newest":
+        return session.declare_publisher(key, congestion_control=zenoh.CongestionControl.DROP)
+    return ext.declare_advanced_publisher(
+        session,
+        key,
+        congestion_control=zenoh.CongestionControl.BLOCK,
+        cache=ext.CacheConfig(max_samples=1000),
+        sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5),
+        publisher_detection=True,
+    )
+
+
+def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
+    """A function that tells whether anybody follows any key of `topic` just now."""
+    publisher = session.declare_publisher(topic.key)
+    return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
+
+
+def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, Any], None]) -> Any:
+    """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
+
+    A malformed one is dropped: whoever sent it is not one of ours.
+    """
+
+    def on_sample(sample: zenoh.Sample) -> None:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            receive(str(sample.key_expr), None)
+            return
+        try:
+            message = codec.decode(sample.payload.to_bytes(), topic.message)
+        except errors.BadRequest:
+            return
+        receive(str(sample.key_expr), message)
+
+    if topic.qos == "newest" or "*" in topic.key:
+        return session.declare_subscriber(topic.key, on_sample)
+    return ext.declare_advanced_subscriber(
+        session,
+        topic.key,
+        on_sample,
+        recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+    )
+
+
+def follow_cameras(
+    session: zenoh.Session,
+    plane: Literal["rgb", "depth"],
+    receive: Callable[[CameraFrame, Callable[[], bytes]], None],
+    refuse: Callable[[str], None],
+) -> None:
+    """Each plane of each camera goes to `receive(frame, read)`, where `read()` gives its pixels.
+
+    On a thread of Zenoh's, so they should only be kept. `refuse(reason)` is told of what is no frame.
+    """
+
+    def on_sample(sample: zenoh.Sample) -> None:
+        try:
+            attached = sample.attachment.to_bytes() if sample.attachment is not None else b""
+            receive(codec.decode(attached, CameraFrame), sample.payload.to_bytes)
+        except errors.BadRequest as error:
+            refuse(f"{sample.key_expr}: {error.text}")
+
+    session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+
+
+def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
+    """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
+    try:
+        subscriber = session.declare_subscriber(key_expr)
+    except zenoh.ZError as error:
+        raise errors.BadRequest(
+            f"'{key_expr}' is no key expression: {str(error).split(' at /', 1)[0]}"
+        ) from None
+    for sample in subscriber:
+        if sample.kind == zenoh.SampleKind.DELETE:
+            yield str(sample.key_expr), "gone"
+        else:
+            yield str(sample.key_expr), codec.as_json(sample.payload.to_bytes())

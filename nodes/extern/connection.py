@@ -1,0 +1,53 @@
+"""Which system a client means, and the way to it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Iterator
+
+import zenoh
+
+from nodes import bus
+from nodes.supervisor import presence
+from schemas import errors
+
+CONNECT_VARIABLE = "SEMMAP_CONNECT"
+_START_S = 15.0
+"""Seconds: a system that is starting is waited for."""
+_AGAIN_S = 0.1
+
+
+def endpoint() -> str:
+    """The system that is meant when nothing else is said: `SEMMAP_CONNECT`, or the usual one."""
+    return os.environ.get(CONNECT_VARIABLE) or bus.DEFAULT_ENDPOINT
+
+
+@contextlib.contextmanager
+def open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
+    """A session with whoever listens at `where`, or will do so when the system has started.
+
+    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
+    Raises NoAnswer when nothing answers there, or the system takes too long to start.
+    """
+    here = presence.is_loopback(where)
+    network = bus.Network(
+        connect=(where,),
+        mode="peer" if here else "client",
+        namespace=namespace,
+        patience_s=0.0 if here else bus.PATIENCE_S,
+    )
+    deadline_s = time.monotonic() + _START_S
+    with contextlib.ExitStack() as stack:
+        while True:
+            try:
+                session = stack.enter_context(bus.open_session(network))
+                break
+            except errors.NoAnswer:
+                if not presence.is_announced(where):
+                    raise
+                if time.monotonic() > deadline_s:
+                    raise errors.NoAnswer(f"the system at {where} has not started yet") from None
+                time.sleep(_AGAIN_S)
+        yield session

@@ -1,0 +1,34 @@
+"""Futures of what a node waits for: resolving one, and going on from one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+
+def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
+    """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
+    try:
+        result = execute()
+    except Exception as error:
+        future.set_exception(error)
+        return
+    if isinstance(result, Future):
+        result.add_done_callback(lambda done: settle(future, done.result))
+    else:
+        future.set_result(result)
+
+
+def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
+    """The future of `function(result)`; errors pass through."""
+    following: Future[Any] = Future()
+
+    def on_done(done: Future[Any]) -> None:
+        try:
+            following.set_result(function(done.result()))
+        except Exception as error:
+            following.set_exception(error)
+
+    future.add_done_callback(on_done)
+    return following

@@ -1,0 +1,73 @@
+"""The heartbeat: what a node says of its own state, once a second."""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from typing import Literal
+
+import zenoh
+
+from nodes import bus
+from schemas import codec, keys
+from schemas.health import Health
+
+log = logging.getLogger(__name__)
+
+_PERIOD_S = 1.0
+_ERROR_SHOWN_S = 3600.0
+
+
+class Heartbeat:
+    """Beats for the thread that owns the node's state, and on it: when that hangs, it falls silent."""
+
+    def __init__(self, name: str, session: zenoh.Session) -> None:
+        self.due_s = 0.0
+        """When it beats next, by the monotonic clock."""
+        self._name = name
+        self._session = session
+        self._started_ns = time.time_ns()
+        self._state: Literal["starting", "ready"] = "starting"
+        self._detail = ""
+        self._last_error = ""
+        self._error_shown_until_s = 0.0
+        self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
+
+    def beat(self) -> None:
+        """Send the heartbeat if it is due."""
+        now_s = time.monotonic()
+        if now_s < self.due_s:
+            return
+        self.due_s = now_s + _PERIOD_S
+        health = Health(
+            node=self._name,
+            pid=os.getpid(),
+            started_ns=self._started_ns,
+            stamp_ns=time.time_ns(),
+            state=self._state,
+            detail=self._detail,
+            last_error=self._last_error if now_s < self._error_shown_until_s else "",
+        )
+        self._health.put(codec.encode(health))
+
+    def ready(self, detail: str) -> None:
+        """Say so, at once, and let the liveliness token appear."""
+        if self._state != "ready":
+            self._state = "ready"
+            key = keys.live_key(self._name, str(os.getpid()))
+            self._token = self._session.liveliness().declare_token(key)
+            log.info("ready: %s", detail)
+            self.due_s = 0.0
+        self.describe(detail)
+        self.beat()
+
+    def describe(self, detail: str) -> None:
+        """Say this of the node's state, from the next beat on."""
+        self._detail = detail
+
+    def report(self, text: str) -> None:
+        """Log an error, and say it with the time of the day, from now on and for an hour."""
+        log.error("%s", text)
+        self._last_error, self.due_s = f"{time.strftime('%H:%M:%S')} {text}", 0.0
+        self._error_shown_until_s = time.monotonic() + _ERROR_SHOWN_S

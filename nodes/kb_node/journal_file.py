@@ -1,0 +1,95 @@
+"""The journal's SQLite file: transactions that are durable at their end, for one process at a time."""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from schemas import errors
+
+ANEW = "start anew with --fresh (it is kept)"
+
+
+class InUse(errors.Refused):
+    """Another process has the journal open."""
+
+
+class NotWritten(errors.Refused):
+    """The disk did not take it; nothing was written."""
+
+
+class JournalFile:
+    """An open file. Any thread has its connection while it is `reading` or `writing`, one at a time."""
+
+    def __init__(self, path: Path) -> None:
+        """Open the file at `path`: WAL with `synchronous=FULL`. Raises InUse, Refused when it is damaged."""
+        self._path = path
+        self._lock = threading.RLock()
+        try:
+            self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
+        except sqlite3.DatabaseError as error:
+            raise _refusal(path, error) from None
+        try:
+            with self.reading() as db:
+                db.execute("PRAGMA locking_mode=EXCLUSIVE")
+                db.execute("PRAGMA journal_mode=WAL")
+                db.execute("PRAGMA synchronous=FULL")
+        except errors.Refused:
+            self._db.close()
+            raise
+
+    def close(self) -> None:
+        """Release it."""
+        with self._lock:
+            self._db.close()
+
+    @contextmanager
+    def reading(self) -> Iterator[sqlite3.Connection]:
+        """The connection, to read. Raises InUse, Refused when the file is damaged."""
+        try:
+            with self._lock:
+                yield self._db
+        except sqlite3.ProgrammingError:
+            raise
+        except sqlite3.DatabaseError as error:
+            raise _refusal(self._path, error) from None
+
+    @contextmanager
+    def writing(self, what: str) -> Iterator[sqlite3.Connection]:
+        """The connection in a transaction: all of it or nothing, and durable at its end.
+
+        Within another it is a part of that. Raises NotWritten when the disk does not take `what`.
+        """
+        db = self._db
+        try:
+            with self._lock:
+                if db.in_transaction:
+                    yield db
+                    return
+                db.execute("BEGIN IMMEDIATE")
+                try:
+                    yield db
+                    db.execute("COMMIT")
+                finally:
+                    if db.in_transaction:
+                        db.execute("ROLLBACK")
+        except sqlite3.Error as error:
+            raise NotWritten(f"{what} could not be written to {self._path}: {error}") from None
+
+
+def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
+    if not isinstance(error, sqlite3.OperationalError):
+        return errors.Refused(f"{path} is damaged: {error}; {mend(path)}")
+    if "locked" in str(error):
+        return InUse(f"another knowledge base is using {path}")
+    return errors.Refused(f"{path} cannot be read: {error}; {ANEW}")
+
+
+def mend(path: Path) -> str:
+    """How one goes on after damage."""
+    return (
+        f"go on from the last good commit with: semmap repair --data {path.parent} (the damaged file is kept)"
+    )

@@ -1,0 +1,71 @@
+"""What the coordinator asks while the knowledge base is away, and is back after a while."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from nodes import bus
+from nodes.coordinator.bridge import Bridge
+from nodes.loop import Node
+from schemas import errors, keys
+from schemas.commits import Commit, Transaction
+from tests.conftest import free_endpoint
+
+TRANSACTION = Transaction(id="42", source="operator")
+COMMIT = Commit(seq=1, stamp_ns=1, id="42", source="operator")
+
+
+@pytest.fixture
+def network():
+    endpoint = free_endpoint()
+    peer = bus.Network(mode="peer", listen=(endpoint,), connect=())
+    with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as kb:
+        node = Node("coordinator", session)
+        thread = threading.Thread(target=node.run)
+        thread.start()
+        yield Bridge(node), kb
+        node.stop()
+        thread.join(timeout=5)
+        assert not thread.is_alive()
+
+
+def serve(kb):
+    """Answer, but not the first time."""
+    asked = []
+
+    def receive(request):
+        asked.append(request.verb)
+        if len(asked) > 1:
+            request.reply(COMMIT)
+
+    bus.serve(kb, keys.BRIDGE, receive)
+
+
+@pytest.mark.parametrize("how", ["change", "change_later"])
+def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhile(network, how):
+    bridge, kb = network
+    start_s = time.monotonic()
+    answer = getattr(bridge, how)("commit", TRANSACTION)
+    assert time.monotonic() - start_s < bus.PATIENCE_S / 2
+    time.sleep(0.3)
+    assert not answer.done()
+    serve(kb)
+    assert answer.result(timeout=20) == COMMIT
+
+
+@pytest.mark.parametrize("how", ["change", "change_later"])
+def test_it_is_told_who_is_missing(network, how, monkeypatch):
+    monkeypatch.setattr(bus, "RESTART_S", 0.2)
+    answer = getattr(network[0], how)("commit", TRANSACTION)
+    with pytest.raises(errors.NoAnswer, match="kb_node does not run, or is just starting"):
+        answer.result(timeout=20)
+
+
+def test_a_refusal_is_an_answer(network):
+    bridge, kb = network
+    bus.serve(kb, keys.BRIDGE, lambda request: request.refuse(errors.Refused("no")))
+    with pytest.raises(errors.Refused, match="no"):
+        bridge.change("commit", TRANSACTION).result(timeout=20)

@@ -1,0 +1,59 @@
+"""The way to a system that is there, is starting, or is not."""
+
+import threading
+import time
+
+import pytest
+
+from nodes import bus
+from nodes.extern import connection
+from nodes.extern.connection import open_session
+from nodes.supervisor import presence
+from schemas import errors
+from tests.conftest import free_endpoint
+
+
+def test_the_system_that_is_meant(monkeypatch):
+    monkeypatch.setenv(connection.CONNECT_VARIABLE, "tcp/robot:7000")
+    assert connection.endpoint() == "tcp/robot:7000"
+    monkeypatch.setenv(connection.CONNECT_VARIABLE, "")
+    assert connection.endpoint() == bus.DEFAULT_ENDPOINT
+
+
+def test_a_refused_connection_is_told_at_once():
+    start_s = time.monotonic()
+    with pytest.raises(errors.NoAnswer, match="start one with: semmap up"), open_session(free_endpoint(), ""):
+        pass
+    assert time.monotonic() - start_s < bus.PATIENCE_S / 2
+
+
+def test_a_system_that_is_starting_is_waited_for():
+    endpoint = free_endpoint()
+    listening, done = threading.Event(), threading.Event()
+
+    def listen_late() -> None:
+        time.sleep(0.5)
+        with bus.open_session(bus.Network(mode="peer", connect=(), listen=(endpoint,))):
+            listening.set()
+            done.wait()
+
+    coordinator = threading.Thread(target=listen_late)
+    with presence.announced(endpoint):
+        coordinator.start()
+        try:
+            with open_session(endpoint, ""):
+                assert listening.is_set()
+        finally:
+            done.set()
+            coordinator.join()
+
+
+def test_a_system_that_does_not_come_is_said_to_be_starting(monkeypatch):
+    monkeypatch.setattr(connection, "_START_S", 0.2)
+    endpoint = free_endpoint()
+    with (
+        presence.announced(endpoint),
+        pytest.raises(errors.NoAnswer, match=f"the system at {endpoint} has not started yet"),
+        open_session(endpoint, ""),
+    ):
+        pass

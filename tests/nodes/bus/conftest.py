@@ -1,0 +1,34 @@
+"""Two sessions on loopback, and one who answers."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes import bus
+from schemas import errors
+from tests.conftest import free_endpoint
+
+PREFIX = "semmap/test"
+
+
+@pytest.fixture
+def pair():
+    """Two peers, one listening and one connected to it."""
+    endpoint = free_endpoint()
+    with (
+        bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())) as server,
+        bus.open_session(bus.Network(connect=(endpoint,))) as client,
+    ):
+        yield server, client
+
+
+def answer(handle):
+    """Serve on the thread of the callback: fit for a test."""
+
+    def receive(request: bus.Request) -> None:
+        try:
+            request.reply(handle(request))
+        except errors.SemmapError as error:
+            request.refuse(error)
+
+    return receive

@@ -1,0 +1,35 @@
+"""Publishing and following, between real sessions on loopback."""
+
+from __future__ import annotations
+
+import queue
+import time
+
+from nodes import bus
+from schemas import codec, keys
+from schemas.commits import Commit
+
+
+def commit(seq: int) -> Commit:
+    return Commit(seq=seq, stamp_ns=seq, id=str(seq), source="operator")
+
+
+def test_commits_arrive_in_order_and_none_is_lost(pair):
+    server, client = pair
+    arrived: queue.SimpleQueue = queue.SimpleQueue()
+    publisher = bus.publisher(server, keys.COMMIT)
+    bus.follow(client, keys.COMMIT, lambda _, message: arrived.put(message.seq))
+    time.sleep(0.3)
+    for seq in range(1, 501):
+        publisher.put(codec.encode(commit(seq)))
+    assert [arrived.get(timeout=10) for _ in range(500)] == list(range(1, 501))
+
+
+def test_what_is_not_ours_is_not_followed(pair):
+    server, client = pair
+    arrived: queue.SimpleQueue = queue.SimpleQueue()
+    bus.follow(client, keys.COMMIT, lambda _, message: arrived.put(message))
+    time.sleep(0.3)
+    server.put(keys.COMMIT.key, b"\xc1 nonsense")
+    server.put(keys.COMMIT.key, codec.encode(commit(1)))
+    assert arrived.get(timeout=5).seq == 1
