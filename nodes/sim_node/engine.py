@@ -23,7 +23,7 @@ class Engine:
     """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no berth.
 
     `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
-    every change of the model.
+    every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
     """
 
     def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
@@ -36,6 +36,7 @@ class Engine:
         self._vacant: list[Berth] = []
         self.records = groundwork.bodies_of(ground)
         self.revision = 0
+        self.compiling = False
         self.model: mujoco.MjModel
         self.data: mujoco.MjData
         self.index: BodyIndex
@@ -155,7 +156,11 @@ class Engine:
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
         """A new model of all bodies, each at its pose, and of some vacant berths."""
-        self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+        self.compiling = True
+        try:
+            self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+        finally:
+            self.compiling = False
         self.data = mujoco.MjData(self.model)
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]

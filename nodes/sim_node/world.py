@@ -55,6 +55,7 @@ class World:
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
+        self._stirred = False
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -108,11 +109,17 @@ class World:
             if placement.commit is not None:
                 record.commit, record.ordered = placement.commit, placement.pose
         self._put(moved)
-        return BodiesMoved(names=tuple(moved), failed=failed)
+        return BodiesMoved(bodies=self._bodies(moved), failed=failed)
 
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
-        self._engine.step(duration_s)
+        engine = self._engine
+        engine.step(duration_s)
+        if not engine.resting.all():
+            self._stirred = True
+        elif self._stirred and not engine.compiling:
+            self._stirred = False
+            self._free_ghosts()
 
     def reset(self) -> int:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
@@ -238,40 +245,27 @@ class World:
         self._free_ghosts()
 
     def _settle(self, names: Iterable[str]) -> None:
-        """Find room for bodies that were just put down: lift what can be lifted, make ghosts of the rest."""
+        """Find room for these bodies: lift what can be lifted; what has none is a ghost, all else solid."""
         engine = self._engine
         rows = [engine.index.row[name] for name in names]
         stage, poses = engine.stage(), engine.poses()
-        ghosts: dict[str, Pose] = {}
+        turned: dict[str, Pose] = {}
         for row, placed in place(stage, rows).items():
-            if placed.ghost:
-                ghosts[engine.index.names[row]] = pose_of(poses[row])
+            record = engine.index.records[row]
+            if placed.ghost != record.ghost:
+                record.ghost = placed.ghost
+                turned[record.name] = pose_of(poses[row] + (0.0, 0.0, placed.rise_m, 0.0, 0.0, 0.0, 0.0))
             elif placed.rise_m:
                 engine.lift(row, placed.rise_m)
-        self._turn(ghosts, ghost=True)
+        engine.hold(turned)
         engine.disturb(rows)
-
-    def _turn(self, poses: Mapping[str, Pose], *, ghost: bool) -> None:
-        """Make ghosts of solid bodies, or solid bodies of ghosts, where they are."""
-        for name in poses:
-            self._engine.records[name].ghost = ghost
-        self._engine.hold(poses)
-        self.version += bool(poses)
+        self.version += bool(turned)
 
     def _free_ghosts(self) -> None:
-        """Ghosts whose place has become free turn solid."""
-        engine = self._engine
-        ghosts = [name for name, record in engine.records.items() if record.ghost]
-        if not ghosts:
-            return
-        stage, poses = engine.stage(), engine.poses()
-        freed: dict[str, Pose] = {}
-        for name in ghosts:
-            row = engine.index.row[name]
-            if not stage.hits(row):
-                stage.standing[row] = True
-                freed[name] = pose_of(poses[row])
-        self._turn(freed, ghost=False)
+        """Ghosts for which there is room now turn solid."""
+        ghosts = [name for name, record in self._engine.records.items() if record.ghost]
+        if ghosts:
+            self._settle(ghosts)
 
     def _neighbours(self, names: Iterable[str]) -> set[str]:
         """These bodies and all that touch them."""

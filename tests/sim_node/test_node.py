@@ -109,7 +109,7 @@ def test_a_hand_is_seen_to_move_before_it_rests(client, poses):
     ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
     wait_for(lambda: poses and poses[-1].resting == (True,))
     moved = ask(client, "move", MoveBodies(placements=(hand("cup1", pose(2, 0)), hand("x", pose(0, 0)))))
-    assert moved.names == ("cup1",)
+    assert [body.name for body in moved.bodies] == ["cup1"]
     assert "x" in moved.failed
     wait_for(lambda: poses[-1].resting == (True,) and poses[-1].poses[0] > 1.9)
     there = [p.resting[0] for p in poses if p.names and p.poses[0] > 1.9]

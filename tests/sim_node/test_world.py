@@ -113,7 +113,7 @@ def test_a_hand_lets_go_and_things_fall():
     moved = world.move(
         [hand("cup1", pose(2, 0, 0.5)), hand("nobody", pose(0, 0)), hand("cup1", pose(1, 0, 0.4))]
     )
-    assert moved.names == ("cup1",)
+    assert [body.name for body in moved.bodies] == ["cup1"]
     assert "no body named nobody" in moved.failed["nobody"]
     assert not body(world, "cup1").resting
     world.step(1.0)
