@@ -14,6 +14,7 @@ from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.rest import RestWatch
 from nodes.sim_node.stage import Stage
+from nodes.sim_node.vision.view import OPTICAL, View
 from schemas.entities import Pose
 
 _STEPS_A_LOOK = 25
@@ -205,6 +206,14 @@ class Engine:
         self._rest = self._rest.carried(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
         self.resting = (self.index.qpos < 0) | rested
+
+    def aim(self, camera: str, view: View) -> None:
+        """Put a camera of the ground where the view is seen from."""
+        there = self._ground.camera(camera)
+        there.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+        there.pos, there.fovy = view.map_from_camera[:3, 3], np.degrees(view.fovy_rad)
+        mujoco.mju_mat2Quat(there.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
+        self._recompile({})
 
     # time goes on
 

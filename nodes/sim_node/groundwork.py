@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import re
 from pathlib import Path
 
@@ -21,6 +22,11 @@ _EXTENT_M = 10.0
 _CLASS_TEXT = "semmap:"
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
+OVERVIEW = "overview"
+"""The camera of a bare floor."""
+
+OVERVIEW_FOVY_RAD = math.radians(58.0)
+
 
 def bare_floor() -> mujoco.MjSpec:
     """An endless floor, and a camera that looks over it."""
@@ -35,7 +41,7 @@ def bare_floor() -> mujoco.MjSpec:
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=[-0.3, 0.5, -1], diffuse=[0.5] * 3
     )
     spec.worldbody.add_camera(
-        name="overview", pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
+        name=OVERVIEW, pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
     )
     return spec
 

@@ -19,7 +19,7 @@ from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.placing import place
-from nodes.sim_node.vision.view import bulk
+from nodes.sim_node.vision.view import bulk, overview
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned, Surfaces
 
@@ -125,6 +125,11 @@ class World:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
         self._put({name: record.ordered for name, record in self._engine.records.items()})
         return len(self)
+
+    def look_over(self) -> None:
+        """Let the bare floor's camera see all bodies from as near as can be."""
+        view = overview(*self.extent(), 4, 3, fovy_rad=groundwork.OVERVIEW_FOVY_RAD)
+        self._engine.aim(groundwork.OVERVIEW, view)
 
     # what is told
 
