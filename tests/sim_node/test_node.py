@@ -132,6 +132,17 @@ def test_paused_time_goes_on_step_by_step_only(client):
     assert ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55
 
 
+def test_a_long_step_is_followed_while_it_lasts(client, poses):
+    ask(client, "pause", Pause(off=False))
+    grid = [(0.2 * (i % 5), 0.2 * (i // 5 % 5), 0.5 + 0.2 * (i // 25)) for i in range(75)]
+    ask(client, "spawn", Spawn(bodies=tuple(order(f"o{i}", "apple", pose(*at)) for i, at in enumerate(grid))))
+    before = ask(client, "snapshot", SceneQuery()).sim_time_s
+    ask(client, "step", StepOnce(seconds=2.0))
+    assert any(before < told.sim_time_s < before + 1.9 for told in poses)
+    assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 2.0)
+    ask(client, "pause", Pause(off=True))
+
+
 def test_reset_says_how_many_went_back(client):
     ask(client, "spawn", Spawn(bodies=(order("cup1", "cup", pose(1, 0)),)))
     ask(client, "move", MoveBodies(placements=(hand("cup1", pose(2, 0)),)))

@@ -32,10 +32,10 @@ def pause(client: Client, off: bool | None) -> None:
 
 
 @click.command()
-@click.option("--seconds", type=float, default=0.1, show_default=True)
+@click.argument("seconds", type=float, default=0.1)
 @talks
 def step(client: Client, seconds: float) -> None:
-    """Let paused time go on for a moment."""
+    """Let paused time go on by SECONDS, a tenth of one unless told otherwise."""
     print(client.step(seconds).text)
 
 
