@@ -108,7 +108,7 @@ class Simulator:
         end_s = self._world.data.time + message.seconds
         while (left_s := end_s - self._world.data.time) > self._world.model.opt.timestep / 2:
             self._world.step(min(left_s, _PUBLISH_S))
-            self._node.tick()  # a minute of many bodies takes minutes, in which a silent node would be replaced
+            self._node.tick()  # it may take minutes, and who is silent so long is replaced
         return self._told(Done(text=f"{message.seconds:g} s later; it is {self._world.data.time:.2f} s"))
 
     def _reset(self, _: Reset) -> Done:
