@@ -55,7 +55,7 @@ class World:
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
-        self._stirred = False
+        self._haunted: set[str] = set()  # where ghosts are to be looked at again once all is at rest
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -90,7 +90,7 @@ class World:
             disturbed = self._neighbours(gone)
             self._engine.remove(gone)
             self._engine.wake(disturbed)
-            self._free_ghosts()
+            self._free_ghosts(disturbed)
             self.version += 1
         return Deleted(names=tuple(gone))
 
@@ -113,13 +113,16 @@ class World:
 
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
-        engine = self._engine
+        engine, rested = self._engine, self._engine.resting
         engine.step(duration_s)
-        if not engine.resting.all():
-            self._stirred = True
-        elif self._stirred and not engine.compiling:
-            self._stirred = False
-            self._free_ghosts()
+        if not engine.index.ghost.any():
+            return
+        woken = np.flatnonzero(rested & ~engine.resting)
+        if len(woken):
+            self._haunted |= self._neighbours(engine.index.names[row] for row in woken)
+        if self._haunted and engine.resting.all() and not engine.compiling:
+            haunted, self._haunted = self._haunted, set()
+            self._free_ghosts(haunted)
 
     def reset(self) -> int:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
@@ -247,7 +250,7 @@ class World:
         engine.put({name: pose for name, pose in poses.items() if not engine.records[name].static})
         self._settle(poses)
         engine.wake({*disturbed, *poses})
-        self._free_ghosts()
+        self._free_ghosts(disturbed)
 
     def _settle(self, names: Iterable[str]) -> None:
         """Find room for these bodies: lift what can be lifted; what has none is a ghost, all else solid."""
@@ -264,11 +267,13 @@ class World:
                 engine.lift(row, placed.rise_m)
         engine.hold(turned)
         engine.disturb(rows)
+        self._haunted.update(turned)
         self.version += bool(turned)
 
-    def _free_ghosts(self) -> None:
-        """Ghosts for which there is room now turn solid."""
-        ghosts = [name for name, record in self._engine.records.items() if record.ghost]
+    def _free_ghosts(self, names: Iterable[str]) -> None:
+        """Of these bodies the ghosts for which there is room now turn solid."""
+        records = self._engine.records
+        ghosts = [name for name in names if name in records and records[name].ghost]
         if ghosts:
             self._settle(ghosts)
 

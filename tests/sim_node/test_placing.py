@@ -111,6 +111,15 @@ def test_a_ghost_turns_solid_when_the_other_was_pushed_away():
     assert not any(body.ghost for body in bodies(world).values())
 
 
+def test_a_ghost_turns_solid_when_what_came_with_it_has_fallen():
+    world = spawned(order("bottle1", "bottle", pose(0, 0, 1)), order("bottle2", "bottle", pose(0.02, 0, 1)))
+    assert sum(body.ghost for body in bodies(world).values()) == 1
+    world.step(10.0)
+    assert not any(body.ghost for body in bodies(world).values())
+    world.step(2.0)
+    assert all(body.pose.position_m[2] < 0.2 for body in bodies(world).values())
+
+
 def test_a_ghost_of_many_parts_turns_solid_too():
     world = spawned(order("fridge1", "", pose(0, 0), size_m=FRIDGE), order("couch1", "couch", pose(0.2, 0)))
     assert sum(b.ghost for b in bodies(world).values()) == 1
