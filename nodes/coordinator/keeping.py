@@ -120,7 +120,9 @@ class Keeping:
         return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
 
     def place_all(self) -> Future[Any]:
-        """Put every body back where the map says it stands."""
+        """Put every body back where the map says it stands; those that could not be made are tried again."""
+        self._failed.clear()
+        self.keep()
         placements = tuple(
             Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
             for e in self._door.entities.values()

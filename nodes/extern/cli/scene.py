@@ -42,7 +42,7 @@ def step(client: Client, seconds: float) -> None:
 @click.command()
 @talks
 def reset(client: Client) -> None:
-    """Put every body back where the map says."""
+    """Put every body back where the map says; what could not be made is tried again."""
     print(client.reset().text)
 
 
