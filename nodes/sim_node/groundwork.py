@@ -12,6 +12,7 @@ import numpy as np
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from nodes.sim_node.build import IMPEDANCE
+from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile
 
 # else MuJoCo writes a file into the working directory
@@ -77,6 +78,9 @@ def prepare(spec: mujoco.MjSpec) -> None:
             body.name = f"body_{number + 1}"
     for number, joint in enumerate(spec.joints):
         joint.name = joint.name or f"joint_{number + 1}"
+    for number, camera in enumerate(spec.cameras):
+        if not re.match(NAME_PATTERN, camera.name):  # it is a part of the keys of its planes
+            camera.name = f"camera_{number + 1}"
 
 
 def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:

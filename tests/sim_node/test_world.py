@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from nodes.sim_node import build
+from nodes.sim_node.vision.view import camera_names
 from nodes.sim_node.world import World
 from schemas.entities import angle_rad, distance_m
 from schemas.errors import BadFile
@@ -294,6 +295,14 @@ def test_entities_live_among_the_worlds_own(own_world):
     assert set(own_world.delete(["mug1", "can1"]).names) == {"mug1", "can1"}
     own_world.step(0.1)
     assert [b.name for b in own_world.scene().bodies] == ["table_2", "body_3", "door"]
+
+
+def test_cameras_have_names_that_can_be_keys(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text(
+        "<mujoco><worldbody><camera name='door'/><camera/><camera name='a/b *'/></worldbody></mujoco>"
+    )
+    assert camera_names(World(path).model) == ("door", "camera_2", "camera_3")
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):
