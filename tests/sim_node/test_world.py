@@ -297,6 +297,19 @@ def test_entities_live_among_the_worlds_own(own_world):
     assert [b.name for b in own_world.scene().bodies] == ["table_2", "body_3", "door"]
 
 
+def test_what_falls_off_a_world_comes_to_rest_below_it(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text("<mujoco><worldbody><geom type='box' size='1 1 0.5' pos='0 0 1'/></worldbody></mujoco>")
+    world = World(path)
+    world.spawn([order("on", "box", pose(0, 0, 1.5)), order("off", "box", pose(3, 0, 1.5))])
+    world.step(3.0)
+    on, off = world.scene().bodies
+    assert on.resting
+    assert off.resting
+    assert on.pose.position_m == pytest.approx((0, 0, 1.5), abs=0.002)
+    assert off.pose.position_m == pytest.approx((3, 0, 0.5), abs=0.002)
+
+
 def test_cameras_have_names_that_can_be_keys(tmp_path):
     path = tmp_path / "world.xml"
     path.write_text(
