@@ -201,7 +201,7 @@ def tour(t: Tour) -> None:
 
     t.tell("Stop time, let it go on for a moment, let it run; put every body back; take a picture")
     t.do("pause", "--on")
-    t.do("step", "--seconds", "0.5")
+    t.do("step", "0.5")
     t.do("pause", "--off")
     t.do("reset")
     t.do("picture", str(PICTURE))

@@ -90,9 +90,9 @@ class MoveBodies(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bodies that were moved, and a reason for each that was not."""
+    """The bodies that were moved, where there was room for them, and a reason for each that was not."""
 
-    names: tuple[str, ...]
+    bodies: tuple[Body, ...]
     failed: dict[str, str]
 
 

@@ -38,6 +38,7 @@ T = TypeVar("T")
 Ask = Callable[[str, Any, Any], Future[Any]]
 BATCH = 500
 _USUAL_AREA_M2 = 0.1
+GHOSTLY = "overlaps something, so it does not collide until it is free"
 Step = tuple[str, Any, Any, Callable[[Any], None]]
 """Verb, message, type of the reply, what to do with it."""
 
@@ -119,7 +120,9 @@ class Keeping:
         return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
 
     def place_all(self) -> Future[Any]:
-        """Put every body back where the map says it stands."""
+        """Put every body back where the map says it stands; those that could not be made are tried again."""
+        self._failed.clear()
+        self.keep()
         placements = tuple(
             Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
             for e in self._door.entities.values()
@@ -137,7 +140,7 @@ class Keeping:
         if not self.scene.known:
             return BodyState(status="unknown", detail="no simulator runs", model=entity.model)
         if body is not None:
-            detail = "overlaps something, so it does not collide until it is free" if body.ghost else ""
+            detail = GHOSTLY if body.ghost else ""
             return BodyState(status="ghost" if body.ghost else "present", detail=detail, model=body.model)
         if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
             return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)

@@ -8,13 +8,15 @@ from typing import Any
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
-from nodes.coordinator.keeping import Keeping
+from nodes.coordinator.keeping import GHOSTLY, Keeping
 from nodes.futures import then
 from schemas import commands as c
 from schemas import errors, wording
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.replies import Done, Moved
-from schemas.scenes import BodiesMoved, MoveBodies, Picture, PictureQuery, Placement
+from schemas.scenes import BodiesMoved, Body, MoveBodies, Picture, PictureQuery, Placement
+
+_LIFTED_M = 0.02
 
 
 class Running:
@@ -43,8 +45,7 @@ class Running:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
             self._door.hands.let_go(command)
-            x, y, z = command.at
-            return Moved(name=command.name, text=f"put {command.name} at ({x:g}, {y:g}, {z:g}) and let go")
+            return Moved(name=command.name, text=_let_go(command, reply.bodies[0]))
 
         return then(self._ask("move", order, BodiesMoved), moved)
 
@@ -62,7 +63,7 @@ class Running:
             return self._ask_scene("reset", command, Done)
         return then(
             self._keeping.place_all(),
-            lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.names))}"),
+            lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.bodies))}"),
         )
 
     def picture(self, command: c.TakePicture) -> Future[Any]:
@@ -74,3 +75,13 @@ class Running:
         if not self._keeping.scene.known:
             raise errors.NoAnswer("no simulator runs")
         return self._ask(verb, message, kind)
+
+
+def _let_go(command: c.Move, body: Body) -> str:
+    """Where the hand let go: where it was told to, or above, where there is room."""
+    (x, y, z), room_z_m = command.at, body.pose.position_m[2]
+    if body.ghost:
+        return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {GHOSTLY}"
+    if room_z_m - z > _LIFTED_M:
+        return f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and let go"
+    return f"put {body.name} at ({x:g}, {y:g}, {z:g}) and let go"

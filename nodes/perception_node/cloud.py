@@ -38,6 +38,13 @@ class Cloud:
         return len(self.points_camera) > 1
 
     @property
+    def near_m(self) -> float:
+        """Depth beyond which nearly all was seen, a twentieth being nearer [m]; infinite if nothing was."""
+        depth_m = self.points_camera[..., 2]
+        depth_m = depth_m[depth_m > 0]
+        return float(np.quantile(depth_m, 0.05)) if len(depth_m) else np.inf
+
+    @property
     def measured(self) -> int:
         """How many points were seen in front of the camera."""
         return int(np.count_nonzero(self.points_camera[..., 2] > 0))

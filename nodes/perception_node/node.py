@@ -44,6 +44,8 @@ _CLOUD_S = 1.0
 """A cloud is published no more often."""
 _REFUSED_S = 10.0
 """What was refused is not said again before that."""
+_FAR_M = 3.5
+"""Small things that are farther from every camera are hardly found."""
 
 
 class Perception:
@@ -124,9 +126,7 @@ class Perception:
             self._cloud_due = time.monotonic() + _CLOUD_S
             cloud = segmented_cloud(clouds, found)
             self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
-        cameras = wording.counted(len(clouds), "camera")
-        things = wording.counted(len(seen.observations), "thing")
-        self._node.describe(f"{cameras}, {things} seen, {1000 * took_s:.0f} ms a look")
+        self._node.describe(summary(clouds, len(seen.observations), took_s))
 
     # The map
 
@@ -215,6 +215,14 @@ class Perception:
 
     def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
         return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+
+
+def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:
+    """One look in words; where the cameras are too far from everything, that too."""
+    cameras, seen = wording.counted(len(clouds), "camera"), wording.counted(things, "thing")
+    near_m = min(cloud.near_m for cloud in clouds)
+    far = f"; {near_m:.1f} m from all there is, where within 2 m is best" if near_m > _FAR_M else ""
+    return f"{cameras}, {seen} seen, {1000 * took_s:.0f} ms a look{far}"
 
 
 def run(config: PerceptionConfig) -> None:

@@ -65,7 +65,7 @@ class BodyIndex:
     """Where each body is in the arrays of one compiled model; N bodies in the order of `names` and `records`.
 
     `qpos` and `dof` (N,) are the addresses of the free joint, -1 for a static body; `tree` (N,) is the
-    kinematic tree, -1 if static.
+    kinematic tree, -1 if static. `ghost` (N,) tells the ghosts.
     """
 
     names: tuple[str, ...]
@@ -75,6 +75,7 @@ class BodyIndex:
     qpos: Ints
     dof: Ints
     tree: Ints
+    ghost: NDArray[np.bool_]
     origin_m: Floats = field(repr=False)
 
     @staticmethod
@@ -92,6 +93,7 @@ class BodyIndex:
             qpos=_at(model.jnt_qposadr, joint),
             dof=_at(model.jnt_dofadr, joint),
             tree=np.where(static, -1, model.body_treeid[body]) if names else joint,
+            ghost=np.array([records[name].ghost for name in names], dtype=bool),
             origin_m=np.array([records[name].origin_m for name in names], dtype=float).reshape(-1, 3),
         )
 

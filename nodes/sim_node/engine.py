@@ -14,6 +14,7 @@ from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.rest import RestWatch
 from nodes.sim_node.stage import Stage
+from nodes.sim_node.vision.view import OPTICAL, View
 from schemas.entities import Pose
 
 _STEPS_A_LOOK = 25
@@ -23,7 +24,7 @@ class Engine:
     """Steps the bodies; compiles anew when one comes, or changes between held and free, and finds no berth.
 
     `records` has every body, in the order of `index`; `resting` (N,) says which rest. `revision` grows with
-    every change of the model.
+    every change of the model; while the next is made (`compiling`) bodies are asked about and stepped only.
     """
 
     def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
@@ -36,6 +37,7 @@ class Engine:
         self._vacant: list[Berth] = []
         self.records = groundwork.bodies_of(ground)
         self.revision = 0
+        self.compiling = False
         self.model: mujoco.MjModel
         self.data: mujoco.MjData
         self.index: BodyIndex
@@ -155,7 +157,11 @@ class Engine:
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
         """A new model of all bodies, each at its pose, and of some vacant berths."""
-        self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+        self.compiling = True
+        try:
+            self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
+        finally:
+            self.compiling = False
         self.data = mujoco.MjData(self.model)
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]
@@ -200,6 +206,14 @@ class Engine:
         self._rest = self._rest.carried(self.poses(), self.data.time, before)
         rested = np.append(self.resting, False)[before]
         self.resting = (self.index.qpos < 0) | rested
+
+    def aim(self, camera: str, view: View) -> None:
+        """Put a camera of the ground where the view is seen from."""
+        there = self._ground.camera(camera)
+        there.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+        there.pos, there.fovy = view.map_from_camera[:3, 3], np.degrees(view.fovy_rad)
+        mujoco.mju_mat2Quat(there.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
+        self._recompile({})
 
     # time goes on
 

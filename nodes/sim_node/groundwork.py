@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import logging
+import math
 import re
 from pathlib import Path
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
-from nodes.sim_node.build import IMPEDANCE
+from nodes.sim_node.build import FELT_GROUP, IMPEDANCE
+from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile
 
 # else MuJoCo writes a file into the working directory
@@ -20,6 +23,11 @@ _TIMESTEP_S = 0.002
 _EXTENT_M = 10.0
 _CLASS_TEXT = "semmap:"
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
+
+OVERVIEW = "overview"
+"""The camera of a bare floor."""
+
+OVERVIEW_FOVY_RAD = math.radians(58.0)
 
 
 def bare_floor() -> mujoco.MjSpec:
@@ -35,7 +43,7 @@ def bare_floor() -> mujoco.MjSpec:
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=[-0.3, 0.5, -1], diffuse=[0.5] * 3
     )
     spec.worldbody.add_camera(
-        name="overview", pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
+        name=OVERVIEW, pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
     )
     return spec
 
@@ -71,13 +79,38 @@ def prepare(spec: mujoco.MjSpec) -> None:
             body.name = f"body_{number + 1}"
     for number, joint in enumerate(spec.joints):
         joint.name = joint.name or f"joint_{number + 1}"
+    for number, camera in enumerate(spec.cameras):
+        if not re.match(NAME_PATTERN, camera.name):  # it is a part of the keys of its planes
+            camera.name = f"camera_{number + 1}"
+    _add_net(spec)
+
+
+def _add_net(spec: mujoco.MjSpec) -> None:
+    """An endless floor, unseen, below a world that has none: what falls off it comes to rest somewhere."""
+    model, data = _compiled(spec)
+    static = np.flatnonzero(model.body_weldid[model.geom_bodyid] == 0)
+    if not (model.geom_type[static] == int(mujoco.mjtGeom.mjGEOM_PLANE)).any():
+        low, _ = _extents(model, data, static, 0)
+        spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_PLANE,
+            size=[0, 0, 0.1],
+            pos=[0, 0, low[2]],
+            group=FELT_GROUP,
+            contype=1,
+            conaffinity=1,
+        )
+
+
+def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    model = spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return model, data
 
 
 def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:
     """The world's own bodies: every named one on the top level, and every one that can move."""
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    model, data = _compiled(spec)
     classes = {
         text.name.removeprefix(_CLASS_TEXT): text.data
         for text in spec.texts
@@ -101,7 +134,8 @@ def _record(
     model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, class_: str | None
 ) -> BodyRecord:
     number = model.body(body.name).id
-    low, high = _extents(model, data, number)
+    geoms = np.flatnonzero(model.body_rootid[model.geom_bodyid] == number)
+    low, high = _extents(model, data, geoms, number)
     middle = (low + high) / 2.0
     origin = (float(middle[0]), float(middle[1]), float(low[2]))
     bottom = data.xpos[number] + data.xmat[number].reshape(3, 3) @ np.asarray(origin)
@@ -119,9 +153,10 @@ def _record(
     )
 
 
-def _extents(model: mujoco.MjModel, data: mujoco.MjData, body: int) -> tuple[Floats, Floats]:
-    """Lowest and highest corner (3,) of all geoms of the body and its parts, in the body's frame."""
-    geoms = np.flatnonzero(model.body_rootid[model.geom_bodyid] == body)
+def _extents(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.intp], body: int
+) -> tuple[Floats, Floats]:
+    """Lowest and highest corner (3,) of the box around `geoms`, in the frame of a body."""
     if not len(geoms):
         return np.full(3, -0.005), np.full(3, 0.005)
     world_from_body = data.xmat[body].reshape(3, 3)

@@ -105,7 +105,10 @@ class Simulator:
         return Done(text="time stands still" if self._paused else "time runs again")
 
     def _step(self, message: StepOnce) -> Done:
-        self._world.step(message.seconds)
+        end_s = self._world.data.time + message.seconds
+        while (left_s := end_s - self._world.data.time) > self._world.model.opt.timestep / 2:
+            self._world.step(min(left_s, _PUBLISH_S))
+            self._node.tick()  # it may take minutes, and who is silent so long is replaced
         return self._told(Done(text=f"{message.seconds:g} s later; it is {self._world.data.time:.2f} s"))
 
     def _reset(self, _: Reset) -> Done:

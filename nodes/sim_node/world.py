@@ -19,7 +19,7 @@ from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.models.parts import Vec3
 from nodes.sim_node.placing import place
-from nodes.sim_node.vision.view import bulk
+from nodes.sim_node.vision.view import bulk, overview
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned, Surfaces
 
@@ -55,6 +55,7 @@ class World:
         self.run = uuid.uuid4().hex[:12]
         self.version = 0
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
+        self._haunted: set[str] = set()  # where ghosts are to be looked at again once all is at rest
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -89,7 +90,7 @@ class World:
             disturbed = self._neighbours(gone)
             self._engine.remove(gone)
             self._engine.wake(disturbed)
-            self._free_ghosts()
+            self._free_ghosts(disturbed)
             self.version += 1
         return Deleted(names=tuple(gone))
 
@@ -108,16 +109,30 @@ class World:
             if placement.commit is not None:
                 record.commit, record.ordered = placement.commit, placement.pose
         self._put(moved)
-        return BodiesMoved(names=tuple(moved), failed=failed)
+        return BodiesMoved(bodies=self._bodies(moved), failed=failed)
 
     def step(self, duration_s: float) -> None:
         """Let `duration_s` of simulated time pass; it costs nothing while everything sleeps."""
-        self._engine.step(duration_s)
+        engine, rested = self._engine, self._engine.resting
+        engine.step(duration_s)
+        if not engine.index.ghost.any():
+            return
+        woken = np.flatnonzero(rested & ~engine.resting)
+        if len(woken):
+            self._haunted |= self._neighbours(engine.index.names[row] for row in woken)
+        if self._haunted and engine.resting.all() and not engine.compiling:
+            haunted, self._haunted = self._haunted, set()
+            self._free_ghosts(haunted)
 
     def reset(self) -> int:
         """Back to the map: each body goes where it was last ordered to be; answers how many there are."""
         self._put({name: record.ordered for name, record in self._engine.records.items()})
         return len(self)
+
+    def look_over(self) -> None:
+        """Let the bare floor's camera see all bodies from as near as can be."""
+        view = overview(*self.extent(), 4, 3, fovy_rad=groundwork.OVERVIEW_FOVY_RAD)
+        self._engine.aim(groundwork.OVERVIEW, view)
 
     # what is told
 
@@ -235,43 +250,32 @@ class World:
         engine.put({name: pose for name, pose in poses.items() if not engine.records[name].static})
         self._settle(poses)
         engine.wake({*disturbed, *poses})
-        self._free_ghosts()
+        self._free_ghosts(disturbed)
 
     def _settle(self, names: Iterable[str]) -> None:
-        """Find room for bodies that were just put down: lift what can be lifted, make ghosts of the rest."""
+        """Find room for these bodies: lift what can be lifted; what has none is a ghost, all else solid."""
         engine = self._engine
         rows = [engine.index.row[name] for name in names]
         stage, poses = engine.stage(), engine.poses()
-        ghosts: dict[str, Pose] = {}
+        turned: dict[str, Pose] = {}
         for row, placed in place(stage, rows).items():
-            if placed.ghost:
-                ghosts[engine.index.names[row]] = pose_of(poses[row])
+            record = engine.index.records[row]
+            if placed.ghost != record.ghost:
+                record.ghost = placed.ghost
+                turned[record.name] = pose_of(poses[row] + (0.0, 0.0, placed.rise_m, 0.0, 0.0, 0.0, 0.0))
             elif placed.rise_m:
                 engine.lift(row, placed.rise_m)
-        self._turn(ghosts, ghost=True)
+        engine.hold(turned)
         engine.disturb(rows)
+        self._haunted.update(turned)
+        self.version += bool(turned)
 
-    def _turn(self, poses: Mapping[str, Pose], *, ghost: bool) -> None:
-        """Make ghosts of solid bodies, or solid bodies of ghosts, where they are."""
-        for name in poses:
-            self._engine.records[name].ghost = ghost
-        self._engine.hold(poses)
-        self.version += bool(poses)
-
-    def _free_ghosts(self) -> None:
-        """Ghosts whose place has become free turn solid."""
-        engine = self._engine
-        ghosts = [name for name, record in engine.records.items() if record.ghost]
-        if not ghosts:
-            return
-        stage, poses = engine.stage(), engine.poses()
-        freed: dict[str, Pose] = {}
-        for name in ghosts:
-            row = engine.index.row[name]
-            if not stage.hits(row):
-                stage.standing[row] = True
-                freed[name] = pose_of(poses[row])
-        self._turn(freed, ghost=False)
+    def _free_ghosts(self, names: Iterable[str]) -> None:
+        """Of these bodies the ghosts for which there is room now turn solid."""
+        records = self._engine.records
+        ghosts = [name for name in names if name in records and records[name].ghost]
+        if ghosts:
+            self._settle(ghosts)
 
     def _neighbours(self, names: Iterable[str]) -> set[str]:
         """These bodies and all that touch them."""

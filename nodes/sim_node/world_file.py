@@ -26,6 +26,7 @@ def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], N
     spawned = world.spawn(_orders(scene_files.read(content, path.name)))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be made: {reason}")
+    world.look_over()
     return world
 
 

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+from concurrent.futures import Future
+
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.keeping import BATCH, Keeping, batches
 from schemas import commands as c
 from schemas.entities import Pose
-from schemas.scenes import BodyOrder
+from schemas.scenes import BodiesMoved, BodyOrder, Scene, Spawned
 
 
 def order(number: int, size_m=None) -> BodyOrder:
@@ -43,6 +45,32 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
     assert asked == []
     assert keeping.in_agreement() is None
     assert keeping.body_state(door.entity("chair1")).status == "none"
+
+
+def test_a_reset_tries_again_what_could_not_be_made(door):
+    """A model file may have been mended meanwhile."""
+    spawns = []
+
+    def ask(verb, message, kind):
+        answer = {
+            "spawn": Spawned(bodies=(), failed={"chair1": "its model file is broken"}),
+            "snapshot": Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=()),
+            "move": BodiesMoved(bodies=(), failed={}),
+        }[verb]
+        spawns.extend([message] if verb == "spawn" else [])
+        future = Future()
+        future.set_result(answer)
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.scene.known = True
+    keeping.keep()
+    keeping.keep()
+    assert keeping.body_state(door.entity("chair1")).status == "failed"
+    assert len(spawns) == 1
+    keeping.place_all()
+    assert len(spawns) == 2
 
 
 def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):

@@ -13,8 +13,9 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.loop import Node
+from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.node import Perception
+from nodes.perception_node.node import Perception, summary
 from nodes.perception_node.pipeline import Look
 from schemas import codec, errors, keys
 from schemas.bridge import SnapshotQuery
@@ -242,3 +243,16 @@ def test_a_bad_frame_is_told_once_and_the_node_goes_on(world, caplog, frame, sai
 def test_what_is_no_frame_is_told(world):
     world.session.put(keys.camera_key("left", "depth"), b"x", attachment=b"y")
     until(lambda: "semmap/sim/camera/left/depth: malformed" in world.health.last_error, "it says so")
+
+
+@pytest.mark.parametrize(
+    ("depth_m", "said"),
+    [
+        (1.5, "1 camera, 2 things seen, 80 ms a look"),
+        (8.0, "; 8.0 m from all there is, where within 2 m is best"),
+    ],
+)
+def test_cameras_that_are_far_from_everything_are_told(depth_m, said):
+    points = np.full((4, 5, 3), depth_m, dtype=np.float32)
+    points[0] = np.nan
+    assert summary([Cloud(points)], 2, 0.08).endswith(said)

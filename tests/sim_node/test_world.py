@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from nodes.sim_node import build
+from nodes.sim_node.vision.view import camera_names
 from nodes.sim_node.world import World
 from schemas.entities import angle_rad, distance_m
 from schemas.errors import BadFile
@@ -113,7 +114,7 @@ def test_a_hand_lets_go_and_things_fall():
     moved = world.move(
         [hand("cup1", pose(2, 0, 0.5)), hand("nobody", pose(0, 0)), hand("cup1", pose(1, 0, 0.4))]
     )
-    assert moved.names == ("cup1",)
+    assert [body.name for body in moved.bodies] == ["cup1"]
     assert "no body named nobody" in moved.failed["nobody"]
     assert not body(world, "cup1").resting
     world.step(1.0)
@@ -294,6 +295,27 @@ def test_entities_live_among_the_worlds_own(own_world):
     assert set(own_world.delete(["mug1", "can1"]).names) == {"mug1", "can1"}
     own_world.step(0.1)
     assert [b.name for b in own_world.scene().bodies] == ["table_2", "body_3", "door"]
+
+
+def test_what_falls_off_a_world_comes_to_rest_below_it(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text("<mujoco><worldbody><geom type='box' size='1 1 0.5' pos='0 0 1'/></worldbody></mujoco>")
+    world = World(path)
+    world.spawn([order("on", "box", pose(0, 0, 1.5)), order("off", "box", pose(3, 0, 1.5))])
+    world.step(3.0)
+    on, off = world.scene().bodies
+    assert on.resting
+    assert off.resting
+    assert on.pose.position_m == pytest.approx((0, 0, 1.5), abs=0.002)
+    assert off.pose.position_m == pytest.approx((3, 0, 0.5), abs=0.002)
+
+
+def test_cameras_have_names_that_can_be_keys(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text(
+        "<mujoco><worldbody><camera name='door'/><camera/><camera name='a/b *'/></worldbody></mujoco>"
+    )
+    assert camera_names(World(path).model) == ("door", "camera_2", "camera_3")
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):

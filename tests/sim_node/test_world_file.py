@@ -1,8 +1,10 @@
 import json
 
+import numpy as np
 import pytest
 
 from nodes.sim_node.models.sources import Models
+from nodes.sim_node.vision.view import camera_view
 from nodes.sim_node.world_file import open_world
 from schemas.errors import BadFile
 
@@ -19,6 +21,19 @@ def test_a_scene_in_json_is_a_world_with_furniture_of_its_own(tmp_path):
     assert not any(body.entity for body in bodies.values())
     assert bodies["chair9"].model == "chair"
     assert bodies["chair9"].pose.position_m[:2] == pytest.approx((1.0, 2.0))
+
+
+def test_its_camera_sees_all_of_it_from_near(tmp_path):
+    path = tmp_path / "world.json"
+    path.write_text(json.dumps(SCENE))
+    world = open_world(path, Models())
+    view = camera_view(world.model, world.data, "overview", 640, 480)
+    for body in world.scene().bodies:
+        seen = np.linalg.inv(view.map_from_camera) @ (*body.pose.position_m, 1.0)
+        column, row, _ = view.intrinsics @ seen[:3] / seen[2]
+        assert 0 < column < 640
+        assert 0 < row < 480
+        assert seen[2] < 5.0
 
 
 @pytest.mark.parametrize(

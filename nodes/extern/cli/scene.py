@@ -32,17 +32,17 @@ def pause(client: Client, off: bool | None) -> None:
 
 
 @click.command()
-@click.option("--seconds", type=float, default=0.1, show_default=True)
+@click.argument("seconds", type=float, default=0.1)
 @talks
 def step(client: Client, seconds: float) -> None:
-    """Let paused time go on for a moment."""
+    """Let paused time go on by SECONDS, a tenth of one unless told otherwise."""
     print(client.step(seconds).text)
 
 
 @click.command()
 @talks
 def reset(client: Client) -> None:
-    """Put every body back where the map says."""
+    """Put every body back where the map says; what could not be made is tried again."""
     print(client.reset().text)
 
 

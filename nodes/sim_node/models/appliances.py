@@ -202,18 +202,22 @@ def boiler(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 
 def hood(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """An extractor hood: a spreading canopy under a chimney at the wall."""
-    canopy = 0.4 * z
-    steps = 7
+    """An extractor hood: a rim, a canopy that narrows, and a chimney at the wall."""
+    rim, canopy, steps = 0.1 * z, 0.4 * z, 14
+    thick = (canopy - rim) / steps
     layers = [
         box(
-            (x * (1 - 0.65 * i / steps), y * (1 - 0.62 * i / steps), canopy / steps),
-            (-0.325 * x * i / steps, 0, canopy * (i + 0.5) / steps),
-            shade(colour, 0.85 + 0.03 * i),
+            (x * (1 - 0.65 * i / steps), y * (1 - 0.62 * i / steps), thick),
+            (-0.325 * x * i / steps, 0, rim + thick * (i - 0.5)),
+            colour,
         )
-        for i in range(steps)
+        for i in range(1, steps + 1)
     ]
-    return [*layers, box((0.33 * x, 0.36 * y, z - canopy), (-0.335 * x, 0, (z + canopy) / 2), colour)]
+    return [
+        slab(x, y, 0, rim, shade(colour, 0.8)),
+        *layers,
+        box((0.33 * x, 0.36 * y, z - canopy), (-0.335 * x, 0, (z + canopy) / 2), colour),
+    ]
 
 
 def iron(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -241,7 +245,7 @@ def vacuum_cleaner(x: float, y: float, z: float, colour: Colour) -> Parts:
         *seen(rod(0.4 * drum, 0.06, (-0.3 * x, 0.45 * y * s, 0.4 * drum), DARK, ALONG_Y) for s in (-1, 1)),
         *seen(ball((0.5 * drum,) * 3, (0.08 * x, 0, 0.6 * drum), DARK)),
         *seen(rod(0.016, 0.98 * z, (0.32 * x, 0, 0.5 * z), STEEL, about("y", -0.12))),
-        *seen(pill(0.02, 0.3 * x, (0.2 * x, 0, 0.75 * drum), BLACK, about("y", 1.2))),
+        *seen(pill(0.02, 0.72 * z, (0.14 * x, 0, 0.63 * z), BLACK, about("y", 0.32))),  # the hose
         *seen(box((0.12, 0.9 * y, 0.04), (0.4 * x, 0, 0.02), DARK)),
         *solid(0.95 * x, 0.9 * y, 0, 0.1 * z),
     ]

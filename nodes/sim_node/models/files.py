@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 from nodes.sim_node import build
 from nodes.sim_node.bodies import Floats
 from nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
-from nodes.sim_node.models.parts import Colour, Mesh, Part, Role, Shape, Vec3, bounds
+from nodes.sim_node.models.parts import Colour, Mesh, Part, Role, Shape, Vec3, bounds, rotation_matrix
 
 MESHES = (".obj", ".stl", ".glb")
 SUFFIXES = (".xml", *MESHES)
@@ -47,7 +48,7 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
         if size_m is not None:
             parts = _stretched(parts, size_m)
         extents = _extents(parts)
-        check_size(extents)
+        check_size(extents, "; is the file in metres?")
         parts = _keyed(parts, f"{path}:{version}:{size_m}")
         model = assemble(str(path), parts, density * float(np.prod(extents)))
         _try_out(model)
@@ -152,35 +153,27 @@ def _mesh_of(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Any]:
 
 
 def _stretched(parts: list[Part], size_m: Vec3) -> list[Part]:
-    """Meshes are stretched along each axis, primitives keep their proportions."""
+    """Meshes are stretched along the model's axes, primitives along their own, which are mostly the same."""
     low, high = bounds(parts)
     factors = np.asarray(size_m) / np.maximum(high - low, 1e-6)
-    even = float(np.cbrt(np.prod(factors)))
     scaled = []
     for part in parts:
         if part.mesh is not None:
             vertices = (part.mesh.vertices + part.centre) * factors
             scaled.append(_mesh_part(vertices, part.mesh.faces, part.colour, part.role))
         else:
-            half, centre = _vec3(np.asarray(part.half) * even), _vec3(np.asarray(part.centre) * even)
-            scaled.append(Part(part.shape, half, centre, part.colour, part.turn, part.role))
+            x, y, z = np.linalg.norm(factors[:, None] * rotation_matrix(part.turn), axis=0)
+            if part.shape in (Shape.CYLINDER, Shape.CAPSULE):
+                x = y = np.sqrt(x * y)  # what is round stays so
+            half = _vec3(np.asarray(part.half) * (x, y, z))
+            scaled.append(replace(part, half=half, centre=_vec3(np.asarray(part.centre) * factors)))
     return scaled
 
 
 def _keyed(parts: list[Part], key: str) -> list[Part]:
     """Meshes get names that are theirs alone."""
     return [
-        part
-        if part.mesh is None
-        else Part(
-            part.shape,
-            part.half,
-            part.centre,
-            part.colour,
-            part.turn,
-            part.role,
-            Mesh(f"{key}:{number}", part.mesh.vertices, part.mesh.faces),
-        )
+        part if part.mesh is None else replace(part, mesh=replace(part.mesh, key=f"{key}:{number}"))
         for number, part in enumerate(parts)
     ]
 

@@ -57,12 +57,12 @@ def build(name: str, size_m: Vec3 | None) -> Model:
     return assemble(name, parts, kind.mass_kg * x * y * z / standard)
 
 
-def check_size(size_m: Sequence[float] | None) -> None:
-    """Raise ModelError for a size that no body can have."""
+def check_size(size_m: Sequence[float] | None, hint: str = "") -> None:
+    """Raise ModelError for a size that no body can have; its text ends with `hint`."""
     low, high = SIZES_M
     for extent in size_m or ():
         if not low <= extent <= high:
-            raise ModelError(f"a body measures {low:g} to {high:g} m along each axis, not {extent:g} m")
+            raise ModelError(f"a body measures {low:g} to {high:g} m along each axis, not {extent:g} m{hint}")
 
 
 def _is_turned(kind: ModelKind, size_m: Vec3) -> bool:

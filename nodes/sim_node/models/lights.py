@@ -23,7 +23,11 @@ def hanging_lamp(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A pendant: a bowl of light on a wire, to hang from a ceiling."""
     radius = min(x, y) / 2
     return [
-        *turned([(radius, 0.0), (0.25 * radius, 0.45 * z)], colour, steps=8),
+        *turned(
+            [(radius, 0.0), (0.94 * radius, 0.17 * z), (0.7 * radius, 0.33 * z), (0.2 * radius, 0.45 * z)],
+            colour,
+            steps=5,
+        ),
         *felt(column(0.8 * radius, 0, 0.45 * z, colour)),
         *seen(ball((0.5 * radius, 0.5 * radius, 0.2 * z), (0, 0, 0.1 * z), (1.0, 0.95, 0.7))),
         *seen(column(0.012, 0.45 * z, z, DARK)),

@@ -14,7 +14,7 @@ import numpy as np
 from nodes.sim_node.bodies import Floats
 from schemas.errors import BadRequest
 
-_OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
+OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 
 
 _FAR, _FAR_M = 4.0, 3.0
@@ -43,7 +43,7 @@ def camera_view(model: mujoco.MjModel, data: mujoco.MjData, camera: str, width: 
         names = ", ".join(camera_names(model)) or "none"
         raise BadRequest(f"the world has no camera '{camera}'; there are: {names}")
     pose = np.eye(4)
-    pose[:3, :3] = data.cam_xmat[number].reshape(3, 3) @ _OPTICAL
+    pose[:3, :3] = data.cam_xmat[number].reshape(3, 3) @ OPTICAL
     pose[:3, 3] = data.cam_xpos[number]
     return View(width, height, pinhole(width, height, float(np.radians(model.cam_fovy[number]))), pose)
 
@@ -79,23 +79,27 @@ FROM_THE_FRONT = (0.68, -0.44, 0.58)
 
 
 def overview(
-    low_m: Floats, high_m: Floats, width: int, height: int, back: tuple[float, float, float] = FROM_ALOFT
+    low_m: Floats,
+    high_m: Floats,
+    width: int,
+    height: int,
+    back: tuple[float, float, float] = FROM_ALOFT,
+    fovy_rad: float = float(np.radians(36.0)),
 ) -> View:
     """A view in which the box between two corners (3,) just fits, from the direction `back` of it.
 
     The front of things is +x.
     """
-    fovy = float(np.radians(36.0))
     middle = (low_m + high_m) / 2.0
     outward = np.asarray(back) / np.linalg.norm(back)
-    aimed = look_at(middle + outward, middle, width, height, fovy)
+    aimed = look_at(middle + outward, middle, width, height, fovy_rad)
     corners = np.stack(np.meshgrid(*zip(low_m, high_m, strict=True)), axis=-1).reshape(-1, 3) - middle
     x, y, z = (corners @ aimed.map_from_camera[:3, :3]).T
-    tangent = np.tan(fovy / 2.0)
+    tangent = np.tan(fovy_rad / 2.0)
     distance = max(
         float(np.max(np.abs(y) / tangent - z)), float(np.max(np.abs(x) / tangent * height / width - z))
     )
-    return look_at(middle + 1.04 * distance * outward, middle, width, height, fovy)
+    return look_at(middle + 1.04 * distance * outward, middle, width, height, fovy_rad)
 
 
 def pinhole(width: int, height: int, fovy_rad: float) -> Floats:

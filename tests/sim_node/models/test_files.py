@@ -86,6 +86,23 @@ def test_what_is_round_in_mjcf_stays_so_and_weighs_what_it_says(folder):
     assert twice.inertial.mass_kg == pytest.approx(8 * 3.5)
 
 
+def test_primitives_of_mjcf_are_stretched_to_a_size(folder):
+    (folder / "table.xml").write_text(
+        """<mujoco><worldbody><body>
+          <geom type="box" size="0.5 0.5 0.02" pos="0 0 0.98"/>
+          <geom type="cylinder" size="0.05 0.48" pos="0 0 0.5"/>
+          <geom type="box" size="0.1 0.4 0.01" euler="0 0 90" pos="0 0 0.01"/>
+        </body></worldbody></mujoco>"""
+    )
+    table = Models(folder)("table", (2.0, 1.0, 0.5))
+    top, leg, foot = table.parts
+    assert table.size_m == pytest.approx((2.0, 1.0, 0.5))
+    assert top.half == pytest.approx((1.0, 0.5, 0.01))
+    assert top.centre == pytest.approx((0.0, 0.0, 0.49))
+    assert leg.half == pytest.approx((0.05 * 2**0.5, 0.05 * 2**0.5, 0.24))
+    assert foot.half == pytest.approx((0.1, 0.8, 0.005))
+
+
 @pytest.mark.parametrize(
     ("name", "why"),
     [
@@ -94,7 +111,7 @@ def test_what_is_round_in_mjcf_stays_so_and_weighs_what_it_says(folder):
         ("broken.obj", "cannot be used"),
         ("empty.xml", "nothing that has a shape and collides"),
         ("none.glb", "No such file"),
-        ("huge.stl", "0.001 to 100 m along each axis, not 4000 m"),
+        ("huge.stl", "0.001 to 100 m along each axis, not 4000 m; is the file in metres"),
         ("flat.obj", "0.001 to 100 m along each axis, not 0 m"),
         ("light.xml", "weighs nothing"),
     ],
