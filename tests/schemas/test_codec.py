@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas import codec, errors
-from schemas.commands import Add, Check, List, Load, Remove, StepOnce
+from schemas.commands import Add, Check, List, Load, Remove, StepOnce, Undo
 from schemas.commits import Departed
 from schemas.entities import Pose
 from tests.schemas import messages
@@ -191,3 +191,16 @@ def test_anything_can_be_shown_as_json():
     assert codec.as_json(codec.encode(Check())) == '{"verb":"check"}'
     assert codec.as_json(b'{ "a": 1 }') == '{"a":1}'
     assert codec.as_json(b"\xff\xd8\xff") == "3 bytes"
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "text"),
+    [
+        (List, {"as_of": ""}, "as_of must be a whole number from 0 or a number from 0 or a text"),
+        (Undo, {"commit": "0"}, "commit must be a whole number from 1 to 9007199254740992"),
+    ],
+)
+def test_what_may_be_several_things_and_large_bounds_are_spelled_out(kind, fields, text):
+    with pytest.raises(errors.BadRequest) as caught:
+        codec.from_text(fields, kind)
+    assert caught.value.text == f"malformed message: {text}"
