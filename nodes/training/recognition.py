@@ -26,7 +26,7 @@ from nodes.training.scenes import STRANGE
 from nodes.training.segmentation.fit import trees_of
 from nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.45
+SURE = 0.35
 _HELD_OUT = 5
 _SORTS = ("geometry", "shape", "colour")
 _HIDDEN = dict(zip(VOTERS, ((96,), (96,), (64,), (128,), (128,)), strict=True))

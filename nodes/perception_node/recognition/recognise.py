@@ -15,7 +15,7 @@ from schemas.entities import Pose, orientation_from_yaw
 from schemas.perception import Observation
 
 _CANDIDATES = 5
-_CLUTTER = 0.8
+_CLUTTER = 0.7
 _WORTH_SAYING = 0.01
 
 
