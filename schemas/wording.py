@@ -104,7 +104,7 @@ def _bare(info: inspect.Type | None) -> inspect.Type | None:
         return _bare(info.type)
     if isinstance(info, inspect.UnionType):
         members = [t for t in info.types if not isinstance(t, inspect.NoneType)]
-        return _bare(members[0]) if len(members) == 1 else None
+        return _bare(members[0]) if len(members) == 1 else info
     return info
 
 
@@ -133,14 +133,17 @@ def _describe(info: inspect.Type | None) -> str:
             return f"{len(types)} {'numbers' if isinstance(_bare(types[0]), _NUMBERS) else 'values'}"
         case inspect.VarTupleType():
             return "a list"
+        case inspect.UnionType(types=types):
+            return " or ".join(_describe(_bare(t)) for t in types if not isinstance(t, inspect.NoneType))
         case inspect.StructType() | inspect.DictType():
             return "an object with named fields"
     return "something else"
 
 
 def _bounds(info: inspect.FloatType | inspect.IntType) -> str:
-    low = f"from {info.ge:g}" if info.ge is not None else f"above {info.gt:g}" if info.gt is not None else ""
-    high = f"to {info.le:g}" if info.le is not None else f"below {info.lt:g}" if info.lt is not None else ""
+    ge, gt, le, lt = (None if n is None else f"{n:.16g}" for n in (info.ge, info.gt, info.le, info.lt))
+    low = f"from {ge}" if ge else f"above {gt}" if gt else ""
+    high = f"to {le}" if le else f"below {lt}" if lt else ""
     if low.startswith("above") and high:
         high = f"and up {high}" if info.le is not None else f"and {high}"
     return "".join(f" {bound}" for bound in (low, high) if bound)

@@ -43,7 +43,7 @@ def _worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
     """Why a triple holds. Raises UnknownName, BadRequest for an unknown word, Refused if it does not hold."""
-    subject = v.iri(semantic_map.entity(question.name).iri)
+    subject = _subject(semantic_map, question.name)
     predicate = _predicate(semantic_map, question.predicate)
     for value in _values(semantic_map, subject, predicate, question.value):
         explanation = semantic_map.reasoner.explain((subject, predicate, value))
@@ -122,6 +122,17 @@ def _term(word: str) -> Term | None:
     if word.startswith(("<", '"', "_:")):
         return word
     return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
+
+
+def _subject(semantic_map: SemanticMap, word: str) -> Term:
+    """An entity, or another individual or a class that the map or its TBox names. Raises UnknownName."""
+    if (entity := semantic_map.find(word)) is not None:
+        return v.iri(entity.iri)
+    others = (term,) if (term := _term(word)) is not None else (v.entity_iri(word), v.dm(word))
+    for known in others:
+        if semantic_map.reasoner.mentioned({known}):
+            return known
+    return v.iri(semantic_map.entity(word).iri)
 
 
 def _predicate(semantic_map: SemanticMap, word: str) -> Term:

@@ -105,10 +105,19 @@ def _require_well_formed(content: bytes) -> None:
 
     Expat notices the one and bounds the other. Raises ValueError.
     """
+    parser = expat.ParserCreate()
+    parser.EntityDeclHandler = _require_within
     try:
-        expat.ParserCreate().Parse(content, True)
+        parser.Parse(content, True)
     except expat.ExpatError as error:
         raise ValueError(str(error)) from None
+
+
+def _require_within(name: str, _: bool, text: str | None, *where: str | None) -> None:
+    if text is None:
+        raise ValueError(
+            f"the entity '{name}' is elsewhere ({where[1]}), and nothing but this document is read"
+        )
 
 
 def serialise(triples: Iterable[Triple], syntax: RdfFormat) -> bytes:

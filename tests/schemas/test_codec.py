@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas import codec, errors
-from schemas.commands import Add, Check, List, Load, Remove, StepOnce
+from schemas.commands import Add, Check, List, Load, Remove, StepOnce, Undo
 from schemas.commits import Departed
 from schemas.entities import Pose
 from tests.schemas import messages
@@ -76,7 +76,7 @@ NAME = (
         ({"at": [0, 0, "up"]}, f"at: the 3rd {NUMBER}"),
         ({"at": [0, 0]}, "at must be 3 numbers"),
         ({"at": "here"}, "at must be 3 numbers"),
-        ({"yaw": math.nan}, "yaw must be a number from -1e+06 to 1e+06"),
+        ({"yaw": math.nan}, "yaw must be a number from -1000000 to 1000000"),
         ({"size": [1, 1, 0]}, f"size: the 3rd {SIZE}"),
         ({"size": [-1, 1, 1]}, f"size: the 1st {SIZE}"),
         ({"size": [math.nan, 1, 1]}, f"size: the 1st {SIZE}"),
@@ -191,3 +191,16 @@ def test_anything_can_be_shown_as_json():
     assert codec.as_json(codec.encode(Check())) == '{"verb":"check"}'
     assert codec.as_json(b'{ "a": 1 }') == '{"a":1}'
     assert codec.as_json(b"\xff\xd8\xff") == "3 bytes"
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "text"),
+    [
+        (List, {"as_of": ""}, "as_of must be a whole number from 0 or a number from 0 or a text"),
+        (Undo, {"commit": "0"}, "commit must be a whole number from 1 to 9007199254740992"),
+    ],
+)
+def test_what_may_be_several_things_and_large_bounds_are_spelled_out(kind, fields, text):
+    with pytest.raises(errors.BadRequest) as caught:
+        codec.from_text(fields, kind)
+    assert caught.value.text == f"malformed message: {text}"

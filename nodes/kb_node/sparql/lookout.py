@@ -6,6 +6,7 @@ falls too far behind, or has died, what is left to do is done in one step.
 
 from __future__ import annotations
 
+import math
 import time
 import uuid
 from collections import deque
@@ -72,8 +73,8 @@ class Lookout:
     @property
     def patience_s(self) -> float | None:
         """How long nothing needs to be done without being told."""
-        ends = [standing.ends for standing in self._standing.values()]
-        return max(0.0, min(ends) - time.monotonic()) if ends else None
+        soonest = min((standing.ends for standing in self._standing.values()), default=math.inf)
+        return None if soonest == math.inf else max(0.0, soonest - time.monotonic())
 
     # What comes in
 
@@ -139,7 +140,7 @@ class Lookout:
             raise errors.NameTaken(f"there is a standing query '{name}' already")
         if len(self._standing) >= STANDING:
             raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
-        self._standing[name] = Standing.of(command, name, time.monotonic())
+        self._standing[name] = Standing.of(command, name)
         return self._standing[name]
 
     def _drop(self, standing: Standing, error: errors.SemmapError | None = None) -> None:
@@ -182,6 +183,7 @@ class Lookout:
             return
         news = look.standing.take(result.rows, look.since, look.seq)
         if look.number is not None:
+            look.standing.ends = time.monotonic() + look.standing.lease_s
             self._send(Answered(number=look.number, reply=_encoded(_watching(look.standing, result))))
         elif news is not None and look.standing.watch in self._standing:
             self._send(News(watch=news.watch, rows=news))

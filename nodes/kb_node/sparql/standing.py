@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -17,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass
 class Standing:
-    """One of them. `ends` is when its lease does [s, monotonic]."""
+    """One of them. `ends` is when its lease does [s, monotonic], which begins with its first rows."""
 
     watch: str
     query: str
     inferred: bool
     lease_s: float
-    ends: float
     looks_at: Footprint
+    ends: float = math.inf
     rows: Counter[Row] = field(default_factory=Counter)
 
     @classmethod
-    def of(cls, command: Watch, name: str, now: float) -> Standing:
+    def of(cls, command: Watch, name: str) -> Standing:
         """The one that a command asks for, without its rows."""
         # rdflib's parser takes longer to load than all else that the first look-up waits for
         from nodes.kb_node.sparql.footprint import footprint
@@ -38,7 +39,6 @@ class Standing:
             query=command.query,
             inferred=command.inferred,
             lease_s=command.lease,
-            ends=now + command.lease,
             looks_at=footprint(command.query),
         )
 
