@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import threading
 from typing import Any
 
 import mujoco
@@ -18,11 +19,22 @@ _NEAR_M, _FAR_M = 0.05, 200.0
 MAX_PIXELS = (2560, 1440)
 
 
-def open_gl() -> Any | None:
-    """An OpenGL context off screen, or None where there is none to be had.
+_of_thread = threading.local()
 
-    `MUJOCO_GL` chooses (egl, osmesa, disabled); by default EGL, on macOS CGL.
+
+def open_gl() -> Any | None:
+    """This thread's OpenGL context off screen, or None where there is none to be had.
+
+    `MUJOCO_GL` chooses (egl, osmesa, disabled); by default EGL, on macOS CGL. A thread has one for all its
+    life: what is drawn with is freed, at any time, in the context that is current, and under the same
+    numbers another context would have things of its own.
     """
+    if not hasattr(_of_thread, "gl"):
+        _of_thread.gl = _new_gl()
+    return _of_thread.gl
+
+
+def _new_gl() -> Any | None:
     choice = os.environ.get("MUJOCO_GL", "cgl" if sys.platform == "darwin" else "egl").lower()
     if choice not in ("egl", "osmesa", "cgl"):
         return None
@@ -94,8 +106,8 @@ class Offscreen:
         if self._context is None or assets != self._assets:
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
             self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
-            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
             self._assets = assets
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         if (self._context.offWidth, self._context.offHeight) != (view.width, view.height):
             mujoco.mjr_resizeOffscreen(view.width, view.height, self._context)
         if self._scene is None or self._scene.maxgeom < model.ngeom + 100:

@@ -68,6 +68,24 @@ def test_each_pixel_says_whose_it_is(world, eye):
     assert set(names.ravel()) <= {"", "box1", "chair1", "nothing"}
 
 
+def test_an_eye_that_is_gone_leaves_the_others_their_sight(world):
+    if open_gl() is None:
+        pytest.skip("no OpenGL is to be had here")
+    tableware = World()
+    tableware.spawn([order("bowl1", "bowl", pose(0, 0)), order("vase1", "vase", pose(0.5, 0))])
+
+    def seen(eye):
+        return [eye.see(w.model, w.data, above())[1].sum() for w in (world, tableware, world)]
+
+    first, second = Eye(), Eye()
+    before = seen(first)
+    assert seen(second) == before
+    assert seen(first) == before  # they do not mind to be used in turn
+    assert seen(second) == before
+    del first
+    assert seen(second) == before
+
+
 def test_both_ways_of_seeing_agree(world):
     if open_gl() is None:
         pytest.skip("no OpenGL is to be had here")
