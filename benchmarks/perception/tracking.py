@@ -55,7 +55,7 @@ def measure(moves: int, learnt: Learnt) -> list[Row]:
     classes = ClassHierarchy(
         {name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, learnt.usual_m
     )
-    stage = Stage()  # one for all: with a second OpenGL context the first one's end harms it
+    stage = Stage()
     runs = [
         identity(lambda clouds: look(clouds, learnt), classes, stage, moves=moves, seed=seed)
         for seed in _SEEDS
