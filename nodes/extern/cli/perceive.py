@@ -42,6 +42,8 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
     0 for background, 1 to n for the objects.
     """
+    if labels is not None and labels.suffix != ".npy":
+        raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
     import numpy as np  # half of what the command line would take to start
 
     from nodes.perception_node.files.reading import read_frames
@@ -51,8 +53,6 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     frames = list(read_frames(files, intrinsics))
     if labels is not None and len(frames) != 1:
         raise errors.BadRequest(f"--labels takes one frame, and these are {len(frames)}")
-    if labels is not None and labels.suffix != ".npy":
-        raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
     records = []
     for file, cloud in frames:
         sight = see(cloud)
