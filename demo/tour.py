@@ -15,9 +15,10 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 
 from demo.checks import check_export, check_picture, check_recording
 
@@ -65,13 +66,10 @@ class Tour:
 
     def until(self, what: str, condition: Callable[[], object]) -> None:
         """Wait until `condition()` holds, and note it when it does not come to hold."""
-        deadline = time.monotonic() + _PATIENCE_S
-        while time.monotonic() < deadline:
-            if condition():
-                print(f"({what})", flush=True)
-                return
-            time.sleep(0.2)
-        self.failures.append(f"waited {_PATIENCE_S:g} s in vain: {what}")
+        if _comes_to_hold(condition):
+            print(f"({what})", flush=True)
+        else:
+            self.failures.append(f"waited {_PATIENCE_S:g} s in vain: {what}")
 
     def agrees(self) -> bool:
         """Do map and scene agree?"""
@@ -85,18 +83,28 @@ class Tour:
         return next(int(n["pid"]) for n in status["nodes"] if n["node"] == node)
 
     @contextmanager
-    def watching(self, *words: str, shows: tuple[str, ...]) -> Iterator[None]:
-        """Watch meanwhile, and show what was seen: a line with each of `shows`, in this order."""
+    def watching(self, *words: str, begins: str = "", shows: tuple[str, ...]) -> Iterator[None]:
+        """Watch meanwhile, and show what was seen: a line with each of `shows`, in this order.
+
+        It has begun when a line with `begins` has come; some do not say so.
+        """
         watch = self.background(*words)
-        time.sleep(2.0)
+        assert watch.stdout is not None
+        lines: list[str] = []
+        reader = Thread(target=_collect, args=(watch.stdout, lines))
+        reader.start()
+        if begins:
+            _comes_to_hold(lambda: _in_order((begins,), lines))
+        else:
+            time.sleep(2.0)
         yield
-        time.sleep(1.0)
+        shown = _comes_to_hold(lambda: _in_order(shows, lines))
         watch.send_signal(signal.SIGINT)
+        watch.wait()
+        reader.join()
         print(f"$ {shlex.join(('semmap', *words))}")
-        lines = watch.communicate()[0].splitlines()
         print(*lines, sep="\n", flush=True)
-        rest = iter(lines)
-        if not all(any(text in line for line in rest) for text in shows):
+        if not shown:
             self.failures.append(f"{' '.join(words)} did not show {', '.join(shows)}")
 
     def _show(self, words: list[str], status: int, holds: str) -> str:
@@ -114,6 +122,26 @@ class Tour:
         if holds not in output:
             self.failures.append(f"{' '.join(words)}: does not say '{holds}'")
         return output
+
+
+def _comes_to_hold(condition: Callable[[], object]) -> bool:
+    deadline = time.monotonic() + _PATIENCE_S
+    while time.monotonic() < deadline:
+        if condition():
+            return True
+        time.sleep(0.2)
+    return False
+
+
+def _collect(output: Iterable[str], lines: list[str]) -> None:
+    for line in output:
+        lines.append(line.rstrip())
+
+
+def _in_order(texts: Sequence[str], lines: Sequence[str]) -> bool:
+    """Is each text in a line, and later ones in later lines?"""
+    rest = iter(list(lines))
+    return all(any(text in line for line in rest) for text in texts)
 
 
 def tour(t: Tour) -> None:
@@ -175,7 +203,14 @@ def tour(t: Tour) -> None:
     t.tell("Watch changes as they happen, and the answer of a question as it changes")
     with (
         t.watching("watch", shows=("apple9",) * 2),
-        t.watching("watch", "--sparql", "SELECT ?f { ?f a dm:Fruit }", "--inferred", shows=("+", "-")),
+        t.watching(
+            "watch",
+            "--sparql",
+            "SELECT ?f { ?f a dm:Fruit }",
+            "--inferred",
+            begins="watching",
+            shows=("+", "-"),
+        ),
     ):
         t.do("add", "Apple", "apple9", "--at", "1.3", "1.3", "0")
         t.do("remove", "apple9")
