@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,6 +20,7 @@ from hypothesis import HealthCheck, settings
 
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
+from nodes.loop import Node
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -37,6 +39,19 @@ def free_endpoint() -> str:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+@contextlib.contextmanager
+def handling(node: Node) -> Iterator[None]:
+    """The node handles events, on a thread of its own."""
+    thread = threading.Thread(target=node.run)
+    thread.start()
+    try:
+        yield
+    finally:
+        node.stop()
+        thread.join(timeout=PATIENCE_S)
+    assert not thread.is_alive()
 
 
 def until(condition: Callable[[], Any], what: str) -> Any:

@@ -14,6 +14,8 @@ FEWEST_POINTS = 10
 """In fewer nothing can be found."""
 NEAREST_M, FARTHEST_M = 0.01, 100.0
 """No depth camera measures as near, or as far."""
+_THIN = 16
+"""One point in so many tells what is near: 0.5 ms a picture instead of 4."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Cloud:
     @property
     def near_m(self) -> float:
         """Depth beyond which nearly all was seen, a twentieth being nearer [m]; infinite if nothing was."""
-        depth_m = self.points_camera[..., 2]
+        depth_m = self.points_camera.reshape(-1, 3)[::_THIN, 2]
         depth_m = depth_m[depth_m > 0]
         return float(np.quantile(depth_m, 0.05)) if len(depth_m) else np.inf
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 
 import pytest
@@ -12,7 +11,7 @@ from nodes.coordinator.bridge import Bridge
 from nodes.loop import Node
 from schemas import errors, keys
 from schemas.commits import Commit, Transaction
-from tests.conftest import free_endpoint
+from tests.conftest import free_endpoint, handling
 
 TRANSACTION = Transaction(id="42", source="operator")
 COMMIT = Commit(seq=1, stamp_ns=1, id="42", source="operator")
@@ -24,12 +23,8 @@ def network():
     peer = bus.Network(mode="peer", listen=(endpoint,), connect=())
     with bus.open_session(peer) as session, bus.open_session(bus.Network(connect=(endpoint,))) as kb:
         node = Node("coordinator", session)
-        thread = threading.Thread(target=node.run)
-        thread.start()
-        yield Bridge(node), kb
-        node.stop()
-        thread.join(timeout=5)
-        assert not thread.is_alive()
+        with handling(node):
+            yield Bridge(node), kb
 
 
 def serve(kb):

@@ -13,7 +13,7 @@ from nodes import bus
 from nodes.loop import Node, Relay
 from schemas import commands, errors, keys, replies
 from schemas.health import Health
-from tests.conftest import free_endpoint, until
+from tests.conftest import free_endpoint, handling, until
 
 PREFIX = "semmap/test"
 
@@ -44,12 +44,8 @@ def network():
         node.every(
             0.05, lambda: promise.set_result(replies.Done(text="late")) if not promise.done() else None
         )
-        thread = threading.Thread(target=node.run)
-        thread.start()
-        yield node, client
-        node.stop()
-        thread.join(timeout=5)
-        assert not thread.is_alive()
+        with handling(node):
+            yield node, client
 
 
 def test_a_fault_is_answered_and_the_node_lives_on(network):

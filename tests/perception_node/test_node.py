@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 import time
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -24,7 +22,7 @@ from schemas.commits import Commit, Snapshot
 from schemas.entities import ClassInfo, Provenance
 from schemas.perception import Observations
 from schemas.replies import Changed, Sighting
-from tests.conftest import free_endpoint, until
+from tests.conftest import free_endpoint, handling, until
 from tests.perception_node.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
 
@@ -134,17 +132,6 @@ class World:
             self.health = health
 
 
-@contextmanager
-def beside(node):
-    thread = threading.Thread(target=node.run)
-    thread.start()
-    try:
-        yield
-    finally:
-        node.stop()
-        thread.join()
-
-
 @pytest.fixture(scope="module")
 def endpoint():
     return free_endpoint()
@@ -158,7 +145,7 @@ def world(endpoint):
         world = World(session)
         node = Node("perception_node", other)
         perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {})
-        with beside(world.node), beside(node):
+        with handling(world.node), handling(node):
             until(lambda: world.health is not None and world.health.state == "ready", "it is ready")
             try:
                 yield world

@@ -3,7 +3,6 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 from contextlib import contextmanager
 
@@ -19,6 +18,7 @@ from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commits import Snapshot
 from schemas.health import Health
 from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
+from tests.conftest import free_endpoint, handling
 from tests.recorder.files import column, log, positions
 from tests.recorder.messages import (
     START_NS,
@@ -101,16 +101,11 @@ class World:
 
 @pytest.fixture
 def world():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    endpoint = free_endpoint()
     with bus.open_session(bus.Network(connect=(), listen=(endpoint,), mode="peer")) as session:
         world = World(session, endpoint)
-        thread = threading.Thread(target=world.node.run)
-        thread.start()
-        yield world
-        world.node.stop()
-        thread.join()
+        with handling(world.node):
+            yield world
 
 
 def seqs(path):
@@ -131,14 +126,9 @@ def recorder(world, path):
     with bus.open_session(network(world)) as session, open_recording(path, None) as recording:
         node = Node("recorder", session)
         Recorder(node, recording, "no live view")
-        thread = threading.Thread(target=node.run)
-        thread.start()
-        try:
+        with handling(node):
             world.await_commit(world.snapshot.seq)
             yield
-        finally:
-            node.stop()
-            thread.join()
 
 
 def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):

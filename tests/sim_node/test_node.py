@@ -1,5 +1,3 @@
-import socket
-import threading
 import time
 from pathlib import Path
 
@@ -28,13 +26,8 @@ from schemas.scenes import (
     SurfaceQuery,
     Surfaces,
 )
+from tests.conftest import free_endpoint, handling
 from tests.sim_node.orders import hand, order, pose
-
-
-def free_endpoint():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 @pytest.fixture(scope="module")
@@ -45,14 +38,10 @@ def client():
         node = Node("sim_node", session)
         cameras = CameraConfig(rate_hz=5.0, width=64, height=48, segments=True, graphics=False)
         simulator = Simulator(node, SimConfig(network=network, cameras=cameras))
-        thread = threading.Thread(target=node.run)
-        thread.start()
         try:
-            with bus.open_session(bus.Network(connect=(endpoint,))) as mine:
+            with handling(node), bus.open_session(bus.Network(connect=(endpoint,))) as mine:
                 yield mine
         finally:
-            node.stop()
-            thread.join()
             simulator.close()
 
 

@@ -11,6 +11,7 @@ from PIL import Image
 
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.projection import cloud_of, fits, is_pose
+from schemas.wording import sentence
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
 _MOST_PIXELS = 50_000_000
@@ -36,7 +37,7 @@ def read_camera(path: Path) -> PinholeCamera:
     try:
         camera = msgspec.json.decode(path.read_bytes(), type=PinholeCamera)
     except msgspec.DecodeError as error:
-        raise ValueError(f"no intrinsics: {error}") from None
+        raise ValueError(f"no intrinsics: {sentence(error, PinholeCamera)}") from None
     if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):
         raise ValueError("no intrinsics: fx, fy and depth_scale must be above 0")
     if camera.map_from_camera is not None:
