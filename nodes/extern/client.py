@@ -171,7 +171,8 @@ class Client:
     def list(self, class_: str | None = None, *, as_of: When | None = None) -> tuple[Entity, ...]:
         """The entities of a class, over inferred types; all of them without one.
 
-        `as_of` a commit's number, seconds since 1970 or ISO 8601: those of then.
+        `as_of` a commit's number, or a time: seconds since 1970, ISO 8601 or a reply's `stamp_ns`. Those
+        after it; a time is as long as it is written (see `schemas.moments.When`).
         """
         command = commands.List(class_=class_, as_of=with_offset(as_of))
         entities: tuple[Entity, ...] = self.send(command, kind=tuple[Entity, ...])

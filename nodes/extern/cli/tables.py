@@ -89,7 +89,7 @@ def author(p: Provenance | Commit | LoggedCommit) -> str:
 
 def moment(stamp_ns: int) -> str:
     """A time, local, as `--as-of` takes it."""
-    return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns / 1e9))
+    return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
 
 
 def _plain(value: float, digits: int) -> str:
