@@ -21,10 +21,12 @@ ROOT = "semmap"
 CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
-SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
-
 OF_THE_MAP = frozenset({"sparql"})
 """Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
+
+SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
+FIRST_HAND = {f"{CMD}/{verb}": "kb_node" for verb in OF_THE_MAP}
+"""Who serves a prefix, and who a single key."""
 
 PERCEPTION = f"{ROOT}/perception"
 
@@ -77,6 +79,11 @@ def health_key(node: str) -> str:
 def live_key(node: str, instance: str = "*") -> str:
     """The liveliness token of one instance of a node; `**` does not match its `@` chunk."""
     return f"{ROOT}/@live/{node}/{instance}"
+
+
+def live_node(key: str) -> str:
+    """The node of a liveliness token's key."""
+    return key.split("/")[-2]
 
 
 def last_chunk(key: str) -> str:
