@@ -187,6 +187,10 @@ class Node:
         send()
         return future
 
+    def is_there(self, node: str) -> bool:
+        """Is a process of another node ready? Any thread may ask."""
+        return self._lifelines.is_there(node)
+
     def afterwards(self, handle: Callable[[], None]) -> None:
         """Call `handle()` after the handler in hand has replied, and before any other event."""
         self._afterwards.append(handle)

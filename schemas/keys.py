@@ -21,12 +21,10 @@ ROOT = "semmap"
 CMD = f"{ROOT}/cmd"
 BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
+SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
+
 OF_THE_MAP = frozenset({"sparql"})
 """Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
-
-SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
-FIRST_HAND = {f"{CMD}/{verb}": "kb_node" for verb in OF_THE_MAP}
-"""Who serves a prefix, and who a single key."""
 
 PERCEPTION = f"{ROOT}/perception"
 
@@ -79,6 +77,12 @@ def health_key(node: str) -> str:
 def live_key(node: str, instance: str = "*") -> str:
     """The liveliness token of one instance of a node; `**` does not match its `@` chunk."""
     return f"{ROOT}/@live/{node}/{instance}"
+
+
+def servers(prefix: str, verb: str) -> tuple[str, ...]:
+    """The nodes that may answer `prefix/verb`."""
+    first_hand = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()
+    return first_hand + tuple(node for served, node in SERVED_BY.items() if served == prefix)
 
 
 def live_node(key: str) -> str:

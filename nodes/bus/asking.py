@@ -21,6 +21,8 @@ from nodes.bus.session import PATIENCE_S
 from schemas import codec, errors, keys
 
 TIMEOUT_S = 30.0
+_HAD_IT_S = 0.1
+"""A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
@@ -58,18 +60,18 @@ def ask(
     this verb is asked, and those who serve all verbs of the prefix only if there is no such one. With
     `lifelines`, those of this session, the question ends, and is asked again, when who was asked is gone.
 
-    Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
+    Raises the error of the reply; NoAnswer when nobody serves the key for `patience_s` or the one
     that does takes longer than `timeout_s`.
     """
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    deadline = time.monotonic() + patience_s
+    deadline_s = time.monotonic() + patience_s
     while True:
-        node = keys.FIRST_HAND.get(key) if first_hand else keys.SERVED_BY.get(prefix)
+        asked_at_s = time.monotonic()
         replies = _get(
             session,
             key,
-            lifelines.of(node) if lifelines and node else None,
+            lifelines.of(keys.servers(prefix, verb)) if lifelines else None,
             payload=payload,
             encoding=encoding,
             timeout=timeout_s,
@@ -77,10 +79,12 @@ def ask(
         )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
             return read_reply(key, reply, kind, timeout_s).decode()
+        if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
+            deadline_s = now_s + patience_s
         if first_hand:
             first_hand = False
             continue
-        if time.monotonic() > deadline:
+        if now_s > deadline_s:
             _nobody(key)
         time.sleep(0.01)
 
@@ -136,8 +140,7 @@ def ask_later(
 
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    node = keys.SERVED_BY.get(prefix)
-    lifeline = lifelines.of(node) if lifelines and node else None
+    lifeline = lifelines.of(keys.servers(prefix, verb)) if lifelines else None
     _get(session, key, lifeline, handler=handler, payload=payload, encoding=encoding, timeout=timeout_s)
 
 

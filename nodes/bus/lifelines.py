@@ -18,15 +18,24 @@ class Lifelines:
     """
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._tokens: dict[str, zenoh.CancellationToken] = {}
-        session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change)
+        self._tokens: dict[tuple[str, ...], zenoh.CancellationToken] = {}
+        self._there: set[str] = set()
+        session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change, history=True)
 
-    def of(self, node: str) -> zenoh.CancellationToken:
-        """For the questions to this node from now on."""
-        return self._tokens.get(node) or self._tokens.setdefault(node, zenoh.CancellationToken())
+    def is_there(self, node: str) -> bool:
+        """Is a process of this node ready?"""
+        return any(keys.live_node(key) == node for key in tuple(self._there))
+
+    def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
+        """For questions, from now on, that any of these nodes may answer."""
+        return self._tokens.get(nodes) or self._tokens.setdefault(nodes, zenoh.CancellationToken())
 
     def _on_change(self, sample: zenoh.Sample) -> None:
-        if sample.kind == zenoh.SampleKind.DELETE:
-            token = self._tokens.pop(keys.live_node(str(sample.key_expr)), None)
-            if token is not None:
-                token.cancel()  # type: ignore[no-untyped-call]
+        key = str(sample.key_expr)
+        if sample.kind != zenoh.SampleKind.DELETE:
+            self._there.add(key)
+            return
+        self._there.discard(key)
+        gone = keys.live_node(key)
+        for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
+            self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]

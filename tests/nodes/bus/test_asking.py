@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import queue
 import threading
 
@@ -85,6 +86,26 @@ def test_so_is_one_to_a_node_that_serves_just_this_verb(pair):
     assert reply.text == "second hand"
 
 
+def test_patience_begins_when_who_had_the_question_goes(pair):
+    server, client = pair
+    lifelines = bus.Lifelines(client)
+    token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
+    kept = []
+    numbers = itertools.count()
+
+    def receive(request):
+        number = next(numbers)
+        if number == 0:
+            kept.append(request)
+            threading.Timer(0.5, token.undeclare).start()
+        elif number == 2:
+            request.reply(replies.Done(text="back"))
+
+    bus.serve(server, keys.BRIDGE, receive)
+    how = {"patience_s": 0.3, "lifelines": lifelines}
+    assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
+
+
 def test_ask_later_tells_that_the_node_went(pair):
     server, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
@@ -99,7 +120,7 @@ def test_ask_later_tells_that_the_node_went(pair):
 def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
     _, client = pair
     lifelines = bus.Lifelines(client)
-    lifelines.of("kb_node").cancel()
+    lifelines.of(("kb_node",)).cancel()
     answers: queue.SimpleQueue = queue.SimpleQueue()
     bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, lifelines=lifelines)
     with pytest.raises(errors.NoAnswer):
