@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from nodes.sim_node.world import ModelSource, World
+from nodes.sim_node.orders import ModelSource
+from nodes.sim_node.world import World
 from schemas import scene_files
 from schemas.errors import BadFile
 from schemas.scenes import BodyOrder
