@@ -88,11 +88,11 @@ class Settling:
         self.version += bool(turned)
 
     def _free_ghosts(self, names: Iterable[str]) -> None:
-        """Of these bodies the ghosts for which there is room now turn solid."""
-        records = self._engine.records
-        ghosts = [name for name in names if name in records and records[name].ghost]
+        """Of these bodies the ghosts for which there is room now turn solid, the earlier before the later."""
+        engine = self._engine
+        ghosts = [name for name in names if name in engine.records and engine.records[name].ghost]
         if ghosts:
-            self._find_room(ghosts)
+            self._find_room(sorted(ghosts, key=engine.index.row.__getitem__))
 
     def _neighbours(self, names: Iterable[str]) -> set[str]:
         """These bodies and all that touch them."""

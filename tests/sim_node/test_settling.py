@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import pytest
 
 from nodes.sim_node.world import World
@@ -41,6 +43,14 @@ def test_a_ghost_turns_solid_when_the_other_is_deleted_and_can_be_moved_out():
     assert not bodies(world)["fridge1"].ghost
     world.delete(["fridge0"])
     assert not bodies(world)["fridge2"].ghost
+
+
+def test_of_several_ghosts_in_one_place_the_earliest_gets_it():
+    names = [f"fridge{i}" for i in range(6)]
+    world = spawned(*(order(name, "", pose(0, 0), size_m=FRIDGE) for name in names))
+    for gone, next_ in pairwise(names):
+        world.delete([gone])
+        assert [name for name, body in bodies(world).items() if not body.ghost] == [next_]
 
 
 def test_a_ghost_turns_solid_where_it_has_to_be_lifted_a_little():
