@@ -14,7 +14,7 @@ from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import open_world
-from schemas import codec, keys, wording
+from schemas import codec, errors, keys, wording
 from schemas.commands import Pause, Reset, StepOnce
 from schemas.replies import Done
 from schemas.scenes import (
@@ -99,12 +99,19 @@ class Simulator:
         return self._world.scene()
 
     def _pause(self, message: Pause) -> Done:
-        self._paused = not self._paused if message.off is None else not message.off
+        state = "time runs" if message.off else "time stands still"
+        if self._paused is not message.off:
+            return Done(text=f"{state} already")
+        self._paused = not message.off
         self._clock_s = time.monotonic()
         self._node.describe(self._summary())
-        return Done(text="time stands still" if self._paused else "time runs again")
+        return Done(text=f"{state} again" if message.off else state)
 
     def _step(self, message: StepOnce) -> Done:
+        if not self._paused:
+            raise errors.Refused(
+                "time runs by itself; `semmap pause` stops it, and then it goes step by step"
+            )
         end_s = self._world.data.time + message.seconds
         while (left_s := end_s - self._world.data.time) > self._world.model.opt.timestep / 2:
             self._world.step(min(left_s, _PUBLISH_S))

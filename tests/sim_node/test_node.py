@@ -111,18 +111,26 @@ def test_poses_come_twenty_times_a_second(client, poses):
 
 
 def test_paused_time_goes_on_step_by_step_only(client):
-    assert "still" in ask(client, "pause", Pause()).text
+    assert ask(client, "pause", Pause()).text == "time stands still"
+    assert ask(client, "pause", Pause()).text == "time stands still already"
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
     time.sleep(0.1)
     ask(client, "step", StepOnce(seconds=0.5))
     assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 0.5)
-    assert "runs" in ask(client, "pause", Pause()).text
-    time.sleep(0.2)
-    assert ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55
+    assert ask(client, "pause", Pause(off=True)).text == "time runs again"
+    assert ask(client, "pause", Pause(off=True)).text == "time runs already"
+    wait_for(lambda: ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55)
+
+
+def test_a_step_is_refused_while_time_runs(client):
+    before = ask(client, "snapshot", SceneQuery()).sim_time_s
+    with pytest.raises(errors.Refused, match="`semmap pause` stops it"):
+        ask(client, "step", StepOnce(seconds=60.0))
+    assert ask(client, "snapshot", SceneQuery()).sim_time_s < before + 50.0
 
 
 def test_a_long_step_is_followed_while_it_lasts(client, poses):
-    ask(client, "pause", Pause(off=False))
+    ask(client, "pause", Pause())
     grid = [(0.2 * (i % 5), 0.2 * (i // 5 % 5), 0.5 + 0.2 * (i // 25)) for i in range(75)]
     ask(client, "spawn", Spawn(bodies=tuple(order(f"o{i}", "apple", pose(*at)) for i, at in enumerate(grid))))
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
