@@ -6,7 +6,6 @@ import copy
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -30,21 +29,21 @@ class World:
 
     def __init__(
         self,
-        mjcf: Path | None = None,
+        ground: mujoco.MjSpec | None = None,
         *,
+        name: str = "empty",
         models: ModelSource = library_model,
         meanwhile: Callable[[], None] = lambda: None,
     ) -> None:
-        """Start from an MJCF file, or from a bare floor. Raises BadFile for a file that does not compile.
+        """Start from a scene that compiles (`groundwork`), or from a bare floor.
 
         `meanwhile` is called again and again while models are read and compiled. It may let time pass
         (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there.
         """
-        ground = groundwork.read_mjcf(mjcf) if mjcf else groundwork.bare_floor()
-        self._engine = Engine(ground, meanwhile)
+        self._engine = Engine(ground or groundwork.bare_floor(), meanwhile)
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
-        self.name = mjcf.name if mjcf else "empty"
+        self.name = name
         self.run = uuid.uuid4().hex[:12]
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
 
