@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.keeper import Actions, latest, reconcile
+from nodes.coordinator.keeper import Actions, latest, order, reconcile
 from nodes.coordinator.scene_view import SceneView
 from schemas import errors
 from schemas.commands import Add
@@ -165,13 +165,15 @@ class Keeping:
         steps: list[Step] = []
         if actions.delete:
             steps.append(("delete", Delete(names=actions.delete), Deleted, lambda _: None))
-        for batch in batches(actions.spawn):
-            tried = {order.name: order.commit for order in batch}
-            steps.append(("spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)))
+        steps.extend(self._spawning(batch) for batch in batches(actions.spawn))
         placements = (*actions.place, *refused)
         if placements:
-            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, lambda _: None))
+            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, self._placed))
         return steps
+
+    def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step:
+        tried = {order.name: order.commit for order in batch}
+        return "spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)
 
     def _start(self, steps: list[Step]) -> None:
         self._busy = True
@@ -201,6 +203,18 @@ class Keeping:
         for name, reason in reply.failed.items():
             self._failed[name] = (tried[name], reason)
             self._report(f"{name} has no body: {reason}")
+
+    def _placed(self, reply: BodiesMoved) -> None:
+        """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
+        entities = self._door.entities
+        anew = tuple(
+            order(entity, entity.pose)
+            for name in reply.failed
+            if (entity := entities.get(name)) is not None and entity.pose is not None
+        )
+        if anew:
+            gone = Delete(names=tuple(order.name for order in anew))
+            self._steps.extendleft([self._spawning(anew), ("delete", gone, Deleted, lambda _: None)])
 
     def _follow(self, placement: Placement) -> Placement | None:
         """Let the map follow a body; if the map refuses, the body has to go back."""
