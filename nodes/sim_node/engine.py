@@ -234,6 +234,11 @@ class Engine:
         """Nothing moves: every body sleeps, and none is about to be woken."""
         return sleep.all_asleep(self.data)
 
+    @property
+    def awake(self) -> int:
+        """How many bodies do not sleep, vacant berths with them."""
+        return sleep.awake(self.data)
+
     def wake(self, names: Iterable[str]) -> None:
         """Wake bodies, and with each the heap that it sleeps in."""
         for name in names:

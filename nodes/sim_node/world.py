@@ -62,6 +62,11 @@ class World:
         """Nothing moves: every body sleeps, and none is about to be woken."""
         return self._engine.asleep
 
+    @property
+    def awake(self) -> int:
+        """About how many bodies do not sleep: a step costs time in proportion."""
+        return self._engine.awake
+
     # what is asked
 
     def spawn(self, ordered: Sequence[BodyOrder]) -> Spawned:
