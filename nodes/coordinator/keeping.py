@@ -200,6 +200,7 @@ class Keeping:
     def _spawned(self, tried: dict[str, int], reply: Spawned) -> None:
         for name in tried:
             self._failed.pop(name, None)
+        self.scene.add(reply.bodies)
         for name, reason in reply.failed.items():
             self._failed[name] = (tried[name], reason)
             self._report(f"{name} has no body: {reason}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from msgspec import structs
 
 from schemas.entities import Pose
@@ -25,6 +27,10 @@ class SceneView:
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
+
+    def add(self, bodies: Iterable[Body]) -> None:
+        """Bodies that were made since the last snapshot; the next one tells how they are."""
+        self.bodies.update((body.name, body) for body in bodies)
 
     def update(self, poses: Poses) -> bool:
         """Take over new poses. False when bodies came or went, so that a snapshot is needed."""

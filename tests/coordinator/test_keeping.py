@@ -85,6 +85,24 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 2
 
 
+def test_bodies_are_told_of_batch_by_batch(door):
+    told = []
+
+    def ask(verb, message, kind):
+        told.append(len(keeping.scene.bodies))
+        future = Future()
+        if verb == "spawn":
+            future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping.scene.known = True
+    entities = [f'{{"class": "Chair", "at": [{i}, 0, 0]}}' for i in range(2 * BATCH)]
+    door.change(c.Load(content=f'{{"entities": [{", ".join(entities)}]}}'.encode(), filename="chairs.json"))
+    keeping.keep()
+    assert told == [0, BATCH, 2 * BATCH]
+
+
 def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_nowhere(door):
     bodies, asked, moments = {}, [], count(1)
 
