@@ -78,11 +78,15 @@ class Keeping:
         self._foreign: dict[str, str] = {}
         self._steps: deque[Step] = deque()
         self._busy = False
+        self._later: set[str] = set()
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
-        if self.scene.update(poses):
-            self.keep()
+        changed = self.scene.update(poses)
+        if changed is not None:
+            names, self._later = self._later | changed, set()
+            if names:
+                self.keep(names)
         elif not self._busy:
             self._start([])
 
@@ -92,7 +96,9 @@ class Keeping:
             self.scene.forget()
 
     def keep(self, names: Collection[str] | None = None) -> None:
-        """Do what must be done (about these entities and bodies), unless orders are under way already."""
+        """Do what must be done (about these entities and bodies), later if orders are under way already."""
+        if self._busy:
+            self._later.update(names or ())
         if self._busy or not self.scene.known:
             return
         actions = self.wanted(names)
@@ -120,7 +126,12 @@ class Keeping:
         return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
 
     def place_all(self) -> Future[Any]:
-        """Put every body back where the map says it stands; those that could not be made are tried again."""
+        """Put every body back where the map says it stands; those that could not be made are tried again.
+
+        Raises NoAnswer while no simulator runs.
+        """
+        if not self.scene.known:
+            raise errors.NoAnswer("no simulator runs")
         self._failed.clear()
         self.keep()
         placements = tuple(

@@ -3,9 +3,12 @@ from __future__ import annotations
 from concurrent.futures import Future
 from itertools import count
 
+import pytest
+
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.keeping import BATCH, Keeping, batches
 from schemas import commands as c
+from schemas import errors
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
 
@@ -83,6 +86,12 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 1
     keeping.place_all()
     assert len(spawns) == 2
+
+
+def test_a_reset_without_a_simulator_is_refused(door):
+    keeping = Keeping(CoordinatorConfig("map"), door, lambda *_: Future(), print)
+    with pytest.raises(errors.NoAnswer, match="no simulator runs"):
+        keeping.place_all()
 
 
 def test_bodies_are_told_of_batch_by_batch(door):
