@@ -215,14 +215,14 @@ def test_ctrl_c_ends_everything_within_five_seconds_and_the_map_survives(tmp_pat
         assert [e.name for e in client.list()] == ["table1"]
 
 
-def test_two_systems_on_one_machine_do_not_meet(tmp_path):
-    words = ("--abox", "none", "--no-record", "--no-sim")
-    with running(tmp_path / "a", *words) as a, running(tmp_path / "b", *words) as b:
-        with a.client() as client:
-            client.add("Table", "table_a")
-        with b.client() as client:
-            assert client.list() == ()
-        assert "table_a" in a.cli("list")
+def test_two_systems_on_one_machine_do_not_meet(flat, client, tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-record", "--no-sim") as other:
+        with other.client() as guest:
+            assert guest.list() == ()
+            guest.add("Table", "table_of_the_other")
+        assert "table_of_the_other" in other.cli("list")
+        assert "table_of_the_other" not in {e.name for e in client.list()}
+        assert "table_of_the_other" not in flat.cli("list")
 
 
 def test_nobody_there_is_no_answer_and_never_an_empty_list():

@@ -21,8 +21,8 @@ PATIENCE_S = 3.0
 RESTART_S = 30.0
 """Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
 _MEET_MS = 100
-"""Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few; but
-every other time Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
+"""Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
+often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 

@@ -3,13 +3,41 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any, Self
 
 import owlrl
 from owlrl.DatatypeHandling import AltXSDToPYTHON
 from rdflib import OWL, RDF, RDFS, XSD, Graph, Literal, URIRef
 
 _ERROR = URIRef("http://www.daml.org/2002/03/agents/agent-ont#error")
+
+
+class QuickGraph(Graph):
+    """A graph in memory that finds a triple at sight: owlrl looks up all that it concludes, often."""
+
+    def __init__(self) -> None:
+        super().__init__(store="SimpleMemory")
+        self._triples: set[Any] = set()
+
+    def add(self, triple: Any) -> Self:
+        """Add a triple."""
+        self._triples.add(triple)
+        return super().add(triple)
+
+    def addN(self, quads: Iterable[Any]) -> Self:  # noqa: N802
+        """Add the triples of quads."""
+        for s, p, o, _ in quads:
+            self.add((s, p, o))
+        return self
+
+    def remove(self, triple: Any) -> Self:
+        """Remove what matches a triple with wildcards."""
+        self._triples.difference_update(list(self.triples(triple)))
+        return super().remove(triple)
+
+    def __contains__(self, triple: Any) -> bool:
+        return triple in self._triples or super().__contains__(triple)
 
 
 def close(graph: Graph) -> list[str]:
@@ -38,6 +66,6 @@ def _unequal_literals(graph: Graph) -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    graph = Graph(store="SimpleMemory")
+    graph = QuickGraph()
     graph.parse(data=sys.stdin.read(), format="nt")
     print("\n".join(close(graph)))

@@ -2,6 +2,7 @@
 
 import os
 import random
+import shutil
 
 import pytest
 
@@ -17,17 +18,24 @@ from tests.kb_node.test_journal import edit, flip
 from tests.kb_node.test_tboxes import NEW_CLASSES, replace
 
 
-@pytest.fixture
-def data(tmp_path):
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
     """A folder with a map of 8 commits, of which the fifth replaced the TBox."""
-    semantic_map = home.new_map(tmp_path)
+    folder = tmp_path_factory.mktemp("whole")
+    semantic_map = home.new_map(folder)
     for i in range(1, 9):
         if i == 5:
             replace(semantic_map, i, NEW_CLASSES)
         else:
             semantic_map.commit(transaction(i, chair(f"chair{i}"), reason="x" * 2000))
     home.close(semantic_map)
-    return tmp_path
+    return folder
+
+
+@pytest.fixture
+def data(whole, tmp_path):
+    """A copy of it to be damaged."""
+    return shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
 
 
 def opened(data):

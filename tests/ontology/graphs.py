@@ -5,6 +5,7 @@ from pathlib import Path
 import rdflib
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
+from nodes.kb_node.owlrl_closure import QuickGraph
 from ontology.vocabulary import ABOX, TBOX
 
 DM = rdflib.Namespace(TBOX)
@@ -12,7 +13,7 @@ MAP = rdflib.Namespace(ABOX)
 
 
 def read(*paths: Path) -> Graph:
-    graph = Graph(store="SimpleMemory")
+    graph = QuickGraph()
     for path in paths:
         graph.parse(path, format="turtle")
     return graph

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from nodes.kb_node.seed import seed
 from nodes.supervisor.settings import JOURNAL, SETTINGS
-from ontology import FLAT_TTL
+from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.conftest import free_endpoint, running
 
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
@@ -53,8 +54,9 @@ def test_a_bad_abox_stops_the_start_and_leaves_existing_data_alone(tmp_path, abo
 def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
     data, file = tmp_path / "data", tmp_path / "bad.ttl"
     file.write_text("hello")
-    with running(data, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
-        client.add("Chair", "chair1")
+    old = tmp_path / "old.ttl"
+    old.write_text(f"<{BASE}_1#chair1> a <{BASE}_domain_model#Chair> .")
+    seed(data, HOUSEHOLD_TTL, old, fresh=False)
     before = (data / JOURNAL).read_bytes()
     assert up(data, "--abox", file, "--fresh")[0] == 2
     assert (data / JOURNAL).read_bytes() == before
@@ -142,19 +144,14 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
     assert "passed over, for no class has a model of that name: chiar.obj (did you mean chair" in line
 
 
-def test_one_system_a_data_folder(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record"):
+def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
+    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
         status, line = up(tmp_path)
         assert status == 1
         assert f"semmap down --data {tmp_path}" in line
-        assert down("--data", tmp_path) == (0, "stopped")
-    assert down("--data", tmp_path)[0] == 3
-
-
-def test_a_system_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
         status, line = down("--data", tmp_path / "other")
         assert status == 3
         assert f"{tmp_path} ({system.endpoint})" in line
         assert down("--connect", system.endpoint) == (0, "stopped")
     assert down("--connect", system.endpoint)[0] == 3
+    assert down("--data", tmp_path)[0] == 3

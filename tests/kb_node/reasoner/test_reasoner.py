@@ -86,7 +86,7 @@ def _spelling(fact):
 
 
 def check_same(reasoner, asserted, base, closure=None):
-    """The reasoner says what a fresh closure of what is asserted says; `closure` if it is there already."""
+    """The reasoner says what a fresh closure of what is asserted does (`closure`, if it is there already)."""
     closure = closure or closure_of(asserted, base)
     assert closure.clash is None
     assert set(reasoner.asserted()) == set(asserted)

@@ -70,8 +70,9 @@ def at_home():
     made.service.close()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def flat():
+    """One for all tests: whatever was cancelled, it goes on."""
     files = (HOUSEHOLD_TTL, FLAT_TTL)
     made = Home(
         [t for file in files for t in rdf_files.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
