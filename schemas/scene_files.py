@@ -23,6 +23,7 @@ from schemas.entities import (
     Text,
     Vector,
     orientation_from_yaw,
+    require_unit,
 )
 from schemas.errors import BadFile, BadRequest
 
@@ -45,6 +46,12 @@ class Described(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     alt: tuple[Text, ...] = ()
     affords: tuple[Text, ...] = ()
     """Affordances, by their names in the TBox: `containing`, `supporting`, ..."""
+
+    def __post_init__(self) -> None:
+        if self.orientation is not None:
+            if self.yaw is not None:
+                raise ValueError("give yaw or orientation, not both")
+            require_unit(self.orientation)
 
 
 _NARROWEST_RAD, _WIDEST_RAD = 0.02, 3.0
@@ -72,7 +79,7 @@ class Camera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit
         if self.look_at is not None and math.dist(self.at, self.look_at) < _NOWHERE_M:
             raise ValueError("look_at is where the camera itself stands")
         if self.orientation is not None:
-            Pose(position_m=self.at, orientation_wxyz=self.orientation)
+            require_unit(self.orientation)
         if not _NARROWEST_RAD <= self.fovy <= _WIDEST_RAD:
             raise ValueError(
                 f"fovy is {self.fovy:g}; it is an angle from {_NARROWEST_RAD:g} to {_WIDEST_RAD:g} radians"

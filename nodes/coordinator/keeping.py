@@ -7,11 +7,12 @@ never older than the orders before it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from functools import partial
 from typing import Any, TypeVar
 
+from nodes.coordinator.batches import batches
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.keeper import Actions, latest, order, reconcile
@@ -36,30 +37,9 @@ from schemas.scenes import (
 
 T = TypeVar("T")
 Ask = Callable[[str, Any, Any], Future[Any]]
-BATCH = 500
-_USUAL_AREA_M2 = 0.1
 GHOSTLY = "overlaps something, so it does not collide until it is free"
 Step = tuple[str, Any, Any, Callable[[Any], None]]
 """Verb, message, type of the reply, what to do with it."""
-
-
-def batches(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
-    """The orders in batches, what is wide first, so that a large map appears bit by bit.
-
-    Each doubles what is there: for each the simulator compiles everything anew. Within a batch it sees to it
-    itself that supports come before what stands on them.
-    """
-    if len(orders) > BATCH:
-        orders = sorted(orders, key=lambda order: -_area_m2(order))
-    start = 0
-    while start < len(orders):
-        end = start + max(BATCH, start)
-        yield tuple(orders[start:end])
-        start = end
-
-
-def _area_m2(order: BodyOrder) -> float:
-    return _USUAL_AREA_M2 if order.size_m is None else order.size_m[0] * order.size_m[1]
 
 
 class Keeping:

@@ -115,11 +115,18 @@ class Simulator:
             raise errors.Refused(
                 "time runs by itself; `semmap pause` stops it, and then it goes step by step"
             )
-        end_s = self._world.data.time + message.seconds
-        while (left_s := end_s - self._world.data.time) > self._world.model.opt.timestep / 2:
+        timestep_s, before_s = float(self._world.model.opt.timestep), self._now_s
+        end_s = before_s + max(message.seconds, timestep_s)
+        while (left_s := end_s - self._now_s) > timestep_s / 2:
             self._world.step(min(left_s, _PUBLISH_S, self._turn_s()))
             self._node.tick()  # it may take minutes, and who is silent so long is replaced
-        return self._told(Done(text=f"{message.seconds:g} s later; it is {self._world.data.time:.2f} s"))
+        passed_s = round(self._now_s - before_s, 6)
+        return self._told(Done(text=f"{passed_s:g} s later; it is {self._now_s:.2f} s"))
+
+    @property
+    def _now_s(self) -> float:
+        """The simulated time."""
+        return float(self._world.data.time)
 
     def _reset(self, _: Reset) -> Done:
         count = self._world.reset()

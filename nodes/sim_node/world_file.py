@@ -31,7 +31,7 @@ def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], N
     if path is None:
         return World(models=models, meanwhile=meanwhile)
     content = _read(path)
-    if not codec.looks_like_json(content):
+    if path.suffix != ".json" and not codec.looks_like_json(content):
         return World(groundwork.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
     scene = scene_files.read(content, path.name)
     views = (

@@ -58,6 +58,8 @@ def test_a_scene():
         ({"name": "my chair"}, "name"),
         ({"colour": "red"}, "colour"),
         ({"ref": ""}, "ref"),
+        ({"orientation": [1, 0, 0, 0]}, "entities: the 1st: give yaw or orientation, not both"),
+        ({"orientation": [1, 1, 0, 0], "yaw": None}, "entities: the 1st: the quaternion .* it must be 1"),
     ],
 )
 def test_a_scene_with_a_fault_names_the_field(change, said):

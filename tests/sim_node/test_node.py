@@ -117,8 +117,9 @@ def test_paused_time_goes_on_step_by_step_only(client):
     assert ask(client, "pause", Pause()).text == "time stands still already"
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
     time.sleep(0.1)
-    ask(client, "step", StepOnce(seconds=0.5))
+    assert ask(client, "step", StepOnce(seconds=0.5)).text.startswith("0.5 s later")
     assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 0.5)
+    assert ask(client, "step", StepOnce(seconds=1e-9)).text.startswith("0.002 s later")  # no less
     assert ask(client, "pause", Pause(off=True)).text == "time runs again"
     assert ask(client, "pause", Pause(off=True)).text == "time runs already"
     wait_for(lambda: ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55)

@@ -84,12 +84,12 @@ def test_a_byte_order_mark_is_no_part_of_a_world(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content", ["{", '{"entities": [{"class": "Cup", "at": [0, 0]}]}', "<mujoco", "hello"]
+    "content", ["", "{", "[]", '{"entities": [{"class": "Cup", "at": [0, 0]}]}', "<mujoco", "hello"]
 )
 def test_what_is_no_world_is_told(tmp_path, content):
     path = tmp_path / "world.json"
     path.write_text(content)
-    with pytest.raises(BadFile, match=r"world\.json"):
+    with pytest.raises(BadFile, match=r"world\.json is no scene: "):
         open_world(path, Models())
 
 
