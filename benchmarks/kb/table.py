@@ -63,6 +63,8 @@ def of_wire(wire: Wire) -> list[Row]:
     bounds = ((None, None), (None, None)) if wire.sim else ((2.0, 10.0), (1.0, 4.0))
     rows = _pair(f"over Zenoh: add, {where}", wire.add, *bounds)
     rows += _pair(f"over Zenoh: move, {where}", wire.move, *bounds)
+    for what, figures in (("add", wire.awake_add), ("move", wire.awake_move)):
+        rows.append(Row(f"{what}, the same with cores kept awake, p50", figures["p50_ms"], "ms"))
     least: Bounds = (None, None) if wire.sim else (1000, 3000)
     sustained = wire.sustained_moves_per_s
     rows.append(Row(f"sustained durable moves, {where}", sustained, "/s", least[0], least[1], more=True))

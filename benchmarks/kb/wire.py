@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 
+from benchmarks.kb.awake import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
 from nodes.extern.client import Client, connect
@@ -32,6 +33,9 @@ class Wire(NamedTuple):
     """From `semmap up` to a system that is ready, all processes and their imports included."""
     add: Figures
     move: Figures
+    awake_add: Figures
+    """The same while no core falls asleep."""
+    awake_move: Figures
     sustained_moves_per_s: float
     list_all: Figures
     sparql: Figures
@@ -49,10 +53,23 @@ def measure(folder: Path, size: int, *, sim: bool, repeat: int) -> Wire:
             client.update(name, at=pose(random_).position_m)
         add = each(range(repeat), lambda i: _add(client, f"new{i}", i, random_))
         move = each(names, lambda name: client.update(name, at=pose(random_).position_m))
+        with awake_cores():
+            awake_add = each(range(repeat), lambda i: _add(client, f"newer{i}", i, random_))
+            awake_move = each(names, lambda name: client.update(name, at=pose(random_).position_m))
         moves_per_s = _sustained(client, [f"e{i % size}" for i in range(4 * repeat)], random_)
         list_all = each(range(5), lambda _: client.list())
         return Wire(
-            size, sim, start_s, add, move, moves_per_s, list_all, _sparql(client, repeat), _memory(client)
+            size,
+            sim,
+            start_s,
+            add,
+            move,
+            awake_add,
+            awake_move,
+            moves_per_s,
+            list_all,
+            _sparql(client, repeat),
+            _memory(client),
         )
 
 
