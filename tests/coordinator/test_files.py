@@ -43,6 +43,12 @@ def test_what_is_nothing_of_the_kind_is_refused(content):
         kind_of(content, "file.json")
 
 
+def test_a_broken_json_file_is_told_as_such():
+    assert kind_of(b"[1, 2", "x.ttl") == "abox"
+    with pytest.raises(BadFile, match=r"x\.json is no valid JSON"):
+        kind_of(b"[1, 2", "x.json")
+
+
 def test_a_scene():
     (chair,) = scene_files.read(as_bytes(SCENE), "scene.json").entities
     assert (chair.class_, chair.name, chair.at, chair.yaw) == ("Chair", "chair9", (1.0, 2.0, 0.0), 1.5)
