@@ -34,8 +34,8 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
-PART = 50_000
-"""Triples that the reasoner takes in at once."""
+PART = 250_000
+"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 
 T = TypeVar("T")
 
