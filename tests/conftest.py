@@ -6,7 +6,6 @@ import contextlib
 import io
 import os
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -20,6 +19,7 @@ from hypothesis import HealthCheck, settings
 
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
+from nodes.extern.testing import free_endpoint
 from nodes.loop import Node
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
@@ -32,13 +32,6 @@ settings.load_profile("busy")
 _BIN = Path(sys.executable).parent
 _START_S = 90.0
 PATIENCE_S = 30.0
-
-
-def free_endpoint() -> str:
-    """A Zenoh endpoint on a port of loopback that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 @contextlib.contextmanager

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import queue
 import random
-import socket
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,7 +15,8 @@ import psutil  # type: ignore[import-untyped]
 from benchmarks.kb.awake import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from nodes import bus
-from nodes.extern.client import Client, connect
+from nodes.extern.client import Client
+from nodes.extern.testing import own_system
 from schemas import commands, keys, replies
 
 IN_FLIGHT = 32
@@ -119,29 +117,7 @@ def _memory(client: Client) -> dict[str, float]:
 
 @contextmanager
 def running(folder: Path, *words: str) -> Iterator[tuple[Client, float]]:
-    """A client of `semmap up` on a port of its own, and how long the start took [s]; stopped at the end."""
-    endpoint = _free_endpoint()
-    usual = ["--data", str(folder), "--listen", endpoint, "--no-record", "--world", "empty"]
-    command = [str(Path(sys.executable).with_name("semmap")), "up", *usual, *words]
+    """A client of `semmap up` with the journal in `folder`, and how long the start took [s]."""
     started = time.perf_counter()
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-        try:
-            assert process.stdout is not None
-            said = []
-            for line in process.stdout:
-                said.append(line)
-                if line.startswith("stop "):
-                    break
-            else:
-                raise RuntimeError("the system did not start:\n" + "".join(said))
-            took_s = time.perf_counter() - started
-            with connect(endpoint) as client:
-                yield client, took_s
-        finally:
-            process.terminate()
-
-
-def _free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    with own_system(folder, "--no-record", "--world", "empty", *words) as client:
+        yield client, time.perf_counter() - started

@@ -16,6 +16,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import queue
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal
@@ -299,13 +300,15 @@ class Client:
 
         The next one is waited for without end, or for `timeout` seconds, which then raises NoAnswer.
 
-        A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over.
+        A late subscriber is sent some of the past, too (that is how nothing is lost); it is passed over. When
+        the system gives way to one with another map, whose numbers may be lower, that one's commits follow.
         """
+        began_ns = time.time_ns()
         events: queue.SimpleQueue[Commit] = queue.SimpleQueue()
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
-            yield (commit for commit in _each(events, timeout) if commit.seq > now)
+            yield (c for c in _each(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
         finally:
             subscriber.undeclare()
 

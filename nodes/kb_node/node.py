@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, blank_nodes, garbage, loading, past, rdf_files, terms, undo
+from nodes.kb_node import answers, blank_nodes, garbage, loading, past, rdf_files, tboxes, terms, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.journal import FILENAME, Journal
@@ -218,7 +218,12 @@ class KnowledgeBase:
         transaction = loading.of_tbox(self.map, load, tbox)
         if transaction is None:
             return self._journal.commit_of(load.id)
-        return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+        try:
+            return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+        except tboxes.DoesNotFit as error:
+            raise tboxes.DoesNotFit(
+                f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
+            ) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

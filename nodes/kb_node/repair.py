@@ -39,10 +39,20 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
         if _is_sound(damaged, _counting("checked", tell)):
             return f"nothing is damaged: the map goes on from commit {damaged.last}"
         good, reason = _copy(damaged, new, _first_tbox(damaged, tbox), tell)
+        reason += _left_out(damaged, good)
     finally:
         damaged.close()
     kept = seed.put_in_place(new, path)
     return f"the map goes on from commit {good} ({reason}); the damaged file is kept in {kept}"
+
+
+def _left_out(damaged: Journal, good: int) -> str:
+    """Which commits after the damaged one are lost to the map, as far as that can be told."""
+    try:
+        last = damaged.last
+    except errors.Refused:
+        return ""
+    return f", and what came after it, up to commit {last}, is left out" if last > good + 1 else ""
 
 
 def _opened(path: Path) -> Journal:

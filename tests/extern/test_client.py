@@ -1,5 +1,7 @@
 """The client before a system that keeps it waiting."""
 
+import time
+
 import pytest
 
 from nodes import bus
@@ -33,3 +35,16 @@ def test_a_commit_that_does_not_come_is_waited_for_so_long():
             assert next(commits).seq == 4
             with pytest.raises(errors.NoAnswer, match=r"no commit came within 0\.5 s"):
                 next(commits)
+
+
+def test_the_commits_of_another_map_behind_the_same_endpoint_are_told_too():
+    endpoint = free_endpoint()
+    status = replies.SystemStatus(commit=168, entities=0, bodies=0, truth="map", in_agreement=True, nodes=())
+    network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
+    with bus.open_session(network) as session, connect(endpoint) as client:
+        bus.serve(session, keys.CMD, lambda request: request.reply(status))
+        publisher = bus.publisher(session, keys.COMMIT)
+        with client.commits(timeout=5.0) as commits:
+            for seq, stamp_ns in ((167, 1), (2, time.time_ns())):
+                publisher.put(codec.encode(Commit(seq=seq, stamp_ns=stamp_ns, id=str(seq), source="file")))
+            assert next(commits).seq == 2

@@ -48,13 +48,15 @@ def _load_described(view: MapView, command: Load, described: Iterable[Described]
     known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
     taken_names = set() if command.replace else set(view.entities)
     insert: dict[Triple, None] = {}
-    names: list[str] = []
+    names: dict[str, None] = {}
     for item, found in known:
         name = item.name or free_name(found.name, taken_names)
+        if name in names:
+            raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
         if name in taken_names:
             raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
         taken_names.add(name)
-        names.append(name)
+        names[name] = None
         insert.update(dict.fromkeys(transactions.describe(name, found, item)))
     gone = (yield from stars(tuple(view.entities))) if command.replace and view.entities else ()
 

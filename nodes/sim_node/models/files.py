@@ -57,7 +57,10 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     except ModelError as error:
         raise ModelError(f"the model file {path} cannot be used: {error}") from None
     except Exception as error:  # the readers of the file formats raise whatever they come across
-        raise ModelError(f"the model file {path} cannot be used: {' '.join(str(error).split())}") from None
+        said = " ".join(str(error).split())
+        if not isinstance(error, ValueError):  # a reader that stumbled, not one that complains
+            said = f"its content makes no sense ({type(error).__name__}: {said})"
+        raise ModelError(f"the model file {path} cannot be used: {said}") from None
     return model
 
 

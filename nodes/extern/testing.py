@@ -1,0 +1,50 @@
+"""A system of one's own, for tests of whatever talks to semmap."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from nodes.extern.client import Client, connect
+
+_READY = "stop "
+"""How the last line of the greeting begins."""
+
+
+@contextmanager
+def own_system(data: Path, *words: str) -> Iterator[Client]:
+    """A client of `semmap up --data DATA WORDS...` on a port of its own, which is stopped at the end.
+
+    Raises RuntimeError, with what it printed, when it does not start.
+    """
+    endpoint = free_endpoint()
+    up = [str(Path(sys.executable).with_name("semmap")), "up", "--data", str(data), "--listen", endpoint]
+    with subprocess.Popen(
+        [*up, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        try:
+            assert process.stdout is not None
+            said = []
+            for line in process.stdout:
+                said.append(line)
+                if line.startswith(_READY):
+                    break
+            else:
+                raise RuntimeError("the system did not start:\n" + "".join(said))
+            threading.Thread(target=process.stdout.read, daemon=True).start()  # or a full pipe would stop it
+            with connect(endpoint) as client:
+                yield client
+        finally:
+            process.terminate()
+
+
+def free_endpoint() -> str:
+    """A port of this machine that nobody uses just now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"

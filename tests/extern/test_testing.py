@@ -1,0 +1,21 @@
+"""A system for tests of one's own, as the README has it."""
+
+import pytest
+
+from nodes.extern.testing import own_system
+
+
+def test_a_system_is_there_for_a_test_and_gone_after_it(tmp_path):
+    with own_system(tmp_path / "map", "--abox", "none", "--no-sim", "--no-record") as semmap:
+        semmap.add("Cup", "cup1", at=(1.0, 2.0, 0.7))
+        assert "Dishware" in semmap.get("cup1").types
+    with own_system(tmp_path / "map", "--no-sim", "--no-record") as semmap:
+        assert [entity.name for entity in semmap.list()] == ["cup1"]
+
+
+def test_one_that_does_not_start_says_why(tmp_path):
+    with (
+        pytest.raises(RuntimeError, match=r"nobody\.ttl"),
+        own_system(tmp_path / "map", "--abox", str(tmp_path / "nobody.ttl")),
+    ):
+        pass
