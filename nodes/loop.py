@@ -56,6 +56,7 @@ class Node:
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._heartbeat = Heartbeat(name, session)
+        self._lifelines = bus.Lifelines(session)
 
     def serve(
         self,
@@ -149,6 +150,7 @@ class Node:
             timeout_s=timeout_s,
             patience_s=patience_s,
             meanwhile=meanwhile,
+            lifelines=self._lifelines,
         )
 
     def ask_later(
@@ -171,7 +173,16 @@ class Node:
         deadline_s = time.monotonic() + patience_s
 
         def send() -> None:
-            bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
+            bus.ask_later(
+                self.session,
+                prefix,
+                verb,
+                message,
+                kind,
+                answer,
+                timeout_s=timeout_s,
+                lifelines=self._lifelines,
+            )
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
@@ -190,6 +201,10 @@ class Node:
 
         send()
         return future
+
+    def is_there(self, node: str) -> bool:
+        """Is a process of another node ready? Any thread may ask."""
+        return self._lifelines.is_there(node)
 
     def afterwards(self, handle: Callable[[], None]) -> None:
         """Call `handle()` after the handler in hand has replied, and before any other event."""

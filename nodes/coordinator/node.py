@@ -102,7 +102,7 @@ class Coordinator:
 
     def _is_left_to_the_map(self, verb: str) -> bool:
         """Does the knowledge base answer such queries itself just now?"""
-        return verb in keys.OF_THE_MAP and self._health.ready("kb_node")
+        return verb in keys.OF_THE_MAP and self._node.is_there("kb_node")
 
     # Following
 

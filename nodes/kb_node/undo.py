@@ -43,7 +43,7 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
 
 def _reverse(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit | None:
     later = _later(journal, target)
-    _require_in_force(target, later)
+    _require_in_force(target, later if target.names else map(journal.commit, journal.undoing(target.seq)))
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
     undone = [target, *reversed(settling)]
     retract, insert = _net(undone)

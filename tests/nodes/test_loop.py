@@ -210,12 +210,16 @@ def test_a_reply_of_another_in_json(network):
 
 
 @pytest.mark.parametrize(
-    ("prefix", "verb", "error"),
-    [(PREFIX, "fly", errors.UnknownVerb), ("semmap/nobody", "get", errors.NoAnswer)],
+    ("prefix", "verb", "error", "said"),
+    [
+        (PREFIX, "fly", errors.UnknownVerb, "unknown verb 'fly'"),
+        ("semmap/nobody", "get", errors.NoAnswer, "no answer on semmap/nobody/get: nobody serves it"),
+    ],
 )
-def test_so_is_an_error(network, prefix, verb, error):
+def test_so_is_an_error(network, monkeypatch, prefix, verb, error, said):
+    monkeypatch.setattr(bus, "RESTART_S", 0.5)
     _, client = network
-    with pytest.raises(error):
+    with pytest.raises(error, match=said):
         bus.ask(client, PREFIX, "explain", asking_for(prefix, verb), replies.Done)
 
 
