@@ -58,15 +58,14 @@ class Keeping:
         self._foreign: dict[str, str] = {}
         self._steps: deque[Step] = deque()
         self._busy = False
-        self._later: set[str] = set()
+        self._later: set[str] = set()  # what changed while orders were under way
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
         changed = self.scene.update(poses)
         if changed is not None:
-            names, self._later = self._later | changed, set()
-            if names:
-                self.keep(names)
+            self._later |= changed
+            self._keep_rest()
         elif not self._busy:
             self._start([])
 
@@ -88,6 +87,12 @@ class Keeping:
         steps = self._orders(actions, refused)
         if steps:
             self._start(steps)
+
+    def _keep_rest(self) -> None:
+        """Do what must be done about those that had to wait."""
+        if self._later and not self._busy:
+            names, self._later = self._later, set()
+            self.keep(names)
 
     def wanted(self, names: Collection[str] | None = None) -> Actions:
         """What map and scene still differ in: all of it, or what concerns these entities and bodies."""
@@ -174,6 +179,7 @@ class Keeping:
     def _next(self) -> None:
         if not self._steps:
             self._busy = False
+            self._keep_rest()
             return
         verb, message, kind, handle = self._steps.popleft()
 

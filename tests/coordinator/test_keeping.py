@@ -61,6 +61,34 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 2
 
 
+def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
+    orders = []
+
+    def ask(verb, message, kind):
+        future = Future()
+        orders.append((verb, message, future))
+        return future
+
+    def answer():
+        verb, message, future = orders.pop()
+        if verb == "spawn":
+            future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
+        else:
+            bodies = tuple(keeping.scene.bodies.values())
+            future.set_result(Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=bodies))
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.keep({"chair1"})
+    door.change(c.Add(class_="Chair", name="chair2", at=(3.0, 1.0, 0.0)))
+    keeping.keep({"chair2"})
+    answer()
+    answer()
+    ((verb, message, _),) = orders
+    assert (verb, [order.name for order in message.bodies]) == ("spawn", ["chair2"])
+
+
 def test_a_reset_without_a_simulator_is_refused(door):
     keeping = Keeping(CoordinatorConfig("map"), door, lambda *_: Future(), print)
     with pytest.raises(errors.NoAnswer, match="no simulator runs"):
