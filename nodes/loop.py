@@ -12,6 +12,7 @@ import math
 import queue
 import signal
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -93,6 +94,20 @@ class Node:
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
         """Call `handle(message)` for each publication."""
         bus.follow(self.session, topic, lambda key, message: self._events.put(lambda: handle(message)))
+
+    def follow_newest(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
+        """Call `handle(message)` for publications; of those that wait, a busy node sees only the newest."""
+        waiting: deque[Any] = deque(maxlen=1)
+
+        def take() -> None:
+            if waiting:
+                handle(waiting.pop())
+
+        def keep(_: str, message: Any) -> None:
+            waiting.append(message)
+            self._events.put(take)
+
+        bus.follow(self.session, topic, keep)
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""

@@ -20,6 +20,9 @@ DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 PATIENCE_S = 3.0
 RESTART_S = 30.0
 """Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
+_MEET_MS = 100
+"""Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few; but
+every other time Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 
@@ -52,6 +55,7 @@ class Network:
             "connect/retry": retry,
             "listen/endpoints": list(self.listen),
             "scouting/multicast/enabled": False,
+            "scouting/delay": _MEET_MS,
             "transport/shared_memory/enabled": False,
             "transport/link/tx/lease": 2000,
             "transport/unicast/open_timeout": int(PATIENCE_S * 1000),

@@ -270,13 +270,13 @@ class Client:
         moved: replies.Moved = self.send(command)
         return moved
 
-    def pause(self, *, off: bool | None = None) -> replies.Done:
-        """Stop simulated time; with `off` let it run again; without `off`, a second time does so, too."""
+    def pause(self, *, off: bool = False) -> replies.Done:
+        """Stop simulated time, or with `off` let it run again."""
         done: replies.Done = self.send(commands.Pause(off=off))
         return done
 
     def step(self, seconds: float = 0.1) -> replies.Done:
-        """Let paused time go on for so long, 60 s at most."""
+        """Let paused time go on for so long, 60 s at most. Raises Refused while it runs by itself."""
         done: replies.Done = self.send(codec.convert({"seconds": _plain(seconds)}, commands.StepOnce))
         return done
 

@@ -12,6 +12,6 @@ from schemas import errors
 def test_a_malformed_endpoint_is_told(endpoint):
     with (
         pytest.raises((errors.BadRequest, errors.NoAnswer), match=endpoint),
-        bus.open_session(bus.Network(connect=(endpoint,))),
+        bus.open_session(bus.Network(connect=(endpoint,), patience_s=0.0)),
     ):
         pass
