@@ -5,6 +5,7 @@ A prefix for one robot (`robot1/semmap/...`) is Zenoh's own `namespace` setting.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from schemas.commits import Commit
@@ -79,6 +80,7 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
+@cache
 def servers(prefix: str, verb: str) -> tuple[str, ...]:
     """The nodes that may answer `prefix/verb`."""
     first_hand = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()

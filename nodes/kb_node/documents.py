@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain
 from typing import NamedTuple
 
 from nodes.kb_node.classes import ClassTable
@@ -14,7 +15,9 @@ from schemas.explanations import Term, Triple
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"
 _FEW = 5
-_FLOATS = frozenset((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
+_WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
+_FLOATS = frozenset(chain(*_WHOLES))
+_BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
 _OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
 
 
@@ -50,7 +53,8 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
     doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
     kept = _without(gone, [t for t in triples if t not in doubtful])
-    return SortedOut(kept, words, [*_unknown_properties(kept, classes), *_own_classes(declared, classes)])
+    notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
+    return SortedOut(kept, words, list(notes))
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
@@ -87,6 +91,24 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
         return []
     few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
     return [f"the classes of the map stay those of its TBox, without {few}; --tbox loads others"]
+
+
+def _halves(triples: list[Triple]) -> list[str]:
+    """A word on positions, orientations and sizes that lack a number: they are as good as none."""
+    said: dict[Term, int] = {}
+    for s, p, _ in triples:
+        if p in _BITS:
+            said[s] = said.get(s, 0) | _BITS[p]
+    lacking = [
+        f"{v.local_name(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        for s, bits in said.items()
+        for whole in _WHOLES
+        if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
+    ]
+    if not lacking:
+        return []
+    few = ", ".join(lacking[:_FEW]) + (f" and {len(lacking) - _FEW} more like that" if lacking[_FEW:] else "")
+    return [f"a position, orientation or size counts only when it is whole: {few}"]
 
 
 def is_built_in(term: Term) -> bool:

@@ -83,3 +83,28 @@ def test_a_property_that_may_be_misspelt_is_told(classes):
     triples = [(v.entity_iri("cup1"), v.dm("hasPositoin"), v.entity_iri("x"))]
     (note,) = documents.sort_out(triples, classes, skip_unknown=False).notes
     assert "unknown property 'hasPositoin' (of cup1; did you mean hasPosition" in note
+
+
+HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"{HALF} .", "p has no float_coordinates_y and no float_coordinates_z"),
+        (f"{HALF} ; dm:float_coordinates_z 0 .", "p has no float_coordinates_y"),
+        (f"{HALF} ; dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 .", None),
+        (":s dm:float_size_x 1 ; dm:float_size_y 1 .", "s has no float_size_z"),
+    ],
+)
+def test_what_lacks_a_number_is_told(text, said, classes):
+    notes = documents.sort_out(turtle(text), classes, skip_unknown=False).notes
+    notes = [note for note in notes if "unknown" not in note]
+    whole = f"a position, orientation or size counts only when it is whole: {said}"
+    assert notes == ([whole] if said else [])
+
+
+def test_of_very_many_that_lack_a_number_a_few_are_told(classes):
+    text = "".join(f":s{i} dm:float_size_x 1 ." for i in range(50))
+    *_, note = documents.sort_out(turtle(text), classes, skip_unknown=False).notes
+    assert note.endswith("s4 has no float_size_y and no float_size_z and 45 more like that")

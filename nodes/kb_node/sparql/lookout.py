@@ -1,7 +1,8 @@
 """The standing queries: who watches what, and the looks that commits make necessary.
 
-They have one reader to themselves, which goes through the commits that may touch them one by one. When it
-falls too far behind, or has died, what is left to do is done in one step.
+They have one reader to themselves, which goes through the commits that may touch them one by one. Where it
+cannot follow any more, because all triples are others, the next one stands by and goes on from there. When
+that is too far behind, too, or the reader has died, what is left to do is done in one step.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import math
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
@@ -48,6 +49,19 @@ class Look:
     """The command that waits for its first rows."""
 
 
+@dataclass
+class Relief:
+    """From here on another reader looks, which has the triples as they were then."""
+
+    lane: Connection
+    reader: Reader
+
+    def end(self) -> None:
+        """It is not needed any more."""
+        self.reader.end()
+        self.lane.close()
+
+
 class Lookout:
     """Keeps the standing queries, and tells their news in the order of the commits."""
 
@@ -58,17 +72,16 @@ class Lookout:
         self._seq = 0
         self._numbers = count()
         self._standing: dict[str, Standing] = {}
-        self._looks: deque[Look] = deque()
+        self._looks: deque[Look | Relief] = deque()
         self._looking: Look | None = None
-        self._reader: Reader | None = None
-        self._reader_is_old = False
-        self._lane: Connection | None = None
+        self._on_duty: Relief | None = None
+        self._is_behind = False
 
     @property
     def connections(self) -> Iterator[Connection]:
         """Readable when a look is done."""
-        if self._lane is not None and self._looking is not None:
-            yield self._lane
+        if self._on_duty is not None and self._looking is not None:
+            yield self._on_duty.lane
 
     @property
     def patience_s(self) -> float | None:
@@ -107,30 +120,35 @@ class Lookout:
         self._looks.extend(Look(s, since=seq - 1, seq=seq) for s in self._standing.values())
 
     def renew_reader(self) -> None:
-        """The one that there is cannot follow any more."""
-        self._reader_is_old = True
+        """The one that there is cannot follow any more: it does what there is to do, and then a new one."""
+        if any(isinstance(look, Relief) for look in self._looks):
+            self._is_behind = True
+        elif self._on_duty is not None:
+            self._looks.append(self._relief())
 
     def done(self, connection: Connection) -> None:
         """The reader has answered, or died."""
-        if connection is self._lane:
+        if self._on_duty is not None and connection is self._on_duty.lane:
             self._finish()
 
     def go_on(self) -> None:
         """Begin the next look; let leases end."""
         for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
             self._drop(standing)
-        if self._looking is None and self._reader_is_old:
+        if self._looking is None and self._is_behind:
             self.end()
-        if self._looking is None and self._looks:
+        while self._looking is None and self._looks:
             self._begin()
 
     def end(self) -> None:
-        """Part with the reader."""
-        if self._reader is not None and self._lane is not None:
-            self._reader.end()
-            self._lane.close()
-        self._reader = self._lane = None
-        self._reader_is_old = False
+        """Part with all readers; what is left to do is left to the next, in one step."""
+        reliefs = [look for look in self._looks if isinstance(look, Relief)]
+        for reader in filter(None, (self._on_duty, *reliefs)):
+            reader.end()
+        looks = [look for look in self._looks if isinstance(look, Look)]
+        self._looks = deque(_in_one_step(looks, self._seq))
+        self._on_duty = None
+        self._is_behind = False
 
     # Standing queries
 
@@ -146,19 +164,25 @@ class Lookout:
     def _drop(self, standing: Standing, error: errors.SemmapError | None = None) -> None:
         """It is over; with an error, its followers are told why."""
         self._standing.pop(standing.watch, None)
-        self._looks = deque(look for look in self._looks if look.standing is not standing)
+        left = (look for look in self._looks if isinstance(look, Relief) or look.standing is not standing)
+        self._looks = deque(left)
         last = error and RowsChanged(watch=standing.watch, seq=self._seq, since=self._seq, error=error.text)
         self._send(News(watch=standing.watch, rows=last or None, ended=True))
 
     # Looks
 
     def _begin(self) -> None:
-        if self._lane is None:
-            self._lane, there = Pipe()
-            self._reader = self._hire(there)
-            there.close()
-            self._looks = deque(_in_one_step(self._looks, self._seq))
-        look = self._looking = self._looks.popleft()
+        if self._on_duty is None:
+            self.end()
+            if not self._looks:
+                return
+            self._on_duty = self._relief()
+        look = self._looks.popleft()
+        if isinstance(look, Relief):
+            self._on_duty.end()
+            self._on_duty = look
+            return
+        self._looking = look
         question = Question(
             number=next(self._numbers),
             seq=look.seq,
@@ -168,7 +192,13 @@ class Lookout:
             timeout_s=TIMEOUT_S,
         )
         with suppress(OSError):  # if the reader is dead, `_result` tells
-            self._lane.send_bytes(msgpack.encode(question))
+            self._on_duty.lane.send_bytes(msgpack.encode(question))
+
+    def _relief(self) -> Relief:
+        lane, there = Pipe()
+        reader = self._hire(there)
+        there.close()
+        return Relief(lane, reader)
 
     def _finish(self) -> None:
         look, self._looking = self._looking, None
@@ -190,14 +220,13 @@ class Lookout:
 
     def _result(self) -> SparqlResult:
         """What the reader found. Raises the query's error, also that the reader died of it."""
-        assert self._lane is not None
-        assert self._reader is not None
+        assert self._on_duty is not None
         try:
-            outcome = outcomes.decode(self._lane.recv_bytes())
+            outcome = outcomes.decode(self._on_duty.lane.recv_bytes())
         except (EOFError, OSError):
-            number = self._reader.bury()
-            self._lane.close()
-            self._reader = self._lane = None
+            number = self._on_duty.reader.bury()
+            self._on_duty.lane.close()
+            self._on_duty = None
             raise cause_of_death(number, TIMEOUT_S) from None
         if outcome.error is not None:
             raise errors.from_message(outcome.error)
@@ -208,7 +237,7 @@ def _encoded(message: Any) -> Raw:
     return Raw(msgpack.encode(message))
 
 
-def _in_one_step(looks: deque[Look], seq: int) -> Iterator[Look]:
+def _in_one_step(looks: Iterable[Look], seq: int) -> Iterator[Look]:
     """One look a standing query, at the present, instead of several at the past."""
     last: dict[str, Look] = {}
     for look in looks:

@@ -108,9 +108,9 @@ class Worker:
         """Those who read the old one cannot catch up any more: they go as soon as they have answered."""
         for reader in self._readers.values():
             reader.retire()
-        self.lookout.renew_reader()
         self._log.close()
         self._log = Log()
+        self.lookout.renew_reader()
 
     def _reader(self, lane: Connection) -> Reader:
         return Reader(lane, self._dataset, self._log, infers=self._consequences is not None)

@@ -253,6 +253,32 @@ def test_another_tbox_is_followed(at_home):
     assert at_home.ask(CHAIRS).rows
 
 
+@pytest.mark.parametrize("inferred", [False, True])
+def test_what_is_committed_around_another_tbox_is_told_one_by_one(at_home, inferred):
+    at_home.watch(CHAIRS, inferred=inferred)
+    for number in range(30):
+        at_home.commit(chair(f"before{number}"))
+    at_home.replace([*at_home.reasoner.asserted(), *chair("by_the_tbox")])
+    for number in range(30):
+        at_home.commit(chair(f"after{number}"))
+    names = [*(f"before{n}" for n in range(30)), "by_the_tbox", *(f"after{n}" for n in range(30))]
+    heard = [at_home.hear().rows for _ in names]
+    assert [(rows.seq, rows.appeared) for rows in heard] == [
+        (seq, ((iri(name),),)) for seq, name in enumerate(names, start=1)
+    ]
+
+
+def test_what_falls_behind_two_other_tboxes_is_told_in_one_step(at_home):
+    at_home.watch(CHAIRS)
+    for _ in range(4):
+        at_home.commit(chair(f"c{at_home.seq}"))
+        at_home.replace(list(at_home.reasoner.asserted()))
+    appeared = []
+    while len(appeared) < 4:
+        appeared += at_home.hear().rows.appeared
+    assert appeared == [(iri(f"c{n}"),) for n in (0, 2, 4, 6)]
+
+
 def test_nothing_is_started_before_the_first_question(at_home):
     at_home.commit(chair("a"))
     with pytest.raises(errors.UnknownName):
