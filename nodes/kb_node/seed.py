@@ -42,7 +42,9 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
             sorted_out = documents.sort_out(said, ClassTable(reasoner), skip_unknown=False)
         except errors.UnknownClass as error:
             text = error.text.removesuffix(errors.SKIP_UNKNOWN)
-            raise type(error)(f"{abox}: {text}; another map is given with --abox FILE|none") from None
+            raise type(error)(
+                f"{abox}: {text}; other classes are given with --tbox FILE, another map with --abox FILE|none"
+            ) from None
         except errors.BadRequest as error:
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += sorted_out.triples

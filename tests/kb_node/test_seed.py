@@ -110,7 +110,7 @@ def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
             TBOX_TURTLE,
             ABOX + ":x a dm:Xylophone .",
             errors.UnknownClass,
-            "'Xylophone' .*; another map is given with --abox FILE|none",
+            "'Xylophone' .*; other classes are given with --tbox FILE, another map with --abox FILE",
         ),
         (TBOX_TURTLE, ABOX + "[] a dm:Chair .", errors.BadRequest, "my abox.ttl: a Chair is a blank node"),
     ],
