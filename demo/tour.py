@@ -235,7 +235,8 @@ def tour(t: Tour) -> None:
     t.do("list", "--class", "Beer", "--format", "legacy", holds="type_full")
 
     t.tell("Stop time, let it go on for a moment, let it run; put every body back; take a picture")
-    t.do("pause", "--on")
+    t.do("step", status=1, holds="semmap pause")
+    t.do("pause")
     t.do("step", "0.5")
     t.do("pause", "--off")
     t.do("reset")

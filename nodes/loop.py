@@ -12,6 +12,7 @@ import math
 import queue
 import signal
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -55,6 +56,7 @@ class Node:
         self._afterwards: list[Callable[[], None]] = []
         self._stopping = False
         self._heartbeat = Heartbeat(name, session)
+        self._lifelines = bus.Lifelines(session)
 
     def serve(
         self,
@@ -92,6 +94,20 @@ class Node:
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
         """Call `handle(message)` for each publication."""
         bus.follow(self.session, topic, lambda key, message: self._events.put(lambda: handle(message)))
+
+    def follow_newest(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
+        """Call `handle(message)` for publications; of those that wait, a busy node sees only the newest."""
+        waiting: deque[Any] = deque(maxlen=1)
+
+        def take() -> None:
+            if waiting:
+                handle(waiting.pop())
+
+        def keep(_: str, message: Any) -> None:
+            waiting.append(message)
+            self._events.put(take)
+
+        bus.follow(self.session, topic, keep)
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""
@@ -134,6 +150,7 @@ class Node:
             timeout_s=timeout_s,
             patience_s=patience_s,
             meanwhile=meanwhile,
+            lifelines=self._lifelines,
         )
 
     def ask_later(
@@ -156,7 +173,16 @@ class Node:
         deadline_s = time.monotonic() + patience_s
 
         def send() -> None:
-            bus.ask_later(self.session, prefix, verb, message, kind, answer, timeout_s=timeout_s)
+            bus.ask_later(
+                self.session,
+                prefix,
+                verb,
+                message,
+                kind,
+                answer,
+                timeout_s=timeout_s,
+                lifelines=self._lifelines,
+            )
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
@@ -175,6 +201,10 @@ class Node:
 
         send()
         return future
+
+    def is_there(self, node: str) -> bool:
+        """Is a process of another node ready? Any thread may ask."""
+        return self._lifelines.is_there(node)
 
     def afterwards(self, handle: Callable[[], None]) -> None:
         """Call `handle()` after the handler in hand has replied, and before any other event."""

@@ -260,13 +260,13 @@ class Move(Command, frozen=True, kw_only=True, tag="move"):
 
 
 class Pause(Command, frozen=True, kw_only=True, tag="pause"):
-    """Stop simulated time, or with `off` let it run again; without `off` a second time does so, too."""
+    """Stop simulated time, or with `off` let it run again; where it does so already, it says that."""
 
-    off: bool | None = None
+    off: bool = False
 
 
 class StepOnce(Command, frozen=True, kw_only=True, tag="step"):
-    """Let paused time go on by `seconds`."""
+    """Let paused time go on by `seconds`; refused while it runs by itself."""
 
     seconds: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.1
 

@@ -39,6 +39,13 @@ IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 _UNIT_TOLERANCE = 1e-3
 
 
+def require_unit(quaternion: Quaternion) -> None:
+    """Raises ValueError for a quaternion that is not of unit length (to one in a thousand)."""
+    norm = math.hypot(*quaternion)
+    if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
+        raise ValueError(f"the quaternion {quaternion} has length {norm:.4g}; it must be 1")
+
+
 class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where a thing stands in the map frame (z up): its bottom centre [m] and its orientation.
 
@@ -49,9 +56,7 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     orientation_wxyz: Quaternion = IDENTITY
 
     def __post_init__(self) -> None:
-        norm = math.hypot(*self.orientation_wxyz)
-        if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
-            raise ValueError(f"the quaternion {self.orientation_wxyz} has length {norm:.4g}; it must be 1")
+        require_unit(self.orientation_wxyz)
 
     @property
     def yaw_rad(self) -> float:

@@ -79,6 +79,17 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
+def servers(prefix: str, verb: str) -> tuple[str, ...]:
+    """The nodes that may answer `prefix/verb`."""
+    first_hand = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()
+    return first_hand + tuple(node for served, node in SERVED_BY.items() if served == prefix)
+
+
+def live_node(key: str) -> str:
+    """The node of a liveliness token's key."""
+    return key.split("/")[-2]
+
+
 def last_chunk(key: str) -> str:
     """The verb of a query's key, or the node of a heartbeat's."""
     return key.rsplit("/", 1)[-1]

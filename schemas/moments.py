@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
 from datetime import datetime
 from typing import Annotated, NamedTuple
 
@@ -9,50 +11,83 @@ from msgspec import Meta
 
 from schemas.errors import BadRequest
 
+_S = 1_000_000_000
 _FIRST_SECOND = 1_000_000_000
 """Numbers from here on are seconds since 1970 (2001 and later), smaller ones are commits."""
+_FIRST_STAMP = _FIRST_SECOND * _S
+"""Whole numbers from here on are stamps: nanoseconds since 1970."""
+_ROUNDING_NS = 1000
+"""Floats and datetimes round a stamp, to less than this."""
+
+_WRITTEN = re.compile(
+    r"(?P<date>\d{4}-\d\d-\d\d)(?P<time>[Tt ]\d\d(:\d\d(:\d\d([.,]\d+)?)?)?)?(?P<offset>Z|[+-]\d\d:?\d\d)?"
+)
+_LASTS_S = {
+    len(time): seconds for time, seconds in (("", 86_400), ("T12", 3600), ("T12:30", 60), ("T12:30:05", 1))
+}
+"""How long a time is, by how much of it is written; with a fraction of a second it is exact."""
 
 When = Annotated[int, Meta(ge=0)] | Annotated[float, Meta(ge=0.0)] | Annotated[str, Meta(min_length=1)]
-"""As it is written: a commit's number, seconds since 1970, or ISO 8601 (without an offset it is local time,
-that of the client where a client of ours sends it)."""
+"""As it is written: a commit's number, seconds since 1970, a stamp as replies have it (`stamp_ns`), or ISO
+8601 (without an offset it is local time, that of the client where a client of ours sends it).
+
+A time is as long as it is written: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
 
 
 class Moment(NamedTuple):
-    """Just after a commit, or a time [ns since 1970]; exactly one of them is given."""
+    """Just after a commit, or from a time to another [ns since 1970], both included."""
 
     commit: int | None = None
-    stamp_ns: int | None = None
+    first_ns: int = 0
+    last_ns: int = 0
 
 
 def read_moment(when: When) -> Moment:
     """What is meant by a commit's number or a time. Raises BadRequest."""
-    if isinstance(when, str):
-        return _read_text(when)
-    if isinstance(when, int) and when < _FIRST_SECOND:
-        return Moment(commit=when)
-    return Moment(stamp_ns=round(when * 1_000_000_000))
+    try:
+        return _read_text(when) if isinstance(when, str) else _read_number(when)
+    except (ValueError, OverflowError, OSError):
+        raise BadRequest(
+            f"'{when}' is neither a commit's number nor a time like 2026-03-01T12:30 or 1772368200.5"
+        ) from None
 
 
 def with_offset(when: When | None) -> When | None:
     """The same for a reader in another time zone: a time without an offset gets that of this machine."""
-    if not isinstance(when, str) or when.replace(".", "", 1).isdigit():
+    if not isinstance(when, str) or (written := _WRITTEN.fullmatch(when)) is None or written["offset"]:
         return when
     try:
-        return datetime.fromisoformat(when).astimezone().isoformat()
+        return when + datetime.fromisoformat(when).astimezone().strftime("%z")[:5]
     except (ValueError, OverflowError, OSError):
         return when  # whoever reads it says what is wrong with it
 
 
 def _read_text(text: str) -> Moment:
     for number in (int, float):
-        try:
-            if (value := number(text)) >= 0:
-                return read_moment(value)
-        except (ValueError, OverflowError):
-            continue
-    try:
-        return Moment(stamp_ns=round(datetime.fromisoformat(text).timestamp() * 1_000_000) * 1000)
-    except (ValueError, OverflowError, OSError):
-        raise BadRequest(
-            f"'{text}' is neither a commit's number nor a time like 2026-03-01T12:30 or 1772368200.5"
-        ) from None
+        with contextlib.suppress(ValueError):
+            return _read_number(number(text))
+    if (written := _WRITTEN.fullmatch(text)) is None:
+        raise ValueError
+    time = written["time"] or ""
+    begin = datetime.fromisoformat(f"{written['date']}{time or 'T00'}{written['offset'] or ''}")
+    stamp_ns = round(begin.timestamp() * 1_000_000) * 1000
+    seconds = _LASTS_S.get(len(time))
+    return _exactly(stamp_ns) if seconds is None else _lasting(stamp_ns, seconds)
+
+
+def _read_number(number: float) -> Moment:
+    if number < 0:
+        raise ValueError
+    if isinstance(number, float):
+        return _exactly(round(number * _S))
+    if number < _FIRST_SECOND:
+        return Moment(commit=number)
+    return _exactly(number) if number >= _FIRST_STAMP else _lasting(number * _S, 1)
+
+
+def _exactly(stamp_ns: int) -> Moment:
+    return Moment(first_ns=stamp_ns - _ROUNDING_NS, last_ns=stamp_ns + _ROUNDING_NS)
+
+
+def _lasting(first_ns: int, seconds: int) -> Moment:
+    return Moment(first_ns=first_ns, last_ns=first_ns + seconds * _S - 1)

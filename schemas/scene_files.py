@@ -1,4 +1,4 @@
-"""Scenes in JSON: `{"entities": [{"class": "Chair", "at": [1, 2, 0]}, ...]}`.
+"""Scenes in JSON: `{"entities": [{"class": "Chair", "at": [1, 2, 0]}, ...]}`; a world has `"cameras"`, too.
 
 Their JSON Schema is `schemas/scene.schema.json`; `python -m schemas.scene_files` prints it.
 """
@@ -6,10 +6,12 @@ Their JSON Schema is `schemas/scene.schema.json`; `python -m schemas.scene_files
 from __future__ import annotations
 
 import json
+import math
 import re
+from typing import Annotated
 
 import msgspec
-from msgspec import Struct, field
+from msgspec import Meta, Struct, field
 
 from schemas import codec
 from schemas.entities import (
@@ -21,6 +23,7 @@ from schemas.entities import (
     Text,
     Vector,
     orientation_from_yaw,
+    require_unit,
 )
 from schemas.errors import BadFile, BadRequest
 
@@ -43,6 +46,44 @@ class Described(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     alt: tuple[Text, ...] = ()
     affords: tuple[Text, ...] = ()
     """Affordances, by their names in the TBox: `containing`, `supporting`, ..."""
+
+    def __post_init__(self) -> None:
+        if self.orientation is not None:
+            if self.yaw is not None:
+                raise ValueError("give yaw or orientation, not both")
+            require_unit(self.orientation)
+
+
+_NARROWEST_RAD, _WIDEST_RAD = 0.02, 3.0
+_NOWHERE_M = 1e-6
+FieldOfView = Annotated[float, Meta(extra_json_schema={"minimum": _NARROWEST_RAD, "maximum": _WIDEST_RAD})]
+
+
+class Camera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """A camera of a world, at `at` [m] in the map frame.
+
+    It is turned towards the point `look_at` [m], with the map's z axis up in the picture; or `orientation`
+    (unit quaternion wxyz) is that of its optical frame: x to the right, y down, z into the scene. `fovy` is
+    its vertical angle of view [rad].
+    """
+
+    at: Vector
+    name: Name | None = None
+    look_at: Vector | None = None
+    orientation: Quaternion | None = None
+    fovy: FieldOfView = 1.0
+
+    def __post_init__(self) -> None:
+        if (self.look_at is None) == (self.orientation is None):
+            raise ValueError("a camera needs either look_at or orientation")
+        if self.look_at is not None and math.dist(self.at, self.look_at) < _NOWHERE_M:
+            raise ValueError("look_at is where the camera itself stands")
+        if self.orientation is not None:
+            require_unit(self.orientation)
+        if not _NARROWEST_RAD <= self.fovy <= _WIDEST_RAD:
+            raise ValueError(
+                f"fovy is {self.fovy:g}; it is an angle from {_NARROWEST_RAD:g} to {_WIDEST_RAD:g} radians"
+            )
 
 
 def pose_of(
@@ -70,16 +111,23 @@ _NO_JSON = re.compile(rb"[\[:,]\s*-?(?:NaN|Infinity)\b")
 
 
 class SceneFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What stands in a scene."""
+    """What stands in a scene. Of its `cameras` only a world takes notice; null leaves the choice to it."""
 
     entities: tuple[Described, ...]
+    cameras: tuple[Camera, ...] | None = None
     schema_: str = field(name="$schema", default="")
 
+    def __post_init__(self) -> None:
+        names = [camera.name for camera in self.cameras or () if camera.name is not None]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"two cameras are named {name}")
 
-def read(content: bytes, filename: str) -> tuple[Described, ...]:
-    """The entities of a scene file. Raises BadFile naming the field at fault."""
+
+def read(content: bytes, filename: str) -> SceneFile:
+    """What a scene file says. Raises BadFile naming the field at fault."""
     try:
-        return codec.decode(content.removeprefix(_BOM), SceneFile).entities
+        return codec.decode(content.removeprefix(_BOM), SceneFile)
     except BadRequest as error:
         reason = error.text.removeprefix("malformed message: ")
         if _NO_JSON.search(content):

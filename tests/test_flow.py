@@ -91,7 +91,7 @@ def test_time_stands_still_goes_on_by_steps_and_bodies_go_back_to_the_map(client
         return bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
 
     client.add("Box", "still_box", at=(2.0, 1.8, 0.0), size=(0.2, 0.2, 0.2), wait=True)
-    client.pause(off=False)
+    client.pause()
     try:
         client.move("still_box", (2.0, 1.8, 0.8))
         before = scene().sim_time_s

@@ -1,6 +1,7 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
 from nodes.bus.asking import TIMEOUT_S, Encoded, ask, ask_later, read_reply
+from nodes.bus.lifelines import Lifelines
 from nodes.bus.pubsub import follow, follow_cameras, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import DEFAULT_ENDPOINT, PATIENCE_S, RESTART_S, Network, open_session
@@ -11,6 +12,7 @@ __all__ = [
     "RESTART_S",
     "TIMEOUT_S",
     "Encoded",
+    "Lifelines",
     "Network",
     "Request",
     "ask",

@@ -16,10 +16,13 @@ from typing import Any, NoReturn
 
 import zenoh
 
+from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
 from schemas import codec, errors, keys
 
 TIMEOUT_S = 30.0
+_HAD_IT_S = 0.1
+"""A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
@@ -49,35 +52,51 @@ def ask(
     patience_s: float = PATIENCE_S,
     meanwhile: Callable[[], None] | None = None,
     first_hand: bool = False,
+    lifelines: Lifelines | None = None,
 ) -> Any:
     """Send `message` to `prefix/verb` and return the reply, of type `kind`.
 
     `meanwhile` is called again and again while the answer takes its time. `first_hand`: whoever serves just
-    this verb is asked, and those who serve all verbs of the prefix only if there is no such one.
+    this verb is asked, and those who serve all verbs of the prefix only if there is no such one. With
+    `lifelines`, those of this session, the question ends, and is asked again, when who was asked is gone.
 
-    Raises the error of the reply; NoAnswer when nobody serves the key within `patience_s` or the one
+    Raises the error of the reply; NoAnswer when nobody serves the key for `patience_s` or the one
     that does takes longer than `timeout_s`.
     """
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    deadline = time.monotonic() + patience_s
+    deadline_s = time.monotonic() + patience_s
     while True:
-        replies = session.get(
+        asked_at_s = time.monotonic()
+        replies = _get(
+            session,
             key,
+            lifelines.of(keys.servers(prefix, verb)) if lifelines else None,
             payload=payload,
             encoding=encoding,
             timeout=timeout_s,
-            consolidation=_AS_THEY_COME,
             target=zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING,
         )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
             return read_reply(key, reply, kind, timeout_s).decode()
+        if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
+            deadline_s = now_s + patience_s
         if first_hand:
             first_hand = False
             continue
-        if time.monotonic() > deadline:
+        if now_s > deadline_s:
             _nobody(key)
         time.sleep(0.01)
+
+
+def _get(session: zenoh.Session, key: str, lifeline: zenoh.CancellationToken | None, **options: Any) -> Any:
+    """The replies as they come; none if the lifeline has just been cut."""
+    try:
+        return session.get(key, consolidation=_AS_THEY_COME, cancellation_token=lifeline, **options)
+    except zenoh.ZError:
+        if lifeline is None or not lifeline.is_cancelled:
+            raise
+        return ()
 
 
 def _polled(replies: Any, meanwhile: Callable[[], None]) -> Iterator[zenoh.Reply]:
@@ -102,6 +121,7 @@ def ask_later(
     answer: Callable[[Callable[[], Encoded]], None],
     *,
     timeout_s: float = TIMEOUT_S,
+    lifelines: Lifelines | None = None,
 ) -> None:
     """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
 
@@ -120,9 +140,8 @@ def ask_later(
 
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    session.get(
-        key, handler, payload=payload, encoding=encoding, timeout=timeout_s, consolidation=_AS_THEY_COME
-    )
+    lifeline = lifelines.of(keys.servers(prefix, verb)) if lifelines else None
+    _get(session, key, lifeline, handler=handler, payload=payload, encoding=encoding, timeout=timeout_s)
 
 
 def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:

@@ -32,10 +32,6 @@ class HealthView:
         """Is the node alive, or is it too early to tell? A heart beats once a second."""
         return self.alive(node) or time.monotonic() < self._told_from
 
-    def ready(self, node: str) -> bool:
-        """Is the node alive, and past its start? Any thread may ask."""
-        return self.alive(node) and self._last[node][0].state == "ready"
-
     def nodes(self) -> tuple[NodeStatus, ...]:
         """One row a node, by name."""
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))

@@ -7,14 +7,15 @@ never older than the orders before it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from functools import partial
 from typing import Any, TypeVar
 
+from nodes.coordinator.batches import batches
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.keeper import Actions, latest, reconcile
+from nodes.coordinator.keeper import Actions, latest, order, reconcile
 from nodes.coordinator.scene_view import SceneView
 from schemas import errors
 from schemas.commands import Add
@@ -36,30 +37,9 @@ from schemas.scenes import (
 
 T = TypeVar("T")
 Ask = Callable[[str, Any, Any], Future[Any]]
-BATCH = 500
-_USUAL_AREA_M2 = 0.1
 GHOSTLY = "overlaps something, so it does not collide until it is free"
 Step = tuple[str, Any, Any, Callable[[Any], None]]
 """Verb, message, type of the reply, what to do with it."""
-
-
-def batches(orders: Sequence[BodyOrder]) -> Iterator[tuple[BodyOrder, ...]]:
-    """The orders in batches, what is wide first, so that a large map appears bit by bit.
-
-    Each doubles what is there: for each the simulator compiles everything anew. Within a batch it sees to it
-    itself that supports come before what stands on them.
-    """
-    if len(orders) > BATCH:
-        orders = sorted(orders, key=lambda order: -_area_m2(order))
-    start = 0
-    while start < len(orders):
-        end = start + max(BATCH, start)
-        yield tuple(orders[start:end])
-        start = end
-
-
-def _area_m2(order: BodyOrder) -> float:
-    return _USUAL_AREA_M2 if order.size_m is None else order.size_m[0] * order.size_m[1]
 
 
 class Keeping:
@@ -78,11 +58,15 @@ class Keeping:
         self._foreign: dict[str, str] = {}
         self._steps: deque[Step] = deque()
         self._busy = False
+        self._later: set[str] = set()
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
-        if self.scene.update(poses):
-            self.keep()
+        changed = self.scene.update(poses)
+        if changed is not None:
+            names, self._later = self._later | changed, set()
+            if names:
+                self.keep(names)
         elif not self._busy:
             self._start([])
 
@@ -92,7 +76,9 @@ class Keeping:
             self.scene.forget()
 
     def keep(self, names: Collection[str] | None = None) -> None:
-        """Do what must be done (about these entities and bodies), unless orders are under way already."""
+        """Do what must be done (about these entities and bodies), later if orders are under way already."""
+        if self._busy:
+            self._later.update(names or ())
         if self._busy or not self.scene.known:
             return
         actions = self.wanted(names)
@@ -120,7 +106,12 @@ class Keeping:
         return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
 
     def place_all(self) -> Future[Any]:
-        """Put every body back where the map says it stands; those that could not be made are tried again."""
+        """Put every body back where the map says it stands; those that could not be made are tried again.
+
+        Raises NoAnswer while no simulator runs.
+        """
+        if not self.scene.known:
+            raise errors.NoAnswer("no simulator runs")
         self._failed.clear()
         self.keep()
         placements = tuple(
@@ -165,13 +156,15 @@ class Keeping:
         steps: list[Step] = []
         if actions.delete:
             steps.append(("delete", Delete(names=actions.delete), Deleted, lambda _: None))
-        for batch in batches(actions.spawn):
-            tried = {order.name: order.commit for order in batch}
-            steps.append(("spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)))
+        steps.extend(self._spawning(batch) for batch in batches(actions.spawn))
         placements = (*actions.place, *refused)
         if placements:
-            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, lambda _: None))
+            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, self._placed))
         return steps
+
+    def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step:
+        tried = {order.name: order.commit for order in batch}
+        return "spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)
 
     def _start(self, steps: list[Step]) -> None:
         self._busy = True
@@ -198,9 +191,22 @@ class Keeping:
     def _spawned(self, tried: dict[str, int], reply: Spawned) -> None:
         for name in tried:
             self._failed.pop(name, None)
+        self.scene.add(reply.bodies)
         for name, reason in reply.failed.items():
             self._failed[name] = (tried[name], reason)
             self._report(f"{name} has no body: {reason}")
+
+    def _placed(self, reply: BodiesMoved) -> None:
+        """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
+        entities = self._door.entities
+        anew = tuple(
+            order(entity, entity.pose)
+            for name in reply.failed
+            if (entity := entities.get(name)) is not None and entity.pose is not None
+        )
+        if anew:
+            gone = Delete(names=tuple(order.name for order in anew))
+            self._steps.extendleft([self._spawning(anew), ("delete", gone, Deleted, lambda _: None)])
 
     def _follow(self, placement: Placement) -> Placement | None:
         """Let the map follow a body; if the map refuses, the body has to go back."""

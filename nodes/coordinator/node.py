@@ -94,7 +94,7 @@ class Coordinator:
             for verb, kind in c.COMMANDS.items()
         }
         node.follow(keys.COMMIT, self._on_commit)
-        node.follow(keys.POSES, self._on_poses)
+        node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map)
         node.every(0.2, self._tick)
@@ -102,7 +102,7 @@ class Coordinator:
 
     def _is_left_to_the_map(self, verb: str) -> bool:
         """Does the knowledge base answer such queries itself just now?"""
-        return verb in keys.OF_THE_MAP and self._health.ready("kb_node")
+        return verb in keys.OF_THE_MAP and self._node.is_there("kb_node")
 
     # Following
 

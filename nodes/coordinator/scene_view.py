@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from msgspec import structs
 
 from schemas.entities import Pose
@@ -26,12 +28,20 @@ class SceneView:
         self.bodies = {body.name: body for body in scene.bodies}
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
-    def update(self, poses: Poses) -> bool:
-        """Take over new poses. False when bodies came or went, so that a snapshot is needed."""
+    def add(self, bodies: Iterable[Body]) -> None:
+        """Bodies that were made since the last snapshot; the next one tells how they are."""
+        self.bodies.update((body.name, body) for body in bodies)
+
+    def update(self, poses: Poses) -> set[str] | None:
+        """Take over new poses: the bodies that are not as they were.
+
+        None when bodies came or went, so that a snapshot is needed.
+        """
+        changed: set[str] = set()
+        if poses.run == self._run and poses.stamp_ns <= self._stamp_ns:
+            return changed
         if (poses.run, poses.version) != (self._run, self._version):
-            return poses.run == self._run and poses.stamp_ns <= self._stamp_ns
-        if poses.stamp_ns <= self._stamp_ns:
-            return True
+            return None
         self._stamp_ns = poses.stamp_ns
         for i, name in enumerate(poses.names):
             body = self.bodies.get(name)
@@ -41,7 +51,8 @@ class SceneView:
             x, y, z, *orientation = poses.poses[7 * i : 7 * i + 7]
             pose = Pose(position_m=(x, y, z), orientation_wxyz=tuple(orientation))  # type: ignore[arg-type]
             self.bodies[name] = structs.replace(body, pose=pose, resting=resting, commit=poses.commits[i])
-        return True
+            changed.add(name)
+        return changed
 
     def forget(self) -> None:
         """The simulator is gone."""

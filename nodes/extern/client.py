@@ -14,6 +14,7 @@ quaternions `wxyz`. Errors are those of `schemas.errors`: Refused, BadRequest, N
 from __future__ import annotations
 
 import contextlib
+import functools
 import queue
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,16 +54,14 @@ class Client:
 
     def __init__(self, session: zenoh.Session, *, source: Source = "operator", agent: str = "") -> None:
         self.session = session
+        self._ask = functools.partial(bus.ask, session, keys.CMD, lifelines=bus.Lifelines(session))
         self._signed: dict[str, Any] = {"source": source, "agent": agent}
 
     def send(self, command: commands.Command, *, kind: Any = None, timeout_s: float = _LONG_S) -> Any:
         """Send any command and return its reply, of the usual type for it or of `kind`."""
         verb = str(command.__struct_config__.tag)
         kind = kind or commands.REPLIES[type(command)]
-        first_hand = verb in keys.OF_THE_MAP
-        return bus.ask(
-            self.session, keys.CMD, verb, command, kind, timeout_s=timeout_s, first_hand=first_hand
-        )
+        return self._ask(verb, command, kind, timeout_s=timeout_s, first_hand=verb in keys.OF_THE_MAP)
 
     # To change
 
@@ -171,7 +170,8 @@ class Client:
     def list(self, class_: str | None = None, *, as_of: When | None = None) -> tuple[Entity, ...]:
         """The entities of a class, over inferred types; all of them without one.
 
-        `as_of` a commit's number, seconds since 1970 or ISO 8601: those of then.
+        `as_of` a commit's number, or a time: seconds since 1970, ISO 8601 or a reply's `stamp_ns`. Those
+        after it; a time is as long as it is written (see `schemas.moments.When`).
         """
         command = commands.List(class_=class_, as_of=with_offset(as_of))
         entities: tuple[Entity, ...] = self.send(command, kind=tuple[Entity, ...])
@@ -254,7 +254,7 @@ class Client:
     @contextlib.contextmanager
     def watch(self, query: str, *, inferred: bool = False) -> Iterator[StandingQuery]:
         """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news."""
-        standing = StandingQuery(self.session, query, inferred)
+        standing = StandingQuery(self.session, self._ask, query, inferred)
         try:
             yield standing
         finally:
@@ -270,13 +270,13 @@ class Client:
         moved: replies.Moved = self.send(command)
         return moved
 
-    def pause(self, *, off: bool | None = None) -> replies.Done:
-        """Stop simulated time; with `off` let it run again; without `off`, a second time does so, too."""
+    def pause(self, *, off: bool = False) -> replies.Done:
+        """Stop simulated time, or with `off` let it run again."""
         done: replies.Done = self.send(commands.Pause(off=off))
         return done
 
     def step(self, seconds: float = 0.1) -> replies.Done:
-        """Let paused time go on for so long, 60 s at most."""
+        """Let paused time go on for so long, 60 s at most. Raises Refused while it runs by itself."""
         done: replies.Done = self.send(codec.convert({"seconds": _plain(seconds)}, commands.StepOnce))
         return done
 

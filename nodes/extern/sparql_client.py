@@ -8,7 +8,8 @@ import queue
 import time
 import uuid
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import zenoh
 
@@ -28,9 +29,9 @@ class StandingQuery:
     asks again and tells what changed in between, too.
     """
 
-    def __init__(self, session: zenoh.Session, query: str, inferred: bool) -> None:
-        """Raises BadRequest, Refused for a query that cannot be watched."""
-        self._session = session
+    def __init__(self, session: zenoh.Session, ask: Callable[..., Any], query: str, inferred: bool) -> None:
+        """`ask(verb, command, kind)` asks the system. Raises BadRequest, Refused for no query to watch."""
+        self._ask = ask
         self._name = f"q{uuid.uuid4().hex[:12]}"
         self._command = commands.Watch(query=query, inferred=inferred, watch=self._name, lease=_LEASE_S)
         self._news: queue.SimpleQueue[RowsChanged] = queue.SimpleQueue()
@@ -81,18 +82,16 @@ class StandingQuery:
         self._subscriber.undeclare()
         with contextlib.suppress(errors.SemmapError):
             renewal = commands.Renew(watch=self._name, end=True)
-            bus.ask(self._session, keys.CMD, "renew", renewal, replies.Done, patience_s=0.0, timeout_s=2.0)
+            self._ask("renew", renewal, replies.Done, patience_s=0.0, timeout_s=2.0)
 
     def _watch(self) -> Watching:
-        watching: Watching = bus.ask(
-            self._session, keys.CMD, "watch", self._command, Watching, timeout_s=_ASK_S
-        )
+        watching: Watching = self._ask("watch", self._command, Watching, timeout_s=_ASK_S)
         return watching
 
     def _renew(self) -> Watching | None:
         """Go on; what it has now, if it is not known there any more and was asked anew."""
         try:
-            bus.ask(self._session, keys.CMD, "renew", commands.Renew(watch=self._name), replies.Done)
+            self._ask("renew", commands.Renew(watch=self._name), replies.Done)
         except errors.UnknownName:
             return self._watch()
         except errors.NoAnswer:

@@ -6,6 +6,7 @@ compresses them meanwhile. The outcome is what `codec.encode` makes of the whole
 
 from __future__ import annotations
 
+import sys
 import zlib
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
@@ -29,7 +30,14 @@ class _Effects(Struct):
 
 _MAP_OF_TWO: Final = 1
 """Bytes before the first field."""
-_NONE: Final = codec.encode(_Effects())[_MAP_OF_TWO:]
+
+
+def _plain(part: Commit | _Effects) -> bytes:
+    """Never compressed by itself, however large it is."""
+    return codec.encode(part, dense_from=sys.maxsize)
+
+
+_NONE: Final = _plain(_Effects())[_MAP_OF_TWO:]
 
 
 class EarlyBody:
@@ -38,13 +46,13 @@ class EarlyBody:
     def __init__(self, commit: Commit) -> None:
         self._deflate = zlib.compressobj(codec.DENSITY)
         self._beside = ThreadPoolExecutor(1)
-        whole = memoryview(codec.encode(structs.replace(commit, changed=(), removed=())))
+        whole = memoryview(_plain(structs.replace(commit, changed=(), removed=())))
         assert whole[-len(_NONE) :] == _NONE
         self._head = self._beside.submit(self._deflate.compress, whole[: -len(_NONE)])
 
     def finish(self, commit: Commit) -> Future[bytes]:
         """The whole, now that the effects are known."""
-        effects = codec.encode(_Effects(changed=commit.changed, removed=commit.removed))[_MAP_OF_TWO:]
+        effects = _plain(_Effects(changed=commit.changed, removed=commit.removed))[_MAP_OF_TWO:]
         whole = self._beside.submit(self._whole, effects)
         self._beside.shutdown(wait=False)
         return whole

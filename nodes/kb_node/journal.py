@@ -198,6 +198,12 @@ class Journal:
             rows = db.execute(query, (name, after, self.last if until is None else until))
             return [seq for (seq,) in rows]
 
+    def undoing(self, after: int) -> list[int]:
+        """The numbers of the commits later than `after` that took others back, newest first; reads all."""
+        query = "SELECT seq, body FROM commits WHERE seq > ? ORDER BY seq DESC"
+        with self._file.reading() as db:
+            return [seq for seq, body in db.execute(query, (after,)) if codec.decode(body, _Undoing).undoes]
+
     def last_touches(self, until: int) -> list[tuple[str, int]]:
         """Each entity's name with the last commit up to `until` that touched it."""
         query = "SELECT name, max(seq) FROM touches WHERE seq <= ? GROUP BY name"
@@ -267,6 +273,12 @@ class _Stamp(Struct):
     """The part of a commit that tells when it was made."""
 
     stamp_ns: int
+
+
+class _Undoing(Struct):
+    """The part of a commit that tells what it took back."""
+
+    undoes: tuple[int, ...] = ()
 
 
 def _is_sound(before: bytes, body: object, digest: object) -> bool:

@@ -120,10 +120,9 @@ class Past:
     def _commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
-        seq = self._journal.seq_at(moment.stamp_ns) if moment.stamp_ns is not None else moment.commit
-        assert seq is not None
-        if moment.stamp_ns is not None and moment.stamp_ns > time.time_ns():
+        if moment.first_ns > time.time_ns():
             raise errors.Refused("that is in the future; ask about the present without --as-of")
+        seq = self._journal.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")
         if seq == 0:
@@ -138,15 +137,15 @@ class Past:
 
     def _not_before(self, when: When) -> int:
         moment = read_moment(when)
-        if moment.stamp_ns is not None:
-            return self._journal.seq_at(moment.stamp_ns - 1) + 1
-        return max(moment.commit or 1, 1)
+        if moment.commit is None:
+            return self._journal.seq_at(moment.first_ns - 1) + 1
+        return max(moment.commit, 1)
 
     def _not_after(self, when: When) -> int:
         moment = read_moment(when)
-        if moment.stamp_ns is not None:
-            return self._journal.seq_at(moment.stamp_ns)
-        return min(moment.commit or 0, self._journal.last)
+        if moment.commit is None:
+            return self._journal.seq_at(moment.last_ns)
+        return min(moment.commit, self._journal.last)
 
 
 def _entities_after(commit: Commit) -> dict[str, Entity]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Callable, Container, Iterable
 from itertools import chain, islice
 from operator import itemgetter
 
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.steadily import steadily
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Transaction
@@ -21,13 +22,15 @@ def subjects(*groups: Iterable[Triple]) -> set[Term]:
     return set(map(itemgetter(0), chain(*groups)))
 
 
-def held(reasoner: Reasoner, transaction: Transaction) -> set[Triple]:
-    """Those of the transaction's triples that are asserted already."""
+def held(
+    reasoner: Reasoner, transaction: Transaction, progress: Callable[[], None] = lambda: None
+) -> set[Triple]:
+    """Those of the transaction's triples that are asserted already. `progress` is called now and then."""
     groups = transaction.require, transaction.retract, transaction.insert
     known = reasoner.mentioned(subjects(*groups))
     found: set[Triple] = set()
     many: set[Term] = set()
-    for subject in known:
+    for subject in steadily(known, progress):
         said = list(islice(reasoner.asserted(subject), _FEW))
         found.update(said)
         if len(said) == _FEW:

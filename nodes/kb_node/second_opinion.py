@@ -21,7 +21,7 @@ def owlrl_faults(triples: Iterable[Triple]) -> list[str]:
     document = "".join(f"{s} {p} {o} .\n" for s, p, o in triples)
     try:
         run = subprocess.run(
-            [sys.executable, "-m", _CHILD],
+            [sys.executable, "-P", "-m", _CHILD],
             input=document,
             capture_output=True,
             text=True,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
+from typing import TypeVar
 
 from msgspec import structs
 
@@ -24,6 +25,7 @@ from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal
 from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.steadily import parts, steadily
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Snapshot, Star, Transaction
@@ -32,6 +34,10 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
+PART = 250_000
+"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
+
+T = TypeVar("T")
 
 
 class SemanticMap:
@@ -114,6 +120,10 @@ class SemanticMap:
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
+    def steadily(self, items: Iterable[T]) -> Iterator[T]:
+        """The items, for long work on them: the node tells meanwhile that it lives."""
+        return steadily(items, self._progress)
+
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
         return any(self.reasoner.asserted(*triple))
@@ -144,7 +154,7 @@ class SemanticMap:
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         transaction = self._spelled_out(transaction)
-        held = preconditions.held(self.reasoner, transaction)
+        held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(self.reasoner, transaction, held)
         wanted = dict.fromkeys(transaction.insert)
         retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
@@ -253,7 +263,7 @@ class SemanticMap:
         return structs.replace(transaction, retract=tuple(retract), insert=tuple(insert))
 
     def _replay(self, start: Checkpoint) -> None:
-        self.reasoner.apply(insert=start.triples)
+        self._change(insert=start.triples)
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entities.of_the_tbox(self.reasoner, self.classes))
@@ -318,21 +328,40 @@ class SemanticMap:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
-        owners = subjects.union(*(entities.owners(self.reasoner, s) for s in known))
+        owners = subjects.union(*(entities.owners(self.reasoner, s) for s in steadily(known, self._progress)))
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
             commit = self._with_effects(commit, owners, change, subjects - known)
             make_durable(commit)
         except BaseException:
-            self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+            self._change(delete=commit.inserted, insert=commit.retracted)
             raise
         return self._taken(commit)
 
-    def _change(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple]) -> Change:
+    def _change(self, *, delete: Collection[Triple] = (), insert: Collection[Triple]) -> Change:
+        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent."""
         try:
-            return self.reasoner.apply(delete=delete, insert=insert)
+            if len(delete) + len(insert) <= PART or not self.reasoner.is_compiled:
+                return self.reasoner.apply(delete=delete, insert=insert)
+            return self._change_in_parts(delete, insert)
         except Inconsistent as error:
             raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
+
+    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple]) -> Change:
+        """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
+        reasoner, changes = self.reasoner, list[Change]()
+        deleted, inserted = list[Triple](), list[Triple]()
+        try:
+            for part in parts(delete, PART, self._progress):
+                changes.append(reasoner.apply(delete=part))
+                deleted += part
+            for part in parts(insert, PART, self._progress):
+                changes.append(reasoner.apply(insert=part))
+                inserted += part
+        except BaseException:
+            reasoner.apply(delete=inserted, insert=deleted)
+            raise
+        return Change.together(changes)
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq

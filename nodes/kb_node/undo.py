@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from nodes.kb_node import tboxes
+from nodes.kb_node import garbage, tboxes
 from nodes.kb_node.journal import Journal
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
@@ -26,7 +26,8 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
     _require_authority(command, target)
     reverse = _reverse_tbox if target.tbox else _reverse
     try:
-        commit = reverse(semantic_map, journal, command, target)
+        with garbage.uncollected():
+            commit = reverse(semantic_map, journal, command, target)
     except errors.Inconsistent as error:
         raise errors.Inconsistent(
             f"commit {target.seq} cannot be undone: {error.text}", explanation=error.explanation
@@ -43,7 +44,7 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
 
 def _reverse(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit | None:
     later = _later(journal, target)
-    _require_in_force(target, later)
+    _require_in_force(target, later if target.names else map(journal.commit, journal.undoing(target.seq)))
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
     undone = [target, *reversed(settling)]
     retract, insert = _net(undone)
@@ -166,13 +167,19 @@ def _is_disturbed(
 ) -> bool:
     """Is something no longer as it was left, or was more said of the individuals that were brought in?"""
     mine = set(inserted)
+    steadily = semantic_map.steadily
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
     asserted = semantic_map.reasoner.asserted
-    about = (t for s in brought for pattern in ((s, None, None), (None, None, s)) for t in asserted(*pattern))
+    about = (
+        t
+        for s in steadily(brought)
+        for pattern in ((s, None, None), (None, None, s))
+        for t in asserted(*pattern)
+    )
     return (
-        not all(map(semantic_map.has, inserted))
-        or any(map(semantic_map.has, retracted))
+        not all(map(semantic_map.has, steadily(inserted)))
+        or any(map(semantic_map.has, steadily(retracted)))
         or any(t not in mine for t in about)
     )
 

@@ -14,7 +14,7 @@ from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.rest import RestWatch
 from nodes.sim_node.stage import Stage
-from nodes.sim_node.vision.view import OPTICAL, View
+from nodes.sim_node.vision.view import View
 from schemas.entities import Pose
 
 _STEPS_A_LOOK = 25
@@ -209,10 +209,7 @@ class Engine:
 
     def aim(self, camera: str, view: View) -> None:
         """Put a camera of the ground where the view is seen from."""
-        there = self._ground.camera(camera)
-        there.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
-        there.pos, there.fovy = view.map_from_camera[:3, 3], np.degrees(view.fovy_rad)
-        mujoco.mju_mat2Quat(there.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
+        groundwork.aim(self._ground.camera(camera), view)
         self._recompile({})
 
     # time goes on
@@ -236,6 +233,11 @@ class Engine:
     def asleep(self) -> bool:
         """Nothing moves: every body sleeps, and none is about to be woken."""
         return sleep.all_asleep(self.data)
+
+    @property
+    def awake(self) -> int:
+        """How many bodies do not sleep, vacant berths with them."""
+        return sleep.awake(self.data)
 
     def wake(self, names: Iterable[str]) -> None:
         """Wake bodies, and with each the heap that it sleeps in."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 import logging
 import math
 import re
+from collections.abc import Callable, Iterable, Sequence
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -13,6 +16,7 @@ from numpy.typing import NDArray
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from nodes.sim_node.build import FELT_GROUP, IMPEDANCE
+from nodes.sim_node.vision.view import OPTICAL, View, look_at
 from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile
 
@@ -30,8 +34,8 @@ OVERVIEW = "overview"
 OVERVIEW_FOVY_RAD = math.radians(58.0)
 
 
-def bare_floor() -> mujoco.MjSpec:
-    """An endless floor, and a camera that looks over it."""
+def bare_floor(views: Iterable[tuple[str, View]] | None = None) -> mujoco.MjSpec:
+    """An endless floor with these cameras, each with its name or ""; else with one that looks over it."""
     spec = mujoco.MjSpec()
     spec.modelname = "empty"
     spec.option.timestep = _TIMESTEP_S
@@ -42,10 +46,19 @@ def bare_floor() -> mujoco.MjSpec:
     spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=[-0.3, 0.5, -1], diffuse=[0.5] * 3
     )
-    spec.worldbody.add_camera(
-        name=OVERVIEW, pos=[5, -5, 5], xyaxes=[0.707, 0.707, 0, -0.41, 0.41, 0.82], fovy=58
-    )
+    if views is None:
+        eye, target = np.array([5.0, -5.0, 5.0]), np.zeros(3)
+        views = [(OVERVIEW, look_at(eye, target, 4, 3, OVERVIEW_FOVY_RAD))]
+    for name, view in views:
+        aim(spec.worldbody.add_camera(name=name), view)
     return spec
+
+
+def aim(camera: mujoco.MjsCamera, view: View) -> None:
+    """Put a camera where the view is seen from."""
+    camera.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+    camera.pos, camera.fovy = view.map_from_camera[:3, 3], np.degrees(view.fovy_rad)
+    mujoco.mju_mat2Quat(camera.quat, (view.map_from_camera[:3, :3] @ OPTICAL).ravel())
 
 
 def read_mjcf(path: Path) -> mujoco.MjSpec:
@@ -74,15 +87,25 @@ def prepare(spec: mujoco.MjSpec) -> None:
     quality.numslices, quality.numstacks, quality.numquads = 24, 8, 1
     if np.isnan(spec.stat.extent):  # how far an endless floor is drawn; nothing may be there to begin with
         spec.stat.extent = max(_EXTENT_M, float(spec.copy().compile().stat.extent))
-    for number, body in enumerate(spec.worldbody.bodies):
-        if not body.name and body.joints:
-            body.name = f"body_{number + 1}"
-    for number, joint in enumerate(spec.joints):
-        joint.name = joint.name or f"joint_{number + 1}"
-    for number, camera in enumerate(spec.cameras):
-        if not re.match(NAME_PATTERN, camera.name):  # it is a part of the keys of its planes
-            camera.name = f"camera_{number + 1}"
+    _add_names(spec)
     _add_net(spec)
+
+
+def _add_names(spec: mujoco.MjSpec) -> None:
+    """Bodies that move, joints and cameras that lack a name are called after their place among the rest."""
+    _name(spec.worldbody.bodies, "body", spec.bodies, lambda body: bool(body.name or not body.joints))
+    _name(spec.joints, "joint", spec.joints, lambda joint: bool(joint.name))
+    # a camera's is a part of the keys of its planes
+    _name(spec.cameras, "camera", spec.cameras, lambda camera: bool(re.match(NAME_PATTERN, camera.name)))
+
+
+def _name(elements: Sequence[Any], stem: str, kin: Iterable[Any], is_named: Callable[[Any], bool]) -> None:
+    """Give names to those that are not named, such that none of their `kin` has."""
+    taken = {other.name for other in kin}
+    for number, element in enumerate(elements, start=1):
+        if not is_named(element):
+            element.name = next(name for n in count(number) if (name := f"{stem}_{n}") not in taken)
+            taken.add(element.name)
 
 
 def _add_net(spec: mujoco.MjSpec) -> None:

@@ -14,7 +14,7 @@ from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import open_world
-from schemas import codec, keys, wording
+from schemas import codec, errors, keys, wording
 from schemas.commands import Pause, Reset, StepOnce
 from schemas.replies import Done
 from schemas.scenes import (
@@ -42,6 +42,9 @@ _PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
     "depth32f": "depth",
     "segments16": "segments",
 }
+_BODY_STEPS = 5_000
+"""So many steps of single bodies take a tenth of a second or two; after that others have their turn."""
+
 _LAG_S = 0.05
 """Time that could not be simulated as fast as it passed is dropped beyond this."""
 
@@ -99,17 +102,31 @@ class Simulator:
         return self._world.scene()
 
     def _pause(self, message: Pause) -> Done:
-        self._paused = not self._paused if message.off is None else not message.off
+        state = "time runs" if message.off else "time stands still"
+        if self._paused is not message.off:
+            return Done(text=f"{state} already")
+        self._paused = not message.off
         self._clock_s = time.monotonic()
         self._node.describe(self._summary())
-        return Done(text="time stands still" if self._paused else "time runs again")
+        return Done(text=f"{state} again" if message.off else state)
 
     def _step(self, message: StepOnce) -> Done:
-        end_s = self._world.data.time + message.seconds
-        while (left_s := end_s - self._world.data.time) > self._world.model.opt.timestep / 2:
-            self._world.step(min(left_s, _PUBLISH_S))
+        if not self._paused:
+            raise errors.Refused(
+                "time runs by itself; `semmap pause` stops it, and then it goes step by step"
+            )
+        timestep_s, before_s = float(self._world.model.opt.timestep), self._now_s
+        end_s = before_s + max(message.seconds, timestep_s)
+        while (left_s := end_s - self._now_s) > timestep_s / 2:
+            self._world.step(min(left_s, _PUBLISH_S, self._turn_s()))
             self._node.tick()  # it may take minutes, and who is silent so long is replaced
-        return self._told(Done(text=f"{message.seconds:g} s later; it is {self._world.data.time:.2f} s"))
+        passed_s = round(self._now_s - before_s, 6)
+        return self._told(Done(text=f"{passed_s:g} s later; it is {self._now_s:.2f} s"))
+
+    @property
+    def _now_s(self) -> float:
+        """The simulated time."""
+        return float(self._world.data.time)
 
     def _reset(self, _: Reset) -> Done:
         count = self._world.reset()
@@ -150,8 +167,13 @@ class Simulator:
     def _advance(self) -> None:
         now = time.monotonic()
         if not self._paused:
-            self._world.step(min(now - self._clock_s, _LAG_S))
+            self._world.step(min(now - self._clock_s, _LAG_S, self._turn_s()))
         self._clock_s = now
+
+    def _turn_s(self) -> float:
+        """As much simulated time as can be worked out in one go without falling silent."""
+        timestep_s = float(self._world.model.opt.timestep)
+        return timestep_s * max(1, _BODY_STEPS // max(1, self._world.awake))
 
     def _publish(self) -> None:
         poses = self._world.poses()

@@ -23,6 +23,11 @@ def all_asleep(data: mujoco.MjData) -> bool:
     return not (data.xfrc_applied.any() or data.qvel.any())
 
 
+def awake(data: mujoco.MjData) -> int:
+    """How many trees are awake, or about to be."""
+    return int(np.count_nonzero((data.tree_asleep < 0) | (data.tree_awake > 0)))
+
+
 def sleeping(data: mujoco.MjData, tree: Ints) -> NDArray[np.bool_]:
     """(N,) which of these trees sleep; -1 is what is static and never wakes."""
     return _where(data, tree, data.tree_asleep >= 0)

@@ -98,10 +98,7 @@ class Stage:
 
     def hits(self, row: int, depth_m: float = TOLERANCE_M) -> list[int]:
         """The standing rows (and the ground) that the body is in, deeper than `depth_m`."""
-        near = (self.body_low + depth_m < self.body_high[row]) & (
-            self.body_high - depth_m > self.body_low[row]
-        )
-        rows = [int(other) for other in np.flatnonzero(near.all(axis=1) & self.standing) if other != row]
+        rows = [other for other in self.touched(row, -depth_m) if other != row and self.standing[other]]
         if self._records[row].fixed:
             rows = [other for other in rows if not self._records[other].fixed]
             ground: list[int] = []
@@ -111,10 +108,11 @@ class Stage:
 
     def touched(self, row: int, margin_m: float) -> list[int]:
         """All rows whose boxes come within `margin_m` of the body's."""
-        near = (self.body_low - margin_m < self.body_high[row]) & (
-            self.body_high + margin_m > self.body_low[row]
-        )
-        return [int(other) for other in np.flatnonzero(near.all(axis=1))]
+        near = np.ones(len(self._records), dtype=bool)
+        for axis in range(3):  # column by column: a tenth of the time of a reduction over threes
+            near &= self.body_low[:, axis] - margin_m < self.body_high[row, axis]
+            near &= self.body_high[:, axis] + margin_m > self.body_low[row, axis]
+        return np.flatnonzero(near).tolist()
 
     def _touches(self, row: int, other: int, depth_m: float) -> bool:
         mine, theirs = self._slice(row), self._slice(other)
@@ -154,9 +152,10 @@ class Stage:
         return [other for other in self._at_spot(row) if self._belongs_on(other, row)]
 
     def _at_spot(self, row: int) -> list[int]:
-        apart = np.abs(self._bottoms - self._bottoms[row]).max(axis=1)
-        found = np.flatnonzero((apart < SAME_SPOT_M) & self.standing)
-        return [int(other) for other in found if other != row]
+        near = self.standing.copy()
+        for axis in range(3):
+            near &= np.abs(self._bottoms[:, axis] - self._bottoms[row, axis]) < SAME_SPOT_M
+        return [other for other in np.flatnonzero(near).tolist() if other != row]
 
     def _belongs_on(self, row: int, support: int) -> bool:
         tall = self.body_high[support, 2] - self.body_low[support, 2] > LOW_M

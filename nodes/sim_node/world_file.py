@@ -2,35 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import codecs
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from nodes.sim_node.world import ModelSource, World
-from schemas import scene_files
+import numpy as np
+
+from nodes.sim_node import groundwork
+from nodes.sim_node.models.parts import rotation_matrix
+from nodes.sim_node.orders import ModelSource
+from nodes.sim_node.vision.view import View, look_at, pinhole
+from nodes.sim_node.world import World
+from schemas import codec, scene_files
 from schemas.errors import BadFile
 from schemas.scenes import BodyOrder
+
+_PICTURE = (4, 3)
+"""How wide and high what a camera sees may be thought to be; only the angle counts here."""
 
 
 def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], None] = lambda: None) -> World:
     """The world that a file describes, a bare floor without one.
 
     Bodies of a JSON scene are the world's own furniture (commit 0), each with the model of its class's name.
-    `meanwhile` is as in World. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that
-    cannot be made.
+    Where it places no cameras, there is one that sees all of it. `meanwhile` is as in World. Raises BadFile
+    for a file that is neither MJCF nor a scene, or has a body that cannot be made.
     """
-    content = _read(path) if path is not None else b""
-    if path is None or not content.lstrip().startswith(b"{"):
-        return World(path, models=models, meanwhile=meanwhile)
-    world = World(models=models, meanwhile=meanwhile)
-    world.name = path.name
-    spawned = world.spawn(_orders(scene_files.read(content, path.name)))
+    if path is None:
+        return World(models=models, meanwhile=meanwhile)
+    content = _read(path)
+    if path.suffix != ".json" and not codec.looks_like_json(content):
+        return World(groundwork.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
+    scene = scene_files.read(content, path.name)
+    views = (
+        None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
+    )
+    world = World(groundwork.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
+    spawned = world.spawn(_orders(scene.entities))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be made: {reason}")
-    world.look_over()
+    if views is None:
+        world.look_over()
     return world
 
 
-def _orders(described: tuple[scene_files.Described, ...]) -> list[BodyOrder]:
+def _view(camera: scene_files.Camera) -> View:
+    """Where a camera of the file is and what it sees."""
+    eye = np.asarray(camera.at)
+    if camera.orientation is None:
+        return look_at(eye, np.asarray(camera.look_at), *_PICTURE, camera.fovy)
+    map_from_camera = np.eye(4)
+    map_from_camera[:3, :3] = rotation_matrix(camera.orientation)
+    map_from_camera[:3, 3] = eye
+    return View(*_PICTURE, pinhole(*_PICTURE, camera.fovy), map_from_camera)
+
+
+def _orders(described: Iterable[scene_files.Described]) -> list[BodyOrder]:
     taken = {item.name for item in described}
     orders = []
     for i, item in enumerate(described, start=1):
@@ -51,6 +78,6 @@ def _orders(described: tuple[scene_files.Described, ...]) -> list[BodyOrder]:
 
 def _read(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return path.read_bytes().removeprefix(codecs.BOM_UTF8)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None

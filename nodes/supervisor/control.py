@@ -52,7 +52,7 @@ class Supervisor:
         self.logs.mkdir(parents=True, exist_ok=True)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
-        command = [sys.executable, "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
+        command = [sys.executable, "-P", "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
         with (self.logs / "supervisord.out").open("wb") as out:
             return subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
@@ -65,7 +65,7 @@ class Supervisor:
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"no data can be kept in {self.data}: {error.strerror}") from None
-        command = [sys.executable, "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
+        command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
             reason = (
@@ -134,7 +134,7 @@ class Supervisor:
         }
         conf[f"group:{GROUP}"] = {"programs": ",".join(settings.nodes)}
         for priority, node in enumerate(settings.nodes, start=1):
-            words = [sys.executable, "-m", "nodes.supervisor.launch", node, str(self._settings_path)]
+            words = [sys.executable, "-P", "-m", "nodes.supervisor.launch", node, str(self._settings_path)]
             conf[f"program:{node}"] = {
                 "command": " ".join(f'"{word}"' for word in words).replace("%", "%%"),
                 "priority": str(priority),

@@ -43,8 +43,14 @@ def test_what_is_nothing_of_the_kind_is_refused(content):
         kind_of(content, "file.json")
 
 
+def test_a_broken_json_file_is_told_as_such():
+    assert kind_of(b"[1, 2", "x.ttl") == "abox"
+    with pytest.raises(BadFile, match=r"x\.json is no valid JSON"):
+        kind_of(b"[1, 2", "x.json")
+
+
 def test_a_scene():
-    (chair,) = scene_files.read(as_bytes(SCENE), "scene.json")
+    (chair,) = scene_files.read(as_bytes(SCENE), "scene.json").entities
     assert (chair.class_, chair.name, chair.at, chair.yaw) == ("Chair", "chair9", (1.0, 2.0, 0.0), 1.5)
 
 
@@ -58,12 +64,41 @@ def test_a_scene():
         ({"name": "my chair"}, "name"),
         ({"colour": "red"}, "colour"),
         ({"ref": ""}, "ref"),
+        ({"orientation": [1, 0, 0, 0]}, "entities: the 1st: give yaw or orientation, not both"),
+        ({"orientation": [1, 1, 0, 0], "yaw": None}, "entities: the 1st: the quaternion .* it must be 1"),
     ],
 )
 def test_a_scene_with_a_fault_names_the_field(change, said):
     scene = {"entities": [{**SCENE["entities"][0], **change}]}
     with pytest.raises(BadFile, match=said):
         scene_files.read(as_bytes(scene), "scene.json")
+
+
+@pytest.mark.parametrize(
+    ("camera", "said"),
+    [
+        ({"look_at": [0, 0, 0]}, "cameras: the 1st: at is missing"),
+        ({"at": [0, 0, 1]}, "cameras: the 1st: a camera needs either look_at or orientation"),
+        (
+            {"at": [0, 0, 1], "look_at": [1, 0, 1], "orientation": [1, 0, 0, 0]},
+            "either look_at or orientation",
+        ),
+        ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is where the camera itself stands"),
+        ({"at": [0, 0, 1], "orientation": [1, 1, 0, 0]}, "has length 1.414; it must be 1"),
+        ({"at": [0, 0, 1], "look_at": [1, 0, 1], "fovy": 58}, "fovy is 58; it is an angle .* radians"),
+        ({"at": [0, 0, 1], "look_at": [1, 0, 1], "name": "a/b"}, "name must be a valid name"),
+        ({"at": [0, 0, 1], "lookat": [1, 0, 1]}, "no field 'lookat'; did you mean look_at"),
+    ],
+)
+def test_a_camera_with_a_fault_is_told(camera, said):
+    with pytest.raises(BadFile, match=said):
+        scene_files.read(as_bytes({**SCENE, "cameras": [camera]}), "scene.json")
+
+
+def test_two_cameras_of_one_name_are_refused():
+    camera = {"name": "desk", "at": [0, 0, 1], "look_at": [1, 0, 1]}
+    with pytest.raises(BadFile, match="two cameras are named desk"):
+        scene_files.read(as_bytes({**SCENE, "cameras": [camera, camera]}), "scene.json")
 
 
 def test_the_json_schema_in_the_repository_is_up_to_date():
@@ -109,7 +144,7 @@ def test_every_huric_map_of_the_corpus_can_be_read():
 
 
 def test_a_byte_order_mark_is_no_part_of_a_scene():
-    (chair,) = scene_files.read(b"\xef\xbb\xbf" + as_bytes(SCENE), "scene.json")
+    (chair,) = scene_files.read(b"\xef\xbb\xbf" + as_bytes(SCENE), "scene.json").entities
     assert chair.name == "chair9"
 
 

@@ -1,4 +1,4 @@
-"""Who is alive, and who may be left alone with a question."""
+"""Who is alive."""
 
 import pytest
 
@@ -11,21 +11,13 @@ def beat(state, pid=1):
     return Health(node="kb_node", pid=pid, started_ns=0, stamp_ns=0, state=state)
 
 
-def test_a_node_is_ready_when_it_says_so():
+def test_a_silent_node_is_not_alive(monkeypatch):
     view = HealthView()
-    assert not view.ready("kb_node")
+    assert not view.alive("kb_node")
     view.take(beat("starting"))
-    assert (view.alive("kb_node"), view.ready("kb_node")) == (True, False)
-    view.take(beat("ready"))
-    assert view.ready("kb_node")
-
-
-def test_a_silent_node_is_neither_ready_nor_alive(monkeypatch):
-    view = HealthView()
-    view.take(beat("ready"))
+    assert view.alive("kb_node")
     monkeypatch.setattr(health_view, "SILENT_AFTER_S", 0.0)
     assert not view.alive("kb_node")
-    assert not view.ready("kb_node")
 
 
 @pytest.mark.parametrize(("pid", "is_another"), [(1, False), (2, True)])

@@ -1,39 +1,27 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
+from itertools import count
 
+import pytest
+
+from nodes.coordinator.batches import BATCH
 from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.keeping import BATCH, Keeping, batches
+from nodes.coordinator.keeping import Keeping
 from schemas import commands as c
-from schemas.entities import Pose
-from schemas.scenes import BodiesMoved, BodyOrder, Scene, Spawned
+from schemas import errors
+from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
 
 
-def order(number: int, size_m=None) -> BodyOrder:
-    return BodyOrder(
-        name=f"b{number}", class_="Box", pose=Pose(position_m=(0, 0, 0)), size_m=size_m, commit=1
+def standing(order: BodyOrder) -> Body:
+    return Body(
+        **{name: getattr(order, name) for name in ("name", "class_", "model", "pose", "fixed", "commit")},
+        size_m=(0.5, 0.5, 0.5),
+        entity=True,
+        ghost=False,
+        resting=True,
+        shape_commit=order.commit,
     )
-
-
-def test_few_orders_are_one_batch_as_they_come():
-    orders = [order(i) for i in range(BATCH)]
-    assert list(batches(orders)) == [tuple(orders)]
-    assert list(batches([])) == []
-
-
-def test_many_orders_are_several_batches_wide_things_first():
-    orders = [order(i, (0.1, 0.1, 0.1)) for i in range(BATCH)] + [
-        order(BATCH, (2.0, 1.0, 0.7)),
-        order(BATCH + 1),
-    ]
-    first, second = batches(orders)
-    assert [o.name for o in first[:2]] == [f"b{BATCH}", f"b{BATCH + 1}"]
-    assert sorted(o.name for o in (*first, *second)) == sorted(o.name for o in orders)
-
-
-def test_each_batch_doubles_what_is_there():
-    orders = [order(i) for i in range(5 * BATCH)]
-    assert [len(batch) for batch in batches(orders)] == [BATCH, BATCH, 2 * BATCH, BATCH]
 
 
 def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(door):
@@ -71,6 +59,75 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 1
     keeping.place_all()
     assert len(spawns) == 2
+
+
+def test_a_reset_without_a_simulator_is_refused(door):
+    keeping = Keeping(CoordinatorConfig("map"), door, lambda *_: Future(), print)
+    with pytest.raises(errors.NoAnswer, match="no simulator runs"):
+        keeping.place_all()
+
+
+def test_bodies_are_told_of_batch_by_batch(door):
+    told = []
+
+    def ask(verb, message, kind):
+        told.append(len(keeping.scene.bodies))
+        future = Future()
+        if verb == "spawn":
+            future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping.scene.known = True
+    entities = [f'{{"class": "Chair", "at": [{i}, 0, 0]}}' for i in range(2 * BATCH)]
+    door.change(c.Load(content=f'{{"entities": [{", ".join(entities)}]}}'.encode(), filename="chairs.json"))
+    keeping.keep()
+    assert told == [0, BATCH, 2 * BATCH]
+
+
+def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_nowhere(door):
+    bodies, asked, moments = {}, [], count(1)
+
+    def ask(verb, message, kind):
+        asked.append(verb)
+        reason = "it is too far"
+        if verb == "spawn":
+            far = {o.name: reason for o in message.bodies if o.pose.position_m[0] > 1000.0}
+            made = {o.name: standing(o) for o in message.bodies if o.name not in far}
+            bodies.update(made)
+            answer = Spawned(bodies=tuple(made.values()), failed=far)
+        elif verb == "delete":
+            answer = Deleted(names=tuple(name for name in message.names if bodies.pop(name, None)))
+        elif verb == "move":
+            answer = BodiesMoved(bodies=(), failed={p.name: reason for p in message.placements})
+        else:
+            answer = Scene(
+                run="r",
+                version=1,
+                stamp_ns=next(moments),
+                sim_time_s=0.0,
+                world="w",
+                bodies=tuple(bodies.values()),
+            )
+        future = Future()
+        future.set_result(answer)
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.keep()
+    assert keeping.body_state(door.entity("chair1")).status == "present"
+    door.change(c.Update(name="chair1", at=(2000.0, 0.0, 0.0)))
+    keeping.keep()
+    assert keeping.problems() == ["chair1: failed: it is too far"]
+    assert keeping.in_agreement()
+    asked.clear()
+    keeping.keep()
+    assert asked == []
+    door.change(c.Update(name="chair1", at=(2.0, 0.0, 0.0)))
+    keeping.keep()
+    assert keeping.body_state(door.entity("chair1")).status == "present"
 
 
 def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):

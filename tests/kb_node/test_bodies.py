@@ -1,10 +1,14 @@
 import zlib
 
+import pytest
+
 from nodes.kb_node import bodies
 from ontology import vocabulary as v
 from schemas import codec
 from schemas.commits import Commit, Departed
 from tests.kb_node.home import chair, transaction
+
+LONG = "x" * (codec.DENSE_FROM + 1)
 
 
 def commit(*triples, **fields):
@@ -25,6 +29,19 @@ def test_a_body_that_was_begun_is_the_whole(semantic_map):
 def test_one_without_effects(semantic_map):
     whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
     assert zlib.decompress(bodies.early(whole).finish(whole).result()) == codec.encode(whole)
+
+
+@pytest.mark.parametrize(("label", "name"), [(LONG, "b"), ("x", LONG)], ids=["triples", "effects"])
+def test_one_so_large_that_a_message_would_be_compressed(label, name):
+    triples = [(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(1000)]
+    whole = commit(
+        *triples,
+        (v.entity_iri("d"), v.RDFS_LABEL, v.literal(label)),
+        removed=(Departed(name=name, types=()),),
+    )
+    body = bodies.early(whole).finish(whole).result()
+    is_the_whole = codec.decode(body, Commit) == whole  # too long to be shown
+    assert is_the_whole
 
 
 def test_a_small_commit_is_written_at_once():

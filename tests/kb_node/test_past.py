@@ -59,9 +59,32 @@ def test_the_map_as_it_was_at_a_time(seen):
     for seq in snapshots:
         assert past._journal.seq_at(stamps[seq]) == seq
         assert past._journal.seq_at(stamps[seq] - 1) == seq - 1
+        for when in (stamps[seq], stamps[seq] / 1e9):
+            assert past.entities(when) == snapshots[seq]
+            assert [c.seq for c in past.history(History(since=when, until=when))] == [seq]
     now = datetime.now().isoformat()
     assert past.entities(now) == snapshots[6]
     assert past.entity("chair1", now).pose.position_m == C
+
+
+def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
+    past, snapshots = seen
+    second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
+    stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
+    monkeypatch.setattr(past._journal, "stamp_of", lambda seq: second_ns + stamps[seq])
+    for when, seqs in {
+        "2026-03-01T12:30:04": [1],
+        "2026-03-01T12:30:05": [2, 3],
+        second_ns // 10**9: [2, 3],
+        "2026-03-01T12:30:05.000": [1, 2],
+        "2026-03-01T12:30": [1, 2, 3, 4, 5],
+        "2026-03-01T12": [1, 2, 3, 4, 5, 6],
+        "2026-03-01": [1, 2, 3, 4, 5, 6],
+    }.items():
+        assert [c.seq for c in past.history(History(since=when, until=when))] == seqs
+        assert past.entities(when) == snapshots[seqs[-1]]
+    today = f"{datetime.now():%Y-%m-%d}"
+    assert past.entities(today) == snapshots[6]
 
 
 @pytest.mark.parametrize(

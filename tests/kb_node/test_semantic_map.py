@@ -4,7 +4,9 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.kb_node import fingerprint
+from nodes.kb_node.journal import Journal
 from nodes.kb_node.journal_file import NotWritten
+from nodes.kb_node.semantic_map import SemanticMap
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
@@ -368,6 +370,39 @@ def plain(entity):
         shape_provenance=nobody,
         reference_provenance=nobody,
     )
+
+
+def _worked_on(folder):
+    """What becomes of a map in which much is changed at once, and how often it told that it lives."""
+    folder.mkdir()
+    beats = []
+    created = home.new_map(folder)
+    path = created._journal.path
+    home.close(created)
+    semantic_map = SemanticMap(Journal(path), progress=lambda: beats.append(1))
+    many = [triple for i in range(9) for triple in chair(f"chair{i}", (i, 2.0, 0.0), preferred="chair")]
+    semantic_map.commit(transaction(1, many))
+    before = state(semantic_map)
+    wrong = [*chair("chair10"), *turtle(":chair1 a dm:Kitchen ."), *chair("chair11")]
+    with pytest.raises(errors.Inconsistent) as refusal:
+        semantic_map.commit(transaction(2, wrong, chair("chair2", preferred="chair")[:2]))
+    assert state(semantic_map) == before
+    semantic_map.commit(transaction(3, turtle(":kitchen1 a dm:Kitchen ."), many[: len(many) // 2 + 2]))
+    semantic_map.commit(transaction(4, many))
+    count = len(beats)
+    semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert state(again) == state(semantic_map)
+    home.close(again)
+    return refusal.value.text, state(again)[1], count
+
+
+def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
+    *whole, beats = _worked_on(tmp_path / "whole")
+    monkeypatch.setattr("nodes.kb_node.semantic_map.PART", 7)
+    *in_parts, more_beats = _worked_on(tmp_path / "parts")
+    assert in_parts == whole
+    assert more_beats > beats + 20
 
 
 def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):

@@ -201,6 +201,29 @@ def test_what_cannot_be_undone(semantic_map, commit, fields, text):
         take_back(semantic_map, commit, **fields)
 
 
+ABOUT_NO_ENTITY = {
+    "an annotation": "<urn:map> rdfs:comment 'of the ground floor' .",
+    "a class": ":Barstool rdfs:subClassOf dm:Chair .",
+    "an individual that is none": ":x dm:lexicalReference 'nobody' .",
+}
+
+
+@pytest.mark.parametrize("text", ABOUT_NO_ENTITY.values(), ids=ABOUT_NO_ENTITY.keys())
+def test_what_touches_no_entity_is_taken_back_once(semantic_map, text):
+    assert not says(text)(semantic_map).names
+    add(semantic_map, "chair1")
+    first = take_back(semantic_map, 1)
+    order(semantic_map, "chair1", A, B)
+    with pytest.raises(errors.Refused, match="commit 1 was taken back by commit 3 already"):
+        take_back(semantic_map, 1)
+    again = take_back(semantic_map, first.seq)
+    assert again.inserted == first.retracted
+    take_back(semantic_map, 1)
+    says(text)(semantic_map)
+    with pytest.raises(errors.Refused, match=f"commit 1 was taken back by commit {again.seq + 1} already"):
+        take_back(semantic_map, 1)
+
+
 def test_an_undo_survives_a_restart(semantic_map):
     add(semantic_map, "chair1")
     take_back(semantic_map)

@@ -11,8 +11,9 @@ import pytest
 
 from nodes import bus
 from nodes.loop import Node, Relay
-from schemas import commands, errors, keys, replies
+from schemas import codec, commands, errors, keys, replies
 from schemas.health import Health
+from schemas.scenes import Poses
 from tests.conftest import free_endpoint, handling, until
 
 PREFIX = "semmap/test"
@@ -126,6 +127,27 @@ def test_a_loop_that_is_blocked_falls_silent(network):
     count = len(beats)
     time.sleep(1.5)
     assert len(beats) == count
+
+
+def test_of_what_waits_a_busy_node_sees_the_newest(network):
+    node, client = network
+    seen, release = [], threading.Event()
+    node.follow_newest(keys.POSES, lambda poses: (seen.append(poses.version), release.wait(10.0)))
+    publisher = bus.publisher(client, keys.POSES)
+
+    def publish(version):
+        poses = Poses(
+            run="r", version=version, stamp_ns=1, sim_time_s=0.0, names=(), poses=(), resting=(), commits=()
+        )
+        publisher.put(codec.encode(poses))
+
+    until(lambda: publish(0) or seen, "it follows")
+    for version in range(1, 21):
+        publish(version)
+    time.sleep(0.2)
+    release.set()
+    until(lambda: seen[-1] == 20, "it has seen the last")
+    assert len(seen) < 10
 
 
 def test_what_is_put_off_is_done_when_no_event_waits(network):

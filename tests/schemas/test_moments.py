@@ -1,3 +1,4 @@
+import math
 import time
 from datetime import datetime
 
@@ -6,7 +7,16 @@ import pytest
 from schemas import codec, commands, errors
 from schemas.moments import Moment, read_moment, with_offset
 
-NOON = datetime(2026, 3, 1, 12, 0).timestamp()
+NOON_S = int(datetime(2026, 3, 1, 12, 0).timestamp())
+NOON_NS = NOON_S * 10**9
+
+
+def lasting(begin_ns, seconds):
+    return Moment(first_ns=begin_ns, last_ns=begin_ns + seconds * 10**9 - 1)
+
+
+def exactly(stamp_ns):
+    return Moment(first_ns=stamp_ns - 1000, last_ns=stamp_ns + 1000)
 
 
 @pytest.mark.parametrize(
@@ -14,24 +24,50 @@ NOON = datetime(2026, 3, 1, 12, 0).timestamp()
     [
         (7, Moment(commit=7)),
         ("7", Moment(commit=7)),
-        ("2026-03-01T12:00", Moment(stamp_ns=int(NOON) * 10**9)),
-        ("2026-03-01 12:00:00.25", Moment(stamp_ns=int(NOON) * 10**9 + 250_000_000)),
-        ("1970-01-12T13:46:40+00:00", Moment(stamp_ns=10**15)),
-        (1_772_368_200, Moment(stamp_ns=1_772_368_200 * 10**9)),
-        ("1772368200.5", Moment(stamp_ns=1_772_368_200_500_000_000)),
-        (3.5, Moment(stamp_ns=3_500_000_000)),
+        ("2026-03-01", lasting(int(datetime(2026, 3, 1).timestamp()) * 10**9, 86_400)),
+        ("2026-03-01+00:00", lasting(1_772_323_200 * 10**9, 86_400)),
+        ("2026-03-01T12", lasting(NOON_NS, 3600)),
+        ("2026-03-01T12:00", lasting(NOON_NS, 60)),
+        ("2026-03-01 12:00:00", lasting(NOON_NS, 1)),
+        ("2026-03-01T12:00:00.0", exactly(NOON_NS)),
+        ("2026-03-01 12:00:00.25", exactly(NOON_NS + 250_000_000)),
+        ("1970-01-12T13:46:40+00:00", lasting(10**15, 1)),
+        ("1970-01-12T13:46:40Z", lasting(10**15, 1)),
+        (1_772_368_200, lasting(1_772_368_200 * 10**9, 1)),
+        ("1772368200.5", exactly(1_772_368_200_500_000_000)),
+        (1_772_368_200_500_000_123, exactly(1_772_368_200_500_000_123)),
+        (3.5, exactly(3_500_000_000)),
     ],
 )
-def test_a_moment_is_a_commit_or_a_time(when, moment):
+def test_a_moment_is_a_commit_or_a_time_as_long_as_it_is_written(when, moment):
     assert read_moment(when) == moment
 
 
-def test_a_time_gets_the_offset_of_whoever_writes_it(monkeypatch):
+@pytest.mark.parametrize("stamp_ns", [NOON_NS, NOON_NS + 499, NOON_NS + 999_998_999, NOON_NS + 123_456_501])
+def test_a_stamp_is_found_again_however_it_is_written(stamp_ns):
+    then = datetime.fromtimestamp(stamp_ns / 1e9)
+    for when in (
+        stamp_ns,
+        str(stamp_ns),
+        float(stamp_ns) / 1e9,
+        f"{stamp_ns / 1e9}",
+        then.isoformat(),
+        then.astimezone().isoformat(),
+        time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 10**9)),
+        f"{stamp_ns // 10**9}",
+    ):
+        moment = read_moment(with_offset(when))
+        assert moment.first_ns <= stamp_ns <= moment.last_ns, when
+
+
+def test_a_time_gets_the_offset_of_whoever_writes_it_and_stays_as_long(monkeypatch):
     monkeypatch.setenv("TZ", "Asia/Tokyo")
     time.tzset()
     try:
-        assert with_offset("2026-03-01T12:00") == "2026-03-01T12:00:00+09:00"
-        assert with_offset("2026-03-01T12:00+01:00") == "2026-03-01T20:00:00+09:00"
+        assert with_offset("2026-03-01T12:00") == "2026-03-01T12:00+0900"
+        assert with_offset("2026-03-01T12:00+01:00") == "2026-03-01T12:00+01:00"
+        for when in ("2026-03-01", "2026-03-01T12", "2026-03-01T12:00", "2026-03-01 12:00:00.5"):
+            assert read_moment(with_offset(when)) == read_moment(when)
     finally:
         monkeypatch.undo()
         time.tzset()
@@ -42,7 +78,9 @@ def test_what_is_no_time_of_day_stays(when):
     assert with_offset(when) == when
 
 
-@pytest.mark.parametrize("when", ["yesterday", "-1", "nan", "inf", "1e400", "2026-13-01", "now "])
+@pytest.mark.parametrize(
+    "when", ["yesterday", "-1", "nan", "inf", "1e400", "2026-13-01", "now ", "-2026-03-01", math.inf, 1e300]
+)
 def test_what_is_no_moment_is_refused(when):
     with pytest.raises(
         errors.BadRequest, match="is neither a commit's number nor a time like 2026-03-01T12:30"

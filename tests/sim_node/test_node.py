@@ -6,8 +6,10 @@ import pytest
 
 from nodes import bus
 from nodes.loop import Node
+from nodes.sim_node import node
 from nodes.sim_node.config import CameraConfig, SimConfig
 from nodes.sim_node.node import Simulator
+from nodes.sim_node.world import World
 from schemas import codec, errors, keys
 from schemas.commands import Pause, Reset, StepOnce
 from schemas.replies import Done
@@ -35,11 +37,11 @@ def client():
     endpoint = free_endpoint()
     network = bus.Network(connect=(), listen=(endpoint,), mode="peer")
     with bus.open_session(network) as session:
-        node = Node("sim_node", session)
+        shell = Node("sim_node", session)
         cameras = CameraConfig(rate_hz=5.0, width=64, height=48, segments=True, graphics=False)
-        simulator = Simulator(node, SimConfig(network=network, cameras=cameras))
+        simulator = Simulator(shell, SimConfig(network=network, cameras=cameras))
         try:
-            with handling(node), bus.open_session(bus.Network(connect=(endpoint,))) as mine:
+            with handling(shell), bus.open_session(bus.Network(connect=(endpoint,))) as mine:
                 yield mine
         finally:
             simulator.close()
@@ -111,18 +113,27 @@ def test_poses_come_twenty_times_a_second(client, poses):
 
 
 def test_paused_time_goes_on_step_by_step_only(client):
-    assert "still" in ask(client, "pause", Pause()).text
+    assert ask(client, "pause", Pause()).text == "time stands still"
+    assert ask(client, "pause", Pause()).text == "time stands still already"
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
     time.sleep(0.1)
-    ask(client, "step", StepOnce(seconds=0.5))
+    assert ask(client, "step", StepOnce(seconds=0.5)).text.startswith("0.5 s later")
     assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 0.5)
-    assert "runs" in ask(client, "pause", Pause()).text
-    time.sleep(0.2)
-    assert ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55
+    assert ask(client, "step", StepOnce(seconds=1e-9)).text.startswith("0.002 s later")  # no less
+    assert ask(client, "pause", Pause(off=True)).text == "time runs again"
+    assert ask(client, "pause", Pause(off=True)).text == "time runs already"
+    wait_for(lambda: ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55)
+
+
+def test_a_step_is_refused_while_time_runs(client):
+    before = ask(client, "snapshot", SceneQuery()).sim_time_s
+    with pytest.raises(errors.Refused, match="`semmap pause` stops it"):
+        ask(client, "step", StepOnce(seconds=60.0))
+    assert ask(client, "snapshot", SceneQuery()).sim_time_s < before + 50.0
 
 
 def test_a_long_step_is_followed_while_it_lasts(client, poses):
-    ask(client, "pause", Pause(off=False))
+    ask(client, "pause", Pause())
     grid = [(0.2 * (i % 5), 0.2 * (i // 5 % 5), 0.5 + 0.2 * (i // 25)) for i in range(75)]
     ask(client, "spawn", Spawn(bodies=tuple(order(f"o{i}", "apple", pose(*at)) for i, at in enumerate(grid))))
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
@@ -130,6 +141,24 @@ def test_a_long_step_is_followed_while_it_lasts(client, poses):
     assert any(before < told.sim_time_s < before + 1.9 for told in poses)
     assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 2.0)
     ask(client, "pause", Pause(off=True))
+
+
+def test_the_more_bodies_move_the_shorter_are_the_turns(client, poses, monkeypatch):
+    turns = []
+    step = World.step
+
+    def timed(world, duration_s):
+        turns.append((world.awake, duration_s))
+        step(world, duration_s)
+
+    monkeypatch.setattr(node, "_BODY_STEPS", 20)
+    monkeypatch.setattr(World, "step", timed)
+    fall = [order(f"o{i}", "apple", pose(0.5 * i, 0, 0.3)) for i in range(10)]
+    ask(client, "spawn", Spawn(bodies=tuple(fall)))
+    wait_for(lambda: poses and poses[-1].resting and all(poses[-1].resting))
+    busy = [duration_s for awake, duration_s in turns if awake >= 10]
+    assert busy
+    assert max(busy) < 0.0041  # two steps of 2 ms
 
 
 def test_reset_says_how_many_went_back(client):

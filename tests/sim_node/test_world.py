@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from nodes.sim_node import build
+from nodes.sim_node.groundwork import read_mjcf
 from nodes.sim_node.vision.view import camera_names
 from nodes.sim_node.world import World
 from schemas.entities import angle_rad, distance_m
@@ -268,7 +269,7 @@ SCENE = """
 def own_world(tmp_path):
     path = tmp_path / "room.xml"
     path.write_text(SCENE)
-    return World(path)
+    return World(read_mjcf(path))
 
 
 def test_the_bodies_of_a_persons_world_are_in_the_scene(own_world):
@@ -300,7 +301,7 @@ def test_entities_live_among_the_worlds_own(own_world):
 def test_what_falls_off_a_world_comes_to_rest_below_it(tmp_path):
     path = tmp_path / "world.xml"
     path.write_text("<mujoco><worldbody><geom type='box' size='1 1 0.5' pos='0 0 1'/></worldbody></mujoco>")
-    world = World(path)
+    world = World(read_mjcf(path))
     world.spawn([order("on", "box", pose(0, 0, 1.5)), order("off", "box", pose(3, 0, 1.5))])
     world.step(3.0)
     on, off = world.scene().bodies
@@ -315,13 +316,26 @@ def test_cameras_have_names_that_can_be_keys(tmp_path):
     path.write_text(
         "<mujoco><worldbody><camera name='door'/><camera/><camera name='a/b *'/></worldbody></mujoco>"
     )
-    assert camera_names(World(path).model) == ("door", "camera_2", "camera_3")
+    assert camera_names(World(read_mjcf(path)).model) == ("door", "camera_2", "camera_3")
+
+
+def test_names_that_are_given_are_nobody_elses(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text(
+        "<mujoco><worldbody><camera/><camera name='camera_1'/>"
+        "<body><freejoint/><geom size='0.1'/></body>"
+        "<body name='other'><freejoint name='joint_1'/><geom size='0.1' pos='1 0 0'/>"
+        "<body name='body_1'><geom size='0.1' pos='1 0 0'/></body></body></worldbody></mujoco>"
+    )
+    world = World(read_mjcf(path))
+    assert camera_names(world.model) == ("camera_2", "camera_1")
+    assert [b.name for b in world.scene().bodies] == ["body_2", "other"]
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):
     with pytest.raises(BadFile, match="no MJCF scene"):
-        World(tmp_path / "missing.xml")
+        read_mjcf(tmp_path / "missing.xml")
     broken = tmp_path / "broken.xml"
     broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
     with pytest.raises(BadFile, match="no MJCF scene that compiles"):
-        World(broken)
+        read_mjcf(broken)

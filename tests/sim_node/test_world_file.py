@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nodes.sim_node.models.sources import Models
-from nodes.sim_node.vision.view import camera_view
+from nodes.sim_node.vision.view import camera_names, camera_view
 from nodes.sim_node.world_file import open_world
 from schemas.errors import BadFile
 
@@ -29,20 +29,67 @@ def test_its_camera_sees_all_of_it_from_near(tmp_path):
     world = open_world(path, Models())
     view = camera_view(world.model, world.data, "overview", 640, 480)
     for body in world.scene().bodies:
-        seen = np.linalg.inv(view.map_from_camera) @ (*body.pose.position_m, 1.0)
-        column, row, _ = view.intrinsics @ seen[:3] / seen[2]
+        column, row, depth_m = pixel_of(body.pose.position_m, view)
         assert 0 < column < 640
         assert 0 < row < 480
-        assert seen[2] < 5.0
+        assert depth_m < 5.0
+
+
+def pixel_of(point, view):
+    """Column, row and depth [m] at which a view sees a point."""
+    seen = np.linalg.inv(view.map_from_camera) @ (*point, 1.0)
+    column, row, _ = view.intrinsics @ seen[:3] / seen[2]
+    return column, row, seen[2]
+
+
+def test_its_cameras_are_where_it_places_them(tmp_path):
+    path = tmp_path / "world.json"
+    right = (0.5, -0.5, 0.5, -0.5)  # of the optical frame of who looks along x: its z is the map's x
+    cameras = [
+        {"name": "desk", "at": [1, 0, 1.5], "look_at": [1, 2, 0.5], "fovy": 0.8},
+        {"at": [0, 0, 1], "orientation": right},
+        {"name": "camera_3", "at": [1, 2, 4], "look_at": [1, 2, 0]},
+        {"at": [1, 2, 3], "look_at": [1, 2, 9]},
+    ]
+    path.write_text(json.dumps({**SCENE, "cameras": cameras}))
+    world = open_world(path, Models())
+    assert camera_names(world.model) == ("desk", "camera_2", "camera_3", "camera_4")
+    desk, along_x, down, up = (
+        camera_view(world.model, world.data, name, 640, 480) for name in camera_names(world.model)
+    )
+    assert desk.map_from_camera[:3, 3] == pytest.approx([1, 0, 1.5])
+    assert pixel_of((1, 2, 0.5), desk) == pytest.approx((320, 240, np.sqrt(5)))
+    assert pixel_of((1, 2, 0.7), desk)[1] < 240
+    assert desk.fovy_rad == pytest.approx(0.8)
+    assert pixel_of((2, 0, 1), along_x) == pytest.approx((320, 240, 2))
+    assert pixel_of((2, -0.5, 1.2), along_x)[0] > 320 > 240 > pixel_of((2, -0.5, 1.2), along_x)[1]
+    assert along_x.fovy_rad == pytest.approx(1.0)
+    column, row, depth = pixel_of((1.1, 2.1, 0), down)
+    assert (column > 320, row < 240, depth) == (True, True, pytest.approx(4))
+    assert pixel_of((1, 2, 9), up) == pytest.approx((320, 240, 6))
+
+
+def test_a_world_may_have_cameras_and_nothing_else_or_none_at_all(tmp_path):
+    path = tmp_path / "world.json"
+    path.write_text('{"entities": [], "cameras": [{"name": "a", "at": [0, 0, 1], "look_at": [1, 0, 0]}]}')
+    assert camera_names(open_world(path, Models()).model) == ("a",)
+    path.write_text('{"entities": [], "cameras": []}')
+    assert camera_names(open_world(path, Models()).model) == ()
+
+
+def test_a_byte_order_mark_is_no_part_of_a_world(tmp_path):
+    path = tmp_path / "world.json"
+    path.write_text(json.dumps(SCENE), encoding="utf-8-sig")
+    assert len(open_world(path, Models())) == 2
 
 
 @pytest.mark.parametrize(
-    "content", ["{", '{"entities": [{"class": "Cup", "at": [0, 0]}]}', "<mujoco", "hello"]
+    "content", ["", "{", "[]", '{"entities": [{"class": "Cup", "at": [0, 0]}]}', "<mujoco", "hello"]
 )
 def test_what_is_no_world_is_told(tmp_path, content):
     path = tmp_path / "world.json"
     path.write_text(content)
-    with pytest.raises(BadFile, match=r"world\.json"):
+    with pytest.raises(BadFile, match=r"world\.json is no scene: "):
         open_world(path, Models())
 
 

@@ -88,6 +88,19 @@ def test_a_bad_world_is_told_before_a_map_is_made(tmp_path):
     assert not (tmp_path / "data" / JOURNAL).exists()
 
 
+def test_what_lies_in_the_folder_it_is_started_in_does_not_matter(tmp_path, monkeypatch):
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    for module in ("queue", "nodes", "supervisor"):
+        (folder / f"{module}.py").write_text("raise RuntimeError('not this one')\n")
+    monkeypatch.chdir(folder)
+    with (
+        running(tmp_path / "data", "--abox", "none", "--no-sim", "--no-record") as system,
+        system.client() as client,
+    ):
+        assert client.sparql("ASK { ?s ?p ?o }").verdict
+
+
 def test_a_port_in_use_is_told(tmp_path):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))

@@ -24,7 +24,7 @@ from schemas.replies import Changed
 from schemas.scene_files import Described
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
-    "scene": scene_files.read,
+    "scene": lambda content, filename: scene_files.read(content, filename).entities,
     "huric": huric.read,
 }
 

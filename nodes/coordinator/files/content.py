@@ -9,6 +9,7 @@ from schemas.errors import BadFile
 
 Kind = Literal["abox", "scene", "huric"]
 
+_OF_JSON = (".json", ".jsonld")
 _BLANK = b"\xef\xbb\xbf \t\r\n"
 
 
@@ -28,7 +29,7 @@ def _kind_of_json(content: bytes, filename: str) -> Kind:
     try:
         document = json.loads(content)
     except (ValueError, RecursionError) as error:
-        if content.lstrip(_BLANK)[:1] == b"[":
+        if content.lstrip(_BLANK)[:1] == b"[" and not filename.lower().endswith(_OF_JSON):
             return "abox"  # Turtle may begin with a bracket, too
         raise BadFile(f"{filename or 'the file'} is no valid JSON: {error}") from None
     if isinstance(document, dict) and "entities" in document:

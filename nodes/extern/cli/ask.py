@@ -13,16 +13,14 @@ import click
 from nodes import bus
 from nodes.extern.cli import show, sparql_formats
 from nodes.extern.cli import sparql as sparql_answers
-from nodes.extern.cli.talking import print_json, print_lines, talks
+from nodes.extern.cli.talking import TIME, print_json, print_lines, talks
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys
 from schemas.entities import Entity
 
 _format = functools.partial(click.option, "--format", "format")
-_as_of = click.option(
-    "--as-of", metavar="COMMIT|TIME", help="As it was after a commit, or at a time (ISO 8601)."
-)
+_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"As it was after a commit, or a time. {TIME}")
 _STATUS_S = 20.0
 """Seconds: whoever asks how things stand is told of a system that is too busy to say."""
 

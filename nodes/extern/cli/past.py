@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from nodes.extern.cli import show, show_past
-from nodes.extern.cli.talking import print_json, print_lines, talks
+from nodes.extern.cli.talking import TIME, print_json, print_lines, talks
 from nodes.extern.client import Client
 
 _format = click.option(
@@ -15,8 +15,8 @@ _format = click.option(
 
 @click.command()
 @click.argument("name", required=False)
-@click.option("--since", metavar="COMMIT|TIME", help="Not before this.")
-@click.option("--until", metavar="COMMIT|TIME", help="Not after this.")
+@click.option("--since", metavar="COMMIT|TIME", help="From this on.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"Up to the end of this. {TIME}")
 @click.option("--limit", type=int, default=20, show_default=True, help="At most so many, the newest.")
 @_format
 @talks

@@ -24,9 +24,9 @@ def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
 
 
 @click.command()
-@click.option("--off/--on", "off", default=None, help="Run or stop; without either, the other of the two.")
+@click.option("--off/--on", "off", default=False, help="Let time run, or stop it.  [default: on]")
 @talks
-def pause(client: Client, off: bool | None) -> None:
+def pause(client: Client, off: bool) -> None:
     """Stop simulated time, or let it run again."""
     print(client.pause(off=off).text)
 
@@ -35,7 +35,7 @@ def pause(client: Client, off: bool | None) -> None:
 @click.argument("seconds", type=float, default=0.1)
 @talks
 def step(client: Client, seconds: float) -> None:
-    """Let paused time go on by SECONDS, a tenth of one unless told otherwise."""
+    """Let paused time go on by SECONDS, 60 at most, a tenth of one unless told otherwise."""
     print(client.step(seconds).text)
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
-from rich.table import Table
+from rich.segment import Segment
+from rich.table import Column, Table
 from rich.text import Text
 
 from schemas.commits import Commit
@@ -18,23 +21,54 @@ from schemas.replies import LoggedCommit
 _NARROWEST = 8
 """Characters: a column that folds keeps so many, if it has them."""
 _BETWEEN = 2
+_MANY = 1000
+"""Rows for which laying them out takes too long: seconds, and minutes for a large map."""
 
 
 class Rows(Table):
     """A table whose cells are plain text, whatever stands in them, and of which nothing is ever cut off."""
 
+    def __init__(self, *headers: Column | str, **style: Any) -> None:
+        super().__init__(*headers, **style)
+        self._lines: list[tuple[str | Text, ...]] = []
+
     def add(self, *cells: str | Text) -> None:
         """A row. What is no printable character in a string is shown by its escape."""
+        self._lines.append(cells)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """As wide as it must be: what is too wide for the terminal is for the terminal to wrap."""
+        if len(self._lines) >= _MANY:
+            return self._in_plain_lines()
+        for cells in self._lines[self.row_count :]:
+            self._lay_out(cells)
+        least = sum((column.min_width or 0) + _BETWEEN for column in self.columns) + _BETWEEN
+        return super().__rich_console__(console, options.update_width(max(options.max_width, least)))
+
+    def _lay_out(self, cells: Iterable[str | Text]) -> None:
         texts = [printable(cell) if isinstance(cell, str) else cell for cell in cells]
         for column, text in zip(self.columns, texts, strict=True):
             least = min(text.cell_len, text.cell_len if column.no_wrap else _NARROWEST)
             column.min_width = max(column.min_width or 0, least)
         self.add_row(*texts)
 
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """As wide as it must be: what is too wide for the terminal is for the terminal to wrap."""
-        least = sum((column.min_width or 0) + _BETWEEN for column in self.columns) + _BETWEEN
-        return super().__rich_console__(console, options.update_width(max(options.max_width, least)))
+    def _in_plain_lines(self) -> RenderResult:
+        """The same without colours and folding."""
+        names = [str(column.header) for column in self.columns]
+        rows = [[escaped(str(cell)) for cell in cells] for cells in self._lines]
+        widths = [max(map(cell_len, column)) for column in zip(names, *rows, strict=True)]
+        to_the_right = [column.justify == "right" for column in self.columns]
+
+        def line(cells: Sequence[str]) -> Segment:
+            spaces = [" " * (width - cell_len(cell)) for cell, width in zip(cells, widths, strict=True)]
+            parts = (
+                s + c if right else c + s for c, s, right in zip(cells, spaces, to_the_right, strict=True)
+            )
+            return Segment(f" {'  '.join(parts).rstrip()}\n")
+
+        yield line(names)
+        yield Segment(f" {'─' * (sum(widths) + _BETWEEN * (len(widths) - 1))}\n")
+        yield from map(line, rows)
 
 
 def table(*columns: str, fold: Collection[str]) -> Rows:
@@ -47,8 +81,15 @@ def table(*columns: str, fold: Collection[str]) -> Rows:
 
 
 def printable(text: str) -> Text:
+    """`escaped`, for rich."""
+    return Text(escaped(text))
+
+
+def escaped(text: str) -> str:
     """Text as it is, with line ends and the like as escapes: they would break the row, or the terminal."""
-    return Text("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def card(rows: Mapping[str, str]) -> Table:
@@ -89,7 +130,7 @@ def author(p: Provenance | Commit | LoggedCommit) -> str:
 
 def moment(stamp_ns: int) -> str:
     """A time, local, as `--as-of` takes it."""
-    return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns / 1e9))
+    return time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(stamp_ns // 1_000_000_000))
 
 
 def _plain(value: float, digits: int) -> str:

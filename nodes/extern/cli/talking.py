@@ -16,6 +16,12 @@ from nodes.extern.client import Client, connect
 from nodes.extern.connection import CONNECT_VARIABLE
 from schemas import codec, errors
 
+TIME = (
+    "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and as long as it is written: that whole"
+    " second, 12:30 the minute, the date alone the day. Or seconds since 1970, or a stamp_ns of the JSON."
+)
+"""For the help of options that take one."""
+
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner.shapes import Alike
@@ -18,6 +19,12 @@ class Change(NamedTuple):
 
     others: frozenset[Term]
     alike: Sequence[Alike] = ()
+
+    @classmethod
+    def together(cls, changes: Sequence[Change]) -> Change:
+        """Several, one after the other, as one."""
+        others = frozenset[Term]().union(*(change.others for change in changes))
+        return cls(others, tuple(chain.from_iterable(change.alike for change in changes)))
 
     @property
     def touched(self) -> frozenset[Term]:

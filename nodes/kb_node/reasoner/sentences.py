@@ -216,7 +216,7 @@ def _headline(goal: Triple | None, steps: Sequence[Step], speaker: _Speaker) -> 
     if last.rule in ("cax-dw", "cax-adc", "cls-com") and len({fact[2] for fact in facts}) > 1:
         return s, f"{who} cannot be both {speaker.a(o)} and {speaker.a(facts[1][2])}"
     if last.rule == "dt-not-type":
-        return s, _ill_typed((s, p, o), speaker)
+        return _ill_typed((s, p, o), speaker)
     if last.rule.startswith("eq-diff"):
         if s == o:
             return s, f"{who} cannot be different from itself"
@@ -258,8 +258,8 @@ def _is_value(triple: Triple, fact: Triple, rule: str) -> bool:
     return triple[1] != TYPE and triple[0 if rule == "prp-ifp" else 2] in (fact[0], fact[2])
 
 
-def _ill_typed(fact: Triple, speaker: _Speaker) -> str:
+def _ill_typed(fact: Triple, speaker: _Speaker) -> tuple[Term, str]:
+    """The claim is about the literal, so who has it is named in the facts."""
     s, p, o = fact
-    if p == TYPE and is_literal(s):
-        return f"{speaker.name(s)} is not a value of {speaker.name(o)}"
-    return f"{speaker.name(o)} is not a value of {speaker.name(f'<{literal(o).datatype}>')}"
+    text, kind = (s, o) if p == TYPE and is_literal(s) else (o, f"<{literal(o).datatype}>")
+    return text, f"{speaker.name(text)} is not a value of {speaker.name(kind)}"

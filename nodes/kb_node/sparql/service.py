@@ -85,7 +85,7 @@ class _Worker:
         theirs = [there, *self._lanes.others]
         fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "nodes.kb_node.sparql.worker", *map(str, fds)],
+            [sys.executable, "-P", "-m", "nodes.kb_node.sparql.worker", *map(str, fds)],
             pass_fds=fds,
             stdin=subprocess.DEVNULL,
         )

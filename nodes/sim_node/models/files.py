@@ -179,14 +179,18 @@ def _keyed(parts: list[Part], key: str) -> list[Part]:
 
 
 def _try_out(model: Model) -> None:
-    """Compile it alone, so that a bad one cannot spoil the world. Raises ValueError."""
+    """Compile it alone, so that a bad one cannot spoil the world. Raises ModelError."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body()
     for part in model.parts:
         if part.mesh is not None:
             build.add_mesh(spec, part.mesh)
         build.add_part(body, part)
-    spec.compile()
+    try:
+        spec.compile()
+    except ValueError as error:
+        fault, *_ = str(error).splitlines()  # the other lines name elements that are ours, not the file's
+        raise ModelError(fault.removeprefix("Error: ")) from None
 
 
 def _vec3(values: Any) -> Vec3:

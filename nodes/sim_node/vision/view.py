@@ -16,7 +16,7 @@ from schemas.errors import BadRequest
 
 OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 
-
+_UPRIGHT = 1e-6
 _FAR, _FAR_M = 4.0, 3.0
 """Far off is what is so many times farther out than four fifths are, and these metres more."""
 
@@ -54,10 +54,14 @@ def camera_names(model: mujoco.MjModel) -> tuple[str, ...]:
 
 
 def look_at(eye_m: Floats, target_m: Floats, width: int, height: int, fovy_rad: float) -> View:
-    """A view from `eye_m` (3,) towards `target_m` (3,), the map's z axis up in the picture."""
+    """A view from `eye_m` (3,) towards `target_m` (3,), the map's z axis up in the picture.
+
+    Of one straight up or down the map's x axis is to the right.
+    """
     forward = (target_m - eye_m) / np.linalg.norm(target_m - eye_m)
     right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
+    length = np.linalg.norm(right)
+    right = right / length if length > _UPRIGHT else np.array([1.0, 0.0, 0.0])
     pose = np.eye(4)
     pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
     pose[:3, 3] = eye_m

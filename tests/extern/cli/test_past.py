@@ -54,6 +54,18 @@ def test_as_of(system):
     assert "chair2" in system.cli("list", "--as-of", "4")
 
 
+def test_a_time_copied_from_history_shows_the_map_with_its_commit(system):
+    rows = json.loads(system.cli("history", "--until", "5", "--format", "json"))
+    table = [line.split() for line in system.cli("history", "--until", "5").splitlines()]
+    shown = next(cells[1] for cells in table if cells[:1] == ["5"])
+    for when in (shown, f"{rows[-1]['stamp_ns']}"):
+        assert "1 entity" in system.cli("list", "--as-of", when)
+        assert int(system.cli("history", "--since", when, "--until", when).split()[-2]) >= 1
+    with connect(system.endpoint) as client:
+        assert client.list(as_of=rows[3]["stamp_ns"])[-1].name == "chair2"
+        assert client.get("chair2", as_of=rows[3]["stamp_ns"] / 1e9).class_ == "Chair"
+
+
 def test_last_seen(system):
     said = system.cli("last-seen", "chair2")
     assert "(3.000, 1.000, 0.000) m" in said

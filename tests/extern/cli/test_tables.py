@@ -1,6 +1,7 @@
 """Tables in a terminal: however narrow it is, nothing of a cell is lost."""
 
 import io
+import time
 from collections import Counter
 
 import pytest
@@ -67,6 +68,24 @@ def test_nothing_is_cut_off(name, width):
     text = drawn(TABLES[name](), width)
     assert "…" not in text
     assert signs(text) == signs(drawn(TABLES[name](), 1000))
+
+
+def test_very_many_rows_are_the_same_without_being_laid_out():
+    few = [entity(f"chair{i}") for i in range(500)] + [entity("a\nb"), entity("椅子")]
+    text, longer = drawn(show.entity_table(few), 1000), drawn(show.entity_table(few * 3), 1000)
+    assert "a\\nb" in longer
+    assert longer.count(" chair7 ") == 3
+    lines = [line.rstrip() for line in text.splitlines() if line.strip()]
+    assert [line.split() for line in longer.splitlines()[2 : len(lines)]] == [x.split() for x in lines[2:]]
+    columns = {line.index("Alternative") for line in longer.splitlines()[2:] if line.isascii()}
+    assert columns == {longer.splitlines()[0].index("class")}
+
+
+def test_a_list_of_very_many_rows_takes_no_time():
+    chairs = [entity(f"chair{i}") for i in range(10_000)]
+    begun = time.process_time()
+    drawn(show.entity_table(chairs), 100)
+    assert time.process_time() - begun < 5.0  # laid out it takes half a minute
 
 
 def test_what_a_row_is_known_by_stays_on_one_line():

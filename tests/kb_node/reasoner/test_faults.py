@@ -48,7 +48,10 @@ FAULTS = {
     ),
     "allValuesFrom": (":box1 a dm:Tap ; dm:controls :x . :x a dm:Chair", "x cannot be"),
     "range of an individual": (":box1 dm:isOwnedBy :x . :x a dm:Cat", "x cannot be both"),
-    "ill-typed literal": (':box1 dm:mass "heavy"^^xsd:float', '"heavy" is not a value of float'),
+    "ill-typed literal": (
+        ':box1 dm:mass "heavy"^^xsd:float',
+        '"heavy" is not a value of float: box1 mass "heavy"',
+    ),
     "a literal of another type": (':box1 dm:mass "1.0"^^xsd:double', '"1.0" is not a value of float'),
     "a number for a truth value": (':box1 dm:isOpen "2"^^xsd:integer', "not a value of boolean"),
     "sameAs against differentFrom": (

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import queue
 import threading
 
 import pytest
 
 from nodes import bus
-from schemas import commands, errors, replies
+from schemas import commands, errors, keys, replies
+from tests.conftest import until
 from tests.nodes.bus.conftest import PREFIX, answer
 
 
@@ -42,6 +44,89 @@ def test_one_who_does_not_answer_in_time_is_no_answer(pair):
     bus.serve(server, PREFIX, kept.append)
     with pytest.raises(errors.NoAnswer, match=r"within 0\.2 s"):
         bus.ask(client, PREFIX, "get", commands.Get(name="x"), replies.Done, timeout_s=0.2)
+
+
+ASKED = (commands.Get(name="x"), replies.Done)
+
+
+def gone_when_asked(server):
+    """One who has a question, and whose token goes without that the question ends: as if it had got lost."""
+    kept = []
+    token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
+
+    def lose(request):
+        if not kept:
+            token.undeclare()
+        kept.append(request)
+
+    return lose
+
+
+def test_a_question_that_got_lost_when_its_node_went_is_asked_again(pair):
+    server, client = pair
+    lifelines = bus.Lifelines(client)
+    lose = gone_when_asked(server)
+    asked = []
+
+    def receive(request):
+        asked.append(request)
+        lose(request) if len(asked) == 1 else request.reply(replies.Done(text="here"))
+
+    bus.serve(server, keys.BRIDGE, receive)
+    assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "here"
+    assert len(asked) == 2
+
+
+def test_so_is_one_to_a_node_that_serves_just_this_verb(pair):
+    server, client = pair
+    lifelines = bus.Lifelines(client)
+    bus.serve(server, keys.CMD, gone_when_asked(server), verb="sparql")
+    bus.serve(client, keys.CMD, answer(lambda _: replies.Done(text="second hand")))
+    reply = bus.ask(client, keys.CMD, "sparql", *ASKED, first_hand=True, lifelines=lifelines)
+    assert reply.text == "second hand"
+
+
+def test_patience_begins_when_who_had_the_question_goes(pair):
+    server, client = pair
+    lifelines = bus.Lifelines(client)
+    token = server.liveliness().declare_token(keys.live_key("kb_node", "1"))
+    kept = []
+    numbers = itertools.count()
+
+    def receive(request):
+        number = next(numbers)
+        if number == 0:
+            kept.append(request)
+            threading.Timer(0.5, token.undeclare).start()
+        elif number == 2:
+            request.reply(replies.Done(text="back"))
+
+    bus.serve(server, keys.BRIDGE, receive)
+    how = {"patience_s": 0.3, "lifelines": lifelines}
+    assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
+
+
+def test_ask_later_tells_that_the_node_went(pair):
+    server, client = pair
+    answers: queue.SimpleQueue = queue.SimpleQueue()
+    bus.serve(server, keys.BRIDGE, gone_when_asked(server))
+    lifelines = bus.Lifelines(client)
+    until(lambda: list(client.liveliness().get(keys.live_key("kb_node"))), "the token is seen")
+    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, lifelines=lifelines)
+    with pytest.raises(errors.NoAnswer, match="kb_node does not run"):
+        answers.get(timeout=5)()
+
+
+def test_who_asks_on_a_lifeline_that_was_just_cut_is_told_so(pair):
+    _, client = pair
+    lifelines = bus.Lifelines(client)
+    lifelines.of(("kb_node",)).cancel()
+    answers: queue.SimpleQueue = queue.SimpleQueue()
+    bus.ask_later(client, keys.BRIDGE, "get", *ASKED, answers.put, lifelines=lifelines)
+    with pytest.raises(errors.NoAnswer):
+        answers.get(timeout=5)()
+    with pytest.raises(errors.NoAnswer):
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.0, lifelines=lifelines)
 
 
 def test_patience_lasts_until_somebody_serves(pair):

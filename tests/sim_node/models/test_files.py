@@ -44,6 +44,9 @@ def folder(tmp_path):
         "<mujoco><worldbody><body><geom size='0.1' mass='0'/></body></worldbody></mujoco>"
     )
     (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "strange.obj").write_text(
+        "v nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4"
+    )
     (tmp_path / "broken.xml").write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
     (tmp_path / "broken.obj").write_text("f 1 2 3")
@@ -112,6 +115,7 @@ def test_primitives_of_mjcf_are_stretched_to_a_size(folder):
         ("empty.xml", "nothing that has a shape and collides"),
         ("none.glb", "No such file"),
         ("huge.stl", "0.001 to 100 m along each axis, not 4000 m; is the file in metres"),
+        ("strange.obj", "strange.obj cannot be used: at least 4 vertices required$"),
         ("flat.obj", "0.001 to 100 m along each axis, not 0 m"),
         ("light.xml", "weighs nothing"),
     ],

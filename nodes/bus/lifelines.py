@@ -1,0 +1,41 @@
+"""What was asked of a node ends when the node is gone.
+
+Zenoh (1.10.2) ends the questions that a peer has when it goes. One that was sent within the few milliseconds
+until that is noticed nobody has, and it waits for its time-out.
+"""
+
+from __future__ import annotations
+
+import zenoh
+
+from schemas import keys
+
+
+class Lifelines:
+    """Of the nodes that serve, as one session sees them: what hangs on one is cancelled when that is cut.
+
+    It costs a question nothing. Any thread may use it.
+    """
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._tokens: dict[tuple[str, ...], zenoh.CancellationToken] = {}
+        self._there: set[str] = set()
+        session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change, history=True)
+
+    def is_there(self, node: str) -> bool:
+        """Is a process of this node ready?"""
+        return any(keys.live_node(key) == node for key in tuple(self._there))
+
+    def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
+        """For questions, from now on, that any of these nodes may answer."""
+        return self._tokens.get(nodes) or self._tokens.setdefault(nodes, zenoh.CancellationToken())
+
+    def _on_change(self, sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        if sample.kind != zenoh.SampleKind.DELETE:
+            self._there.add(key)
+            return
+        self._there.discard(key)
+        gone = keys.live_node(key)
+        for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
+            self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]

@@ -1,0 +1,42 @@
+"""Who is there, and that what hangs on who is gone is cancelled."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes import bus
+from schemas import keys
+from tests.conftest import until
+
+
+@pytest.fixture
+def lifelines_and_token(pair):
+    """A session's view of a kb_node that came before it."""
+    server, client = pair
+    token = server.liveliness().declare_token(keys.live_key("kb_node", "7"))
+    lifelines = bus.Lifelines(client)
+    until(lambda: lifelines.is_there("kb_node"), "it is seen")
+    return lifelines, token
+
+
+def test_who_has_a_token_is_there(pair, lifelines_and_token):
+    lifelines, token = lifelines_and_token
+    assert not lifelines.is_there("coordinator")
+    newer = pair[0].liveliness().declare_token(keys.live_key("kb_node", "8"))
+    cut = lifelines.of(("kb_node",))
+    token.undeclare()
+    until(lambda: cut.is_cancelled, "the older one is gone")
+    assert lifelines.is_there("kb_node")
+    newer.undeclare()
+    until(lambda: not lifelines.is_there("kb_node"), "both are gone")
+
+
+def test_all_that_hangs_on_a_node_is_cancelled_when_it_goes(lifelines_and_token):
+    lifelines, token = lifelines_and_token
+    old = [lifelines.of(("kb_node",)), lifelines.of(("kb_node", "coordinator"))]
+    others = lifelines.of(("coordinator",))
+    assert lifelines.of(("kb_node",)) is old[0]
+    token.undeclare()
+    until(lambda: all(lifeline.is_cancelled for lifeline in old), "the lifelines are cut")
+    assert not others.is_cancelled
+    assert not lifelines.of(("kb_node",)).is_cancelled
