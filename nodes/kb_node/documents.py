@@ -100,7 +100,7 @@ def _halves(triples: list[Triple]) -> list[str]:
         if p in _BITS:
             said[s] = said.get(s, 0) | _BITS[p]
     lacking = [
-        f"{v.local_name(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        f"{_called(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
         for s, bits in said.items()
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
@@ -109,6 +109,10 @@ def _halves(triples: list[Triple]) -> list[str]:
         return []
     few = ", ".join(lacking[:_FEW]) + (f" and {len(lacking) - _FEW} more like that" if lacking[_FEW:] else "")
     return [f"a position, orientation or size counts only when it is whole: {few}"]
+
+
+def _called(individual: Term) -> str:
+    return "a blank node" if individual.startswith("_:") else v.local_name(individual)
 
 
 def is_built_in(term: Term) -> bool:

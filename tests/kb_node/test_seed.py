@@ -11,7 +11,7 @@ ABOX = (
     PREFIXES
     + """
 <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1> a owl:Ontology .
-:chair1 a dm:Chair ; dm:hasPosition [ dm:float_coordinates_x "1.0"^^xsd:float ] .
+:chair1 a dm:Chair ; dm:hasPosition [ a dm:Coordinates ] .
 """
 )
 ANONYMOUS = "dm:Stool a owl:Class ; rdfs:subClassOf dm:Seat , [ a owl:Class ] .\n"
