@@ -8,11 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from nodes.coordinator.config import Truth
 from schemas import errors
-from schemas.commands import Command
+from schemas.commands import Add, Clear, Command, Remove, Update
 from schemas.entities import Entity
 
 _LESSER = frozenset(("scene", "perception"))
+_COMES_BACK = {
+    "scene": "the scene is the truth here: what still stands in it comes back",
+    "perceived": "perception is the truth here: what it still sees comes back",
+}
+_GOES_BACK = {"scene": "the scene is the truth here: it says where a body stands, and `semmap move` moves it"}
 
 
 def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
@@ -25,6 +31,14 @@ def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
                 f"an operator said what {entity.name} is, so only an operator may change that or remove it;"
                 " anybody may say where it is"
             )
+
+
+def note(command: Add | Update | Remove | Clear, truth: Truth) -> str | None:
+    """What will become of a change where the map does not own what it changes; None where it does."""
+    if isinstance(command, (Remove, Clear)):
+        return _COMES_BACK.get(truth)
+    placed = any(value is not None for value in (command.at, command.yaw, command.orientation))
+    return _GOES_BACK.get(truth) if isinstance(command, Update) and placed else None
 
 
 def require_operator(command: Command, what: str) -> None:

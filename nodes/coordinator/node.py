@@ -11,6 +11,7 @@ from typing import Any
 from msgspec import structs
 
 from nodes import bus
+from nodes.coordinator import authority
 from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.class_names import ClassNames
@@ -34,10 +35,6 @@ from schemas.scenes import Poses
 
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
-_COMES_BACK = {
-    "scene": "the scene is the truth here: what still stands in it comes back",
-    "perceived": "perception is the truth here: what it still sees comes back",
-}
 _RELAYED: tuple[type[c.Command], ...] = (
     c.History,
     c.LastSeen,
@@ -176,7 +173,7 @@ class Coordinator:
 
     def _with_body(self, command: c.Add | c.Update) -> Future[Any]:
         """The reply waits for the body if that is wanted."""
-        made = self._turns.change(command)
+        made = self._noted(command)
         if not command.wait:
             return made
         future: Future[Any] = Future()
@@ -207,9 +204,9 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _noted(self, command: c.Remove | c.Clear) -> Future[Changed]:
-        """Where the map does not own existence, what is removed from it only comes back."""
-        made, note = self._turns.change(command), _COMES_BACK.get(self._config.truth)
+    def _noted(self, command: c.Add | c.Update | c.Remove | c.Clear) -> Future[Changed]:
+        """With a word on what will become of it where the map does not own what it changes."""
+        made, note = self._turns.change(command), authority.note(command, self._config.truth)
         if note is None:
             return made
         return then(made, lambda changed: structs.replace(changed, notes=(*changed.notes, note)))

@@ -2,6 +2,7 @@
 
 import pytest
 
+from nodes.coordinator import authority
 from schemas import commands as c
 from schemas import errors
 from tests.coordinator.test_door import add
@@ -99,3 +100,21 @@ def test_the_same_conflict_again_changes_nothing(door):
     door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
     again = door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception"))
     assert again.commit is None
+
+
+@pytest.mark.parametrize(
+    ("command", "truth", "said"),
+    [
+        (c.Remove(names=("cup1",)), "scene", "comes back"),
+        (c.Clear(), "perceived", "comes back"),
+        (c.Remove(names=("cup1",)), "map", None),
+        (c.Update(name="cup1", at=AT), "scene", "semmap move"),
+        (c.Update(name="cup1", yaw=1.0), "scene", "semmap move"),
+        (c.Update(name="cup1", ref="mug"), "scene", None),
+        (c.Update(name="cup1", at=AT), "perceived", None),
+        (c.Add(class_="Cup", at=AT), "scene", None),
+    ],
+)
+def test_what_the_map_does_not_own_goes_back_and_that_is_said(command, truth, said):
+    note = authority.note(command, truth)
+    assert (said is None and note is None) or said in note
