@@ -14,7 +14,7 @@ from schemas import keys
 class Lifelines:
     """Of the nodes that serve, as one session sees them: what hangs on one is cancelled when that is cut.
 
-    It costs a question nothing. Any thread may use it.
+    It costs a question some microseconds. Any thread may use it.
     """
 
     def __init__(self, session: zenoh.Session) -> None:

@@ -1,5 +1,6 @@
 """The client before a system that keeps it waiting."""
 
+import contextlib
 import time
 
 import pytest
@@ -22,29 +23,35 @@ def test_a_coordinator_that_is_too_busy_to_say_how_things_stand_is_told():
     assert len(kept) == 1
 
 
-def test_a_commit_that_does_not_come_is_waited_for_so_long():
+@contextlib.contextmanager
+def system_at(commit):
+    """A client of a system that is at this commit, and a function that publishes one more."""
     endpoint = free_endpoint()
-    status = replies.SystemStatus(commit=3, entities=0, bodies=0, truth="map", in_agreement=True, nodes=())
+    status = replies.SystemStatus(
+        commit=commit, entities=0, bodies=0, truth="map", in_agreement=True, nodes=()
+    )
     network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
     with bus.open_session(network) as session, connect(endpoint) as client:
         bus.serve(session, keys.CMD, lambda request: request.reply(status))
         publisher = bus.publisher(session, keys.COMMIT)
-        with client.commits(timeout=0.5) as commits:
-            for seq in (3, 4):
-                publisher.put(codec.encode(Commit(seq=seq, stamp_ns=1, id=str(seq), source="operator")))
-            assert next(commits).seq == 4
-            with pytest.raises(errors.NoAnswer, match=r"no commit came within 0\.5 s"):
-                next(commits)
+
+        def publish(seq, stamp_ns=1):
+            publisher.put(codec.encode(Commit(seq=seq, stamp_ns=stamp_ns, id=str(seq), source="operator")))
+
+        yield client, publish
+
+
+def test_a_commit_that_does_not_come_is_waited_for_so_long():
+    with system_at(3) as (client, publish), client.commits(timeout=0.5) as commits:
+        publish(3)
+        publish(4)
+        assert next(commits).seq == 4
+        with pytest.raises(errors.NoAnswer, match=r"no commit came within 0\.5 s"):
+            next(commits)
 
 
 def test_the_commits_of_another_map_behind_the_same_endpoint_are_told_too():
-    endpoint = free_endpoint()
-    status = replies.SystemStatus(commit=168, entities=0, bodies=0, truth="map", in_agreement=True, nodes=())
-    network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
-    with bus.open_session(network) as session, connect(endpoint) as client:
-        bus.serve(session, keys.CMD, lambda request: request.reply(status))
-        publisher = bus.publisher(session, keys.COMMIT)
-        with client.commits(timeout=5.0) as commits:
-            for seq, stamp_ns in ((167, 1), (2, time.time_ns())):
-                publisher.put(codec.encode(Commit(seq=seq, stamp_ns=stamp_ns, id=str(seq), source="file")))
-            assert next(commits).seq == 2
+    with system_at(168) as (client, publish), client.commits(timeout=5.0) as commits:
+        publish(167)
+        publish(2, stamp_ns=time.time_ns())
+        assert next(commits).seq == 2

@@ -1,7 +1,8 @@
-"""Short ways to say orders and placements."""
+"""Short ways to say orders and placements, and worlds in which they are followed."""
 
+from nodes.sim_node.world import World
 from schemas.entities import Pose, Size, orientation_from_yaw
-from schemas.scenes import BodyOrder, Placement
+from schemas.scenes import Body, BodyOrder, Placement
 
 
 def pose(x: float, y: float, z: float = 0.0, yaw: float = 0.0) -> Pose:
@@ -24,3 +25,13 @@ def order(
 
 def hand(name: str, at: Pose) -> Placement:
     return Placement(name=name, pose=at)
+
+
+def spawned(*orders: BodyOrder) -> World:
+    world = World()
+    world.spawn(orders)
+    return world
+
+
+def bodies(world: World) -> dict[str, Body]:
+    return {body.name: body for body in world.scene().bodies}

@@ -1,19 +1,8 @@
 import pytest
 
-from nodes.sim_node.world import World
-from tests.sim_node.orders import order, pose
+from tests.sim_node.orders import bodies, order, pose, spawned
 
 FRIDGE = (0.6, 0.6, 1.8)
-
-
-def spawned(*orders):
-    world = World()
-    world.spawn(orders)
-    return world
-
-
-def bodies(world):
-    return {body.name: body for body in world.scene().bodies}
 
 
 def test_a_cup_said_to_be_where_the_table_is_stands_on_it():

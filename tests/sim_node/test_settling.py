@@ -2,20 +2,9 @@ from itertools import pairwise
 
 import pytest
 
-from nodes.sim_node.world import World
-from tests.sim_node.orders import hand, order, pose
+from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 FRIDGE = (0.6, 0.6, 1.8)
-
-
-def spawned(*orders):
-    world = World()
-    world.spawn(orders)
-    return world
-
-
-def bodies(world):
-    return {body.name: body for body in world.scene().bodies}
 
 
 def test_of_two_big_ones_in_one_place_the_later_is_a_ghost_until_there_is_room():
