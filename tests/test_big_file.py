@@ -43,6 +43,8 @@ def test_a_file_of_very_many_triples(tmp_path):
         assert f"loaded {chairs} entities" in said
         assert "semmap: loading many.nt: " in told
         assert "0,000 triples read" in told  # once a second, so perhaps not to the last one
+        with file.open() as lines:
+            assert f"{sum(1 for _ in lines):,} triples to check and write" in told
         with system.client() as client:
             status = client.status()
             assert status.entities == chairs
