@@ -25,7 +25,7 @@ from nodes.kb_node.classes import ClassTable
 from nodes.kb_node.journal import Checkpoint, Journal
 from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.steadily import apply, steadily
+from nodes.kb_node.steadily import parts, steadily
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Snapshot, Star, Transaction
@@ -34,6 +34,9 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
+PART = 250_000
+"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
+
 T = TypeVar("T")
 
 
@@ -338,9 +341,27 @@ class SemanticMap:
     def _change(self, *, delete: Collection[Triple] = (), insert: Collection[Triple]) -> Change:
         """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent."""
         try:
-            return apply(self.reasoner, delete, insert, self._progress)
+            if len(delete) + len(insert) <= PART or not self.reasoner.is_compiled:
+                return self.reasoner.apply(delete=delete, insert=insert)
+            return self._change_in_parts(delete, insert)
         except Inconsistent as error:
             raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
+
+    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple]) -> Change:
+        """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
+        reasoner, changes = self.reasoner, list[Change]()
+        deleted, inserted = list[Triple](), list[Triple]()
+        try:
+            for part in parts(delete, PART, self._progress):
+                changes.append(reasoner.apply(delete=part))
+                deleted += part
+            for part in parts(insert, PART, self._progress):
+                changes.append(reasoner.apply(insert=part))
+                inserted += part
+        except BaseException:
+            reasoner.apply(delete=inserted, insert=deleted)
+            raise
+        return Change.together(changes)
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Final, TypeVar
 
-from nodes.kb_node.reasoner import Change, Reasoner
-from schemas.explanations import Triple
-
 T = TypeVar("T")
 
-PART = 250_000
-"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 _STEP: Final = 1000
 
 
@@ -24,31 +19,9 @@ def steadily(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
         yield item
 
 
-def apply(
-    reasoner: Reasoner, delete: Collection[Triple], insert: Collection[Triple], progress: Callable[[], None]
-) -> Change:
-    """`reasoner.apply`, a large change in parts; `progress` is called before each. Raises Inconsistent.
-
-    A part of a consistent map is consistent, so no more is refused. On any error all is as before.
-    """
-    if len(delete) + len(insert) <= PART or not reasoner.is_compiled:
-        return reasoner.apply(delete=delete, insert=insert)
-    changes, deleted, inserted = list[Change](), list[Triple](), list[Triple]()
-    try:
-        for part in _parts(delete, progress):
-            changes.append(reasoner.apply(delete=part))
-            deleted += part
-        for part in _parts(insert, progress):
-            changes.append(reasoner.apply(insert=part))
-            inserted += part
-    except BaseException:
-        reasoner.apply(delete=inserted, insert=deleted)
-        raise
-    return Change.together(changes)
-
-
-def _parts(items: Iterable[T], progress: Callable[[], None]) -> Iterator[Sequence[T]]:
+def parts(items: Iterable[T], size: int, progress: Callable[[], None]) -> Iterator[Sequence[T]]:
+    """The items in parts of that size; `progress` is called before each."""
     rest = iter(items)
-    while part := list(islice(rest, PART)):
+    while part := list(islice(rest, size)):
         progress()
         yield part

@@ -399,7 +399,7 @@ def _worked_on(folder):
 
 def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
     *whole, beats = _worked_on(tmp_path / "whole")
-    monkeypatch.setattr("nodes.kb_node.steadily.PART", 7)
+    monkeypatch.setattr("nodes.kb_node.semantic_map.PART", 7)
     *in_parts, more_beats = _worked_on(tmp_path / "parts")
     assert in_parts == whole
     assert more_beats > beats + 20
