@@ -144,8 +144,8 @@ class ClassTable:
         seen, level = set[Term](), [c]
         while level:
             for ancestor in level:
-                for _, _, value in self._reasoner.asserted(ancestor, annotation, None):
-                    return v.lexical(value)
+                if values := [value for _, _, value in self._reasoner.asserted(ancestor, annotation, None)]:
+                    return v.lexical(min(values))  # of several always the same one, after a restart too
             seen.update(level)
             level = [p for a in level for p in self._parents.get(a, ()) if p not in seen]
         return ""
