@@ -20,7 +20,7 @@ from hypothesis import HealthCheck, settings
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
 from nodes.extern.testing import free_endpoint
-from nodes.loop import Node
+from nodes.runtime.loop import Node
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -12,7 +12,7 @@ from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.keeping import Keeping
-from nodes.futures import then
+from nodes.runtime.futures import then
 from schemas import commands as c
 from schemas import errors
 from schemas.entities import Entity

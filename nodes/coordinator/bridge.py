@@ -6,8 +6,8 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes import bus
-from nodes.futures import settle
-from nodes.loop import Node, Relay
+from nodes.runtime.futures import settle
+from nodes.runtime.loop import Node, Relay
 from schemas import errors, keys
 from schemas.bridge import BRIDGE
 from schemas.commands import Command

@@ -22,8 +22,8 @@ from nodes.coordinator.keeping import Keeping
 from nodes.coordinator.running import Running
 from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Change, Results, Turns
-from nodes.futures import settle, then
-from nodes.loop import Node, open_node
+from nodes.runtime.futures import settle, then
+from nodes.runtime.loop import Node, open_node
 from schemas import commands as c
 from schemas import errors, keys, wording
 from schemas.bridge import SnapshotQuery

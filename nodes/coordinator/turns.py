@@ -14,7 +14,7 @@ from concurrent.futures import Future
 from itertools import islice
 from typing import Any, NamedTuple
 
-from nodes.futures import settle
+from nodes.runtime.futures import settle
 from schemas import errors
 from schemas.commands import Add, Clear, Load, Remove, Undo, Update
 from schemas.replies import Changed

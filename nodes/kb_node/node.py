@@ -17,7 +17,7 @@ from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
-from nodes.loop import Node, open_node
+from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.bridge import (
     BRIDGE,

@@ -16,8 +16,6 @@ from typing import Any
 from msgspec import structs
 
 from nodes import bus
-from nodes.loop import Node, open_node
-from nodes.map_view import MapView
 from nodes.perception_node.association import associate, renamed
 from nodes.perception_node.class_hierarchy import ClassHierarchy, hierarchy_of
 from nodes.perception_node.cloud import Cloud
@@ -28,6 +26,8 @@ from nodes.perception_node.occupancy import occupancy_in
 from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.segmented_cloud import segmented_cloud
 from nodes.perception_node.tracks import Tracks
+from nodes.runtime.loop import Node, open_node
+from nodes.runtime.map_replica import MapView
 from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Add, Classes, Command, LastSeen

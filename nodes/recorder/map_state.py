@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.map_view import MapView
+from nodes.runtime.map_replica import MapView
 from ontology import vocabulary as v
 from schemas.commits import Commit, Star
 from schemas.explanations import Term, Triple

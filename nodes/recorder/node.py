@@ -6,7 +6,6 @@ import time
 from concurrent.futures import Future
 from typing import Any
 
-from nodes.loop import Node, open_node
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.graph import graph_of
 from nodes.recorder.map_state import MapState, missed
@@ -15,6 +14,7 @@ from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.scene_state import SceneState
 from nodes.recorder.stage import Stage
 from nodes.recorder.surfaces import Kind
+from nodes.runtime.loop import Node, open_node
 from schemas import keys, wording
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot

@@ -6,9 +6,9 @@ import logging
 from collections.abc import Callable
 
 from nodes import bus
-from nodes.loop import Node
 from nodes.recorder import perception_archetypes as archetypes
 from nodes.recorder.recording import Recording
+from nodes.runtime.loop import Node
 from schemas import keys
 from schemas.perception import Observations, SegmentedCloud
 from schemas.scenes import CameraFrame

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from typing import Any, Literal, TypeVar
 
 from nodes import bus
-from nodes.loop import Node, open_node
+from nodes.runtime.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio

@@ -8,7 +8,7 @@ import pytest
 
 from nodes import bus
 from nodes.coordinator.bridge import Bridge
-from nodes.loop import Node
+from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.commits import Commit, Transaction
 from tests.conftest import free_endpoint, handling

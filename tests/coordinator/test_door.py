@@ -9,7 +9,7 @@ import pytest
 from nodes.coordinator.door import Door
 from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Turns
-from nodes.futures import settle
+from nodes.runtime.futures import settle
 from ontology import vocabulary as v
 from schemas import commands as c
 from schemas import errors

@@ -10,11 +10,11 @@ import zenoh
 from msgspec import structs
 
 from nodes import bus
-from nodes.loop import Node
 from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
 from nodes.perception_node.node import Perception, summary
 from nodes.perception_node.pipeline import Look
+from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas.bridge import SnapshotQuery
 from schemas.commands import Add, Classes, LastSeen

@@ -9,10 +9,10 @@ from contextlib import contextmanager
 import pytest
 
 from nodes import bus
-from nodes.loop import Node
 from nodes.recorder.node import Recorder
 from nodes.recorder.reading import read_commits
 from nodes.recorder.recording import open_recording
+from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commits import Snapshot

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from nodes import bus
-from nodes.loop import Node
+from nodes.runtime.loop import Node
 from nodes.sim_node import node
 from nodes.sim_node.config import CameraConfig, SimConfig
 from nodes.sim_node.node import Simulator

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from nodes import map_view
 from nodes.coordinator.class_names import ClassNames
+from nodes.runtime import map_replica
 from schemas import errors
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity
 
 
-class MapView(map_view.MapView):
+class MapView(map_replica.MapView):
     """Besides the entities the classes, and whether another knowledge base may know less."""
 
     def __init__(self) -> None:

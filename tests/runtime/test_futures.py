@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 
-from nodes.futures import settle, then
+from nodes.runtime.futures import settle, then
 
 
 def fail():

@@ -1,4 +1,4 @@
-from nodes.map_view import MapView
+from nodes.runtime.map_replica import MapView
 from schemas.commits import Snapshot
 from tests.recorder.messages import commit, entity
 

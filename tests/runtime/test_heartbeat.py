@@ -8,8 +8,9 @@ import time
 
 import pytest
 
-from nodes import bus, heartbeat
-from nodes.heartbeat import Heartbeat
+from nodes import bus
+from nodes.runtime import heartbeat
+from nodes.runtime.heartbeat import Heartbeat
 from schemas import keys
 from schemas.health import Health
 from tests.conftest import free_endpoint, until

@@ -10,7 +10,7 @@ from concurrent.futures import Future
 import pytest
 
 from nodes import bus
-from nodes.loop import Node, Relay
+from nodes.runtime.loop import Node, Relay
 from schemas import codec, commands, errors, keys, replies
 from schemas.health import Health
 from schemas.scenes import Poses

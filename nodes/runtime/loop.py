@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import zenoh
 
 from nodes import bus
-from nodes.heartbeat import Heartbeat
+from nodes.runtime.heartbeat import Heartbeat
 from schemas import errors, keys
 
 log = logging.getLogger(__name__)
