@@ -12,7 +12,7 @@ from msgspec import MsgspecError
 
 from nodes.kb_node import fingerprint
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.reasoner.facts import Facts, pack, unpack
+from nodes.kb_node.reasoner.rules.facts import Facts, pack, unpack
 from schemas.explanations import Triple
 
 _SUFFIX = ".closure"

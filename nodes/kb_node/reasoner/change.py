@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.shapes import Alike
+from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 from schemas.explanations import Term
 
 

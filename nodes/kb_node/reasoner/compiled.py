@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 
-from nodes.kb_node.reasoner.abox import ABox
-from nodes.kb_node.reasoner.axioms import NotCompilable
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.abox_view import View
+from nodes.kb_node.reasoner.abox.retraction import Retraction
 from nodes.kb_node.reasoner.change import Change
-from nodes.kb_node.reasoner.closure import Closure
-from nodes.kb_node.reasoner.facts import Facts
-from nodes.kb_node.reasoner.proof import Prover
-from nodes.kb_node.reasoner.reasons import Clash
-from nodes.kb_node.reasoner.retraction import Retraction
-from nodes.kb_node.reasoner.schema import Schema
-from nodes.kb_node.reasoner.schema_support import SchemaSupport
-from nodes.kb_node.reasoner.shapes import Alike, Contradiction, Shapes, Written
-from nodes.kb_node.reasoner.shortcuts import depart, exchange
-from nodes.kb_node.reasoner.split import check_compilable, is_schema
-from nodes.kb_node.reasoner.support import Support
+from nodes.kb_node.reasoner.explain.proof import Prover
+from nodes.kb_node.reasoner.explain.reasons import Clash
+from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
+from nodes.kb_node.reasoner.explain.support import Support
+from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from nodes.kb_node.reasoner.rules.closure import Closure
+from nodes.kb_node.reasoner.rules.facts import Facts
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.reasoner.tbox.schema import Schema
+from nodes.kb_node.reasoner.tbox.split import check_compilable, is_schema
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     SAME_AS,
     TYPE,
 )  # fmt: skip
-from nodes.kb_node.reasoner.view import View
 from schemas.explanations import Explanation, Term, Triple
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
 
-from nodes.kb_node.reasoner.axioms import NotCompilable
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
-from nodes.kb_node.reasoner.facts import Facts
-from nodes.kb_node.reasoner.general import GeneralEngine
+from nodes.kb_node.reasoner.rules.facts import Facts
+from nodes.kb_node.reasoner.rules.general import GeneralEngine
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 

@@ -1,6 +1,6 @@
 """What every explanation must be, whatever it explains."""
 
-from nodes.kb_node.reasoner.closure import Closure
+from nodes.kb_node.reasoner.rules.closure import Closure
 
 
 def check(explanation, asserted):

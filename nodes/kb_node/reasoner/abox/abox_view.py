@@ -1,0 +1,236 @@
+"""What the ABox says, asked by pattern: the asserted triples, and those implied without being stored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.store import ASSERTED
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME
+from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
+from schemas.explanations import Term, Triple
+
+
+class View:
+    """Read access to an ABox; None in a pattern is a wildcard."""
+
+    def __init__(self, abox: ABox) -> None:
+        self._abox = abox
+        self._store = abox.store
+        self._schema = abox.schema
+
+    # Asserted
+
+    def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The asserted triples of a pattern."""
+        if s is None and p is None and o is None:
+            for node, term in enumerate(self._store.terms):
+                if term and not self._abox.is_literal(node):
+                    yield from self.asserted(term, None, None)
+            return
+        if p is None or p == TYPE:
+            yield from self._asserted_types(s, o)
+        if p != TYPE:
+            for edge in self._asserted_edges(s, p, o):
+                yield self._triple(edge)
+
+    def about(self, s: Term) -> dict[Term, list[Term]]:
+        """The asserted triples of a subject: predicate to objects."""
+        store, schema, node = self._store, self._schema, self._store.find(s)
+        if node is None:
+            return {}
+        objects: dict[Term, list[Term]] = {}
+        if types := [schema.classes[cls] for cls in self._given(node)]:
+            objects[TYPE] = types
+        for edge in store.out.all(node):
+            if store.source[edge] == ASSERTED:
+                predicate = schema.axioms[store.predicate[edge]].term
+                objects.setdefault(predicate, []).append(store.terms[store.object[edge]])
+        return objects
+
+    def _asserted_types(self, s: Term | None, o: Term | None) -> Iterator[Triple]:
+        cls = None if o is None else self._schema.find_class(o)
+        if o is not None and cls is None:
+            return
+        for node in self._nodes(s, cls):
+            for given in self._given(node):
+                if cls is None or given == cls:
+                    yield (self._store.terms[node], TYPE, self._schema.classes[given])
+
+    def _nodes(self, s: Term | None, cls: int | None) -> Iterator[int]:
+        """The individuals that may have asserted classes: one, those given a class, or all."""
+        if s is not None:
+            node = self._store.find(s)
+            if node is not None:
+                yield node
+            return
+        for kind in self._abox.kinds:
+            if kind.nodes and (cls is None or cls in kind.given):
+                yield from kind.nodes
+
+    def _given(self, node: int) -> Iterator[int]:
+        return self._abox.kinds.given(self._store.kind[node])
+
+    def _asserted_edges(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[int]:
+        store = self._store
+        subject = None if s is None else store.find(s)
+        object_ = None if o is None else store.find(o)
+        predicate = None if p is None else self._schema.find_property(p)
+        if (s and subject is None) or (o and object_ is None) or (p and predicate is None):
+            return
+        for edge in self._edges(subject, predicate, object_):
+            if store.source[edge] == ASSERTED:
+                yield edge
+
+    def _edges(self, s: int | None, p: int | None, o: int | None) -> Iterator[int]:
+        store = self._store
+        if s is not None and p is not None and o is not None:
+            edge = store.edge(s, p, o)
+            if edge != NONE:
+                yield edge
+        elif s is not None:
+            for edge in store.out.all(s) if p is None else store.out.of(s, p):
+                if o is None or store.object[edge] == o:
+                    yield edge
+        elif o is not None:
+            yield from store.into.all(o) if p is None else store.into.of(o, p)
+        else:
+            for edge, predicate in enumerate(store.predicate):
+                if predicate != NONE and (p is None or predicate == p):
+                    yield edge
+
+    def _triple(self, edge: int) -> Triple:
+        store = self._store
+        predicate = self._schema.axioms[store.predicate[edge]].term
+        return (store.terms[store.subject[edge]], predicate, store.terms[store.object[edge]])
+
+    # Inferred
+
+    def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The triples of a pattern that follow and were not asserted, each once.
+
+        Left out are what is trivial (everything is the same as itself), classes without a name, and other
+        spellings of a literal.
+        """
+        if s is not None:
+            node = self._store.find(s)
+            nodes = iter(()) if node is None else iter((node,))
+        elif o is not None and p != TYPE:
+            nodes = self._linked_to(o)
+        elif p == TYPE and o is not None:
+            nodes = (node for node in self._instances(o))
+        else:
+            nodes = (node for node, term in enumerate(self._store.terms) if term)
+        for node in nodes:
+            if not self._abox.is_literal(node):
+                for triple in self._inferred_of(node, p):
+                    if o is None or triple[2] == o:
+                        yield triple
+
+    def _linked_to(self, term: Term) -> Iterator[int]:
+        """The individuals that may be related to a term."""
+        found: dict[int, None] = {}
+        found.update(dict.fromkeys(self._instances(term)))
+        here = self._store.find(term)
+        if here is not None:
+            for member in self._abox.members(here):
+                found[member] = None
+                for edge in self._store.into.all(member):
+                    found.update(dict.fromkeys(self._abox.members(self._store.subject[edge])))
+                for edge in self._store.out.all(member):
+                    found.update(dict.fromkeys(self._abox.members(self._store.object[edge])))
+        return iter(found)
+
+    def _inferred_of(self, node: int, p: Term | None) -> Iterator[Triple]:
+        store, term = self._store, self._store.terms[node]
+        if p is None or p == TYPE:
+            kind = store.kind[node]
+            given = {self._schema.classes[cls] for cls in self._given(node)}
+            yield from ((term, TYPE, name) for name in kind.names - given)
+        if p is None or p == SAME_AS:
+            yield from self._inferred_same(node)
+        if p in (TYPE, SAME_AS):
+            return
+        wanted = None if p is None else self._schema.find_property(p)
+        if p is not None and wanted is None:
+            return
+        told = {
+            (store.predicate[e], store.object[e]) for e in store.out.all(node) if store.source[e] == ASSERTED
+        }
+        for predicate, object_ in dict.fromkeys(self._implied(node)):
+            name = self._schema.axioms[predicate].term
+            if (
+                (predicate, object_) not in told
+                and wanted in (None, predicate)
+                and name[0] == "<"
+                and " " not in name
+            ):
+                yield (term, name, store.terms[object_])
+
+    def _inferred_same(self, node: int) -> Iterator[Triple]:
+        store = self._store
+        for member in self._abox.members(node):
+            edge = store.edge(node, SAME, member)
+            if member != node and (edge == NONE or store.source[edge] != ASSERTED):
+                yield (store.terms[node], SAME_AS, store.terms[member])
+
+    def _implied(self, node: int) -> Iterator[tuple[int, int]]:
+        """Every property and object that a node is related by, over equals at both ends."""
+        store, schema, abox = self._store, self._schema, self._abox
+        for member in abox.members(node):
+            for edge in store.out.all(member):
+                if store.predicate[edge] != SAME:
+                    others = self._equals(store.object[edge])
+                    for q, backwards in schema.roles(store.predicate[edge]):
+                        if not backwards:
+                            yield from ((q, other) for other in others)
+            for edge in store.into.all(member):
+                if store.predicate[edge] > DIFFERENT:
+                    others = self._equals(store.subject[edge])
+                    for q, backwards in schema.roles(store.predicate[edge]):
+                        if backwards:
+                            yield from ((q, other) for other in others)
+
+    def _equals(self, node: int) -> list[int]:
+        members, value = self._abox.members(node), self._abox.value(node)
+        return [
+            other for other in members if other == node or value is None or value != self._abox.value(other)
+        ]
+
+    # Questions
+
+    def holds(self, triple: Triple) -> bool:
+        """Whether a triple about individuals is asserted or follows."""
+        s, p, o = triple
+        if p == SAME_AS and s == o:
+            return True
+        node = self._store.find(s)
+        if node is None:
+            return False
+        if p == TYPE:
+            cls = self._schema.find_class(o)
+            return cls is not None and bool(self._store.kind[node].mask >> cls & 1)
+        if p == SAME_AS:
+            return self._abox.named(node, o) is not None
+        predicate = self._schema.find_property(p)
+        if predicate is None:
+            return False
+        group = self._abox.steps.group((predicate, False))
+        return any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group))
+
+    def types(self, individual: Term) -> frozenset[Term]:
+        """The named classes of an individual."""
+        node = self._store.find(individual)
+        return frozenset() if node is None else self._store.kind[node].names
+
+    def instances(self, cls: Term) -> Iterator[Term]:
+        """The individuals of a class."""
+        return (self._store.terms[node] for node in self._instances(cls))
+
+    def _instances(self, term: Term) -> Iterator[int]:
+        cls = self._schema.find_class(term)
+        if cls is None:
+            return iter(())
+        return chain.from_iterable(kind.nodes for kind in self._abox.kinds if kind.mask >> cls & 1)

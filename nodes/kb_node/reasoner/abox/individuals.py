@@ -1,0 +1,165 @@
+"""The individuals of an ABox: what is stored of them, what is concluded, and how they are looked at.
+
+Nodes that are the same individual share one `Equals`; whatever is asked of one is asked of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import combinations, count
+
+from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.abox.steps import Steps
+from nodes.kb_node.reasoner.abox.store import Store
+from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from nodes.kb_node.reasoner.tbox.axioms import Group, Role
+from nodes.kb_node.reasoner.tbox.schema import Schema
+from nodes.kb_node.reasoner.terms import is_literal
+from schemas.explanations import Term
+
+MANY = 16
+"""Pairs of nodes beyond which edges are searched by the one end only."""
+
+
+class Equals:
+    """Nodes that are the same individual, and the links that made them so."""
+
+    __slots__ = ("links", "members")
+
+    def __init__(self, member: int) -> None:
+        self.members = [member]
+        self.links: list[Reason] = []
+
+
+class Individuals:
+    """State shared by all rules: columns, kinds, equalities, reasons, and the agenda of what is new."""
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+        self.kinds = Kinds(schema)
+        self.steps = Steps(schema, self.kinds)
+        self.store = Store(self.kinds)
+        self.equals: dict[int, Equals] = {}
+        self.reasons: dict[int, Reason] = {}
+        self.moved: dict[int, Kind] = {}
+        """The nodes whose kind changed since `settle`, with the kind they had."""
+        self.rest_on_edge: dict[int, list[Reason]] = {}
+        self.rest_on_node: dict[int, list[Reason]] = {}
+        self._order = count()
+        self.spellings: dict[datatypes.Value, list[int]] = {}
+        self.is_mixed = False
+        """Whether a literal without a known value was ever the same as another: all spellings matter then."""
+        self.fresh: list[int] = []
+        self.dirty: dict[int, None] = {}
+        for term in schema.nominals:
+            if not is_literal(term):
+                self.store.node(term)
+
+    def members(self, node: int) -> list[int]:
+        """All nodes that are the same as one, itself included."""
+        equals = self.equals.get(node)
+        return [node] if equals is None else equals.members
+
+    def is_same(self, one: int, other: int) -> bool:
+        """Whether two nodes are the same individual or value."""
+        if one == other:
+            return True
+        equals = self.equals.get(one)
+        if equals is not None and equals is self.equals.get(other):
+            return True
+        return self.value(one) is not None and self.value(one) == self.value(other)
+
+    def named(self, node: int, term: Term) -> int | None:
+        """Which of those that are the same as a node a term names, a literal also in another spelling."""
+        found, members = self.store.find(term), self.members(node)
+        if found is not None and found in members:
+            return found
+        value = datatypes.value(term) if is_literal(term) else None
+        return None if value is None else next((m for m in members if self.value(m) == value), None)
+
+    def is_literal(self, node: int) -> bool:
+        """Whether a node is a literal."""
+        return self.store.kind[node].excluded is not None
+
+    def value(self, node: int) -> datatypes.Value | None:
+        """The value of a literal; None for an individual."""
+        if not self.is_literal(node):
+            return None
+        return datatypes.value(self.store.terms[node])
+
+    def related(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
+        """The edges that a role follows from a node: (edge, its end here, its end there)."""
+        store = self.store
+        for member in self.members(node):
+            for p in group.out:
+                for edge in store.out.of(member, p):
+                    yield edge, member, store.object[edge]
+            for p in group.into:
+                for edge in store.into.of(member, p):
+                    yield edge, member, store.subject[edge]
+
+    def find(self, one: int, role: Role, other: int) -> int:
+        """An edge that implies a role between two nodes or their equals, or NONE."""
+        group, store = self.steps.group(role), self.store
+        if len(self.members(one)) * len(self.members(other)) > MANY:
+            return next((edge for edge, _, end in self.related(one, group) if self.is_same(end, other)), NONE)
+        for x in self.members(one):
+            for y in self.members(other):
+                for p in group.out:
+                    if (edge := store.edge(x, p, y)) != NONE:
+                        return edge
+                for p in group.into:
+                    if (edge := store.edge(y, p, x)) != NONE:
+                        return edge
+        return NONE
+
+    def bridges(self, edges: Iterable[int], *nodes: int) -> list[Claim]:
+        """That nodes and the ends of edges are the same, where they are and are not one node."""
+        store = self.store
+        ends = {node for edge in edges for node in (store.subject[edge], store.object[edge])}
+        pairs = combinations(sorted(ends.union(nodes)), 2)
+        return [Same(one, other) for one, other in pairs if self.equals and self.is_same(one, other)]
+
+    def set(self, node: int, kind: Kind) -> None:
+        """Change the kind of a node."""
+        self.moved.setdefault(node, self.store.kind[node])
+        self.store.kind[node] = kind
+
+    def _widen(self, node: int, mask: int) -> None:
+        """Add classes to a node and all that are the same."""
+        for member in self.members(node):
+            kind = self.store.kind[member]
+            wider = self.kinds.widen(kind, mask)
+            if wider is not kind:
+                self.set(member, wider)
+                self.dirty[member] = None
+
+    def _remember(self, reason: Reason) -> Reason:
+        """Note what a conclusion rests on, to find it when that is deleted."""
+        for claim in reason.claims:
+            if isinstance(claim, Edge):
+                rest = self.rest_on_edge.setdefault(claim.edge, [])
+            else:
+                node = claim.node if isinstance(claim, Member) else claim.one
+                rest = self.rest_on_node.setdefault(node, [])
+            if len(rest) >= MANY and len(rest) & (len(rest) - 1) == 0:
+                rest[:] = [other for other in rest if other.alive]
+            rest.append(reason)
+        return reason
+
+    def settle(self) -> None:
+        """File the individuals whose kind changed; to be called at the end of a transaction."""
+        for node, before in self.moved.items():
+            if before.excluded is None:
+                self.store.file(node, before, self.store.kind[node])
+        self.moved.clear()
+
+    def forget_spelling(self, literal: int) -> None:
+        """A literal that nothing has any more is no spelling of its value."""
+        value = self.value(literal)
+        if value in self.spellings:
+            self.spellings[value] = [other for other in self.spellings[value] if other != literal]
+            if not self.spellings[value]:
+                del self.spellings[value]

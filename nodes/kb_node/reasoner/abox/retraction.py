@@ -1,0 +1,206 @@
+"""Deletion: exactly what would be there had the deleted triples never been.
+
+What was concluded from a deleted edge is dropped, whatever else it may rest on. A node whose kind is not
+borne out by what was asserted of it and of its neighbours is reset to what it was given, and its neighbours
+are asked in turn. Then everything that was reset runs forward again, as if it were new.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.individuals import Equals
+from nodes.kb_node.reasoner.abox.store import ASSERTED, VALUE
+from nodes.kb_node.reasoner.explain.reasons import Reason
+from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
+from nodes.kb_node.reasoner.terms import TYPE
+from schemas.explanations import Term, Triple
+
+
+class Retraction:
+    """One batch of deletions; `run` of the ABox draws the conclusions anew."""
+
+    def __init__(self, abox: ABox) -> None:
+        self._abox = abox
+        self._store = abox.store
+        self._suspects: dict[int, None] = {}
+        self._reset: set[int] = set()
+        self._loosened: set[int] = set()
+        self._dropped: list[tuple[int, int, int]] = []
+        self.touched: set[int] = set()
+        """Nodes that lost something: an asserted class, an edge."""
+
+    def delete(self, triples: Sequence[Triple]) -> list[Triple]:
+        """Take triples back, and what rests on them; those that were there."""
+        types = [triple for triple in triples if triple[1] == TYPE and self._take_type(*triple)]
+        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple)]
+        while self._suspects:
+            node, _ = self._suspects.popitem()
+            kind = self._store.kind[node]
+            if kind.base is not kind and node not in self._reset and not self._is_borne_out(node):
+                self._reset_all(node)
+        if self._abox.spellings:
+            self._forget_spellings()
+        for node in self._loosened:
+            self._abox.fresh += self._store.out.all(node)
+            self._abox.fresh += self._store.into.all(node)
+        kinds, made_by = self._store.kind, self._abox.steps.made_by
+        for subject, predicate, object_ in self._dropped:
+            if made_by(predicate) or kinds[subject].values or kinds[object_].values:
+                self._derive_anew(subject, predicate, object_)
+        return types + edges
+
+    def release(self) -> None:
+        """Forget the nodes that nothing is said of any more."""
+        for node in self.touched:
+            self._store.release(node)
+
+    def _forget_spellings(self) -> None:
+        for node in list(self.touched):
+            if self._abox.is_literal(node) and self._store.is_bare(node):
+                self._abox.forget_spelling(node)
+                if equals := self._abox.equals.get(node):
+                    self._dissolve(equals)
+
+    # What goes
+
+    def _take_type(self, s: Term, _: Term, o: Term) -> bool:
+        store = self._store
+        subject, cls = store.find(s), self._abox.schema.find_class(o)
+        if subject is None or cls is None or cls not in store.kind[subject].given:
+            return False
+        self._abox.set(subject, self._abox.kinds.without(store.kind[subject], cls))
+        self.touched.add(subject)
+        self._suspects[subject] = None
+        return True
+
+    def _take_edge(self, s: Term, p: Term, o: Term) -> bool:
+        store, numbers = self._store, self._store.numbers
+        subject, object_, predicate = numbers.get(s), numbers.get(o), self._abox.schema.find_property(p)
+        if subject is None or object_ is None or predicate is None:
+            return False
+        edge = store.edge(subject, predicate, object_)
+        if edge == NONE or store.source[edge] != ASSERTED:
+            return False
+        self._drop(edge)
+        return True
+
+    def _drop(self, edge: int) -> None:
+        """Remove an edge and what rests on it."""
+        store = self._store
+        ends = store.subject[edge], store.object[edge]
+        self._dropped.append((ends[0], store.predicate[edge], ends[1]))
+        store.remove(edge)
+        for node in ends:
+            self._suspects[node] = None
+            self.touched.add(node)
+        if reason := self._abox.reasons.pop(edge, None):
+            reason.alive = False
+        for reason in self._abox.rest_on_edge.pop(edge, ()):
+            self._cancel(reason)
+
+    def _cancel(self, reason: Reason) -> None:
+        if not reason.alive:
+            return
+        reason.alive = False
+        if reason.edge is not None:
+            self._drop(reason.edge)
+        elif reason.link is not None and (equals := self._abox.equals.get(reason.link[0])):
+            self._dissolve(equals)
+
+    def _dissolve(self, equals: Equals) -> None:
+        """Members are individuals of their own again, until the links that are left say otherwise."""
+        for link in equals.links:
+            link.alive = False
+        for member in equals.members:
+            del self._abox.equals[member]
+        for member in equals.members:
+            self._loosened.add(member)
+            self._reset_one(member)
+
+    # What stays
+
+    def _is_borne_out(self, node: int) -> bool:
+        """Whether assertions about a node and its neighbours make all of its kind.
+
+        Nodes that are the same do not count: what made them the same may rest on this node's kind.
+        """
+        close, store = self._abox.kinds.close, self._store
+        wanted = store.kind[node].mask
+        found = store.kind[node].base.mask
+        if found == wanted:
+            return True
+        for side in (store.out, store.into):
+            for edge in side.all(node):
+                found |= self._share(edge, node)
+                if found == wanted:
+                    return True
+        return close(found) == wanted
+
+    def _share(self, edge: int, node: int) -> int:
+        """What an edge alone says of a node, if the edge is asserted or comes with an asserted class."""
+        store = self._store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        subject, object_ = store.kind[s].base, store.kind[o].base
+        source = store.source[edge]
+        if source != ASSERTED and not (source == VALUE and self._comes_with(edge)):
+            return 0
+        step = self._abox.steps.step(p, subject, object_)
+        return step.subject.mask if node == s else step.object.mask
+
+    def _comes_with(self, edge: int) -> bool:
+        store = self._store
+        value = (store.predicate[edge], store.terms[store.object[edge]])
+        return value in store.kind[store.subject[edge]].base.values
+
+    def _reset_all(self, node: int) -> None:
+        equals = self._abox.equals.get(node)
+        if equals is not None:
+            self._dissolve(equals)
+        else:
+            self._reset_one(node)
+
+    def _reset_one(self, node: int) -> None:
+        """Back to the given classes: what rests on the others goes, and the neighbours become suspects."""
+        if node in self._reset:
+            return
+        self._reset.add(node)
+        abox, store = self._abox, self._store
+        abox.set(node, store.kind[node].base)
+        abox.dirty[node] = None
+        for reason in abox.rest_on_node.pop(node, ()):
+            self._cancel(reason)
+        for edge in list(store.out.all(node)):
+            if store.source[edge] == VALUE:
+                self._drop(edge)
+        for edge in store.out.all(node):
+            self._suspects[store.object[edge]] = None
+        for edge in store.into.all(node):
+            self._suspects[store.subject[edge]] = None
+
+    # What comes back
+
+    def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
+        """What a dropped edge implied may follow from others: by a chain, or with a class."""
+        abox = self._abox
+        for node in (subject, object_):
+            if self._store.kind[node].values:
+                abox.add_values(node)
+        for backwards, chain in abox.steps.made_by(predicate):
+            self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
+
+    def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
+        """An individual between two that a chain goes through, sought from the end with fewer edges."""
+        abox = self._abox
+        onward: Role = (chain.second, False)
+        back: Role = (chain.first, True)
+        forwards = abox.related(x, abox.steps.group((chain.first, False)))
+        backwards = abox.related(z, abox.steps.group((chain.second, True)))
+        for (one, _, after), (other, _, before) in zip(forwards, backwards, strict=False):
+            second, first = abox.find(after, onward, z), abox.find(before, back, x)
+            for pair in ((one, second), (first, other)):
+                if NONE not in pair:
+                    abox.make_chain(chain, x, z, *pair, *abox.bridges(pair, x, z))
+                    return

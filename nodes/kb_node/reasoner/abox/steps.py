@@ -1,0 +1,178 @@
+"""What one edge says of the two individuals that it joins, worked out once for each pair of kinds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
+from nodes.kb_node.reasoner.tbox.schema import Schema
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeRules:
+    """What a property's new edges are checked for whatever the kinds are."""
+
+    irreflexive: Role | None
+    limits: tuple[tuple[bool, Limit], ...]
+    """Limits that everybody has (prp-fp, prp-ifp), and whether the owner is the subject."""
+    exclusive: tuple[tuple[Role, Role], ...]
+    """(implied role, role that must not hold beside it)."""
+    heads: tuple[tuple[bool, Chain], ...]
+    """Chains that the edge may begin, and whether it is read forwards."""
+    tails: tuple[tuple[bool, Chain], ...]
+    """Chains that the edge may end."""
+    by_value: bool
+    """Whether it matters that two literals are spellings of one value."""
+    of_values: bool
+    """Whether all there is to check is that the subject has no other edge with the predicate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The kinds of subject and object afterwards, and what else must be looked at."""
+
+    subject: Kind
+    object: Kind
+    clash: tuple[Role, int, int] | None
+    """A role, an owner and a filler (or ANY) that it must not lead to (cls-maxc1, cls-maxqc1)."""
+    limits: tuple[tuple[bool, Limit], ...]
+    """Limits that the edge now counts for, and whether their owner is the subject."""
+    keys: tuple[tuple[bool, Key], ...]
+    """Keys that now identify the subject (or else the object)."""
+    special: bool
+    """Whether there is anything beyond the kinds."""
+    of_values: bool
+    """Whether there is not after all, when the subject has no other edge with the predicate."""
+    rules: EdgeRules | None
+    """What a new edge of the property is checked for besides; None for nothing."""
+
+
+class Steps:
+    """The memo of steps, and the rules of each property."""
+
+    LIMIT = 50_000
+    """Steps kept; beyond that the memo starts anew (a home has about fifty)."""
+
+    def __init__(self, schema: Schema, kinds: Kinds) -> None:
+        self._schema = schema
+        self._kinds = kinds
+        self.known: dict[tuple[int, Kind, Kind], Step] = {}
+        self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
+        self._rules: dict[int, EdgeRules | None] = {}
+
+    def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
+        """What an edge of a property makes of two kinds."""
+        found = self.known.get((prop, subject, object_))
+        if found is None:
+            if len(self.known) >= self.LIMIT:
+                self.known.clear()
+            found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
+        return found
+
+    def _rules_of(self, prop: int) -> EdgeRules | None:
+        if prop not in self._rules:
+            self._rules[prop] = self._edge_rules(prop)
+        return self._rules[prop]
+
+    def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
+        """The chains that may make what an edge of a property implies, and whether that is backwards."""
+        found = self._made_by.get(prop)
+        if found is None:
+            found = self._made_by[prop] = tuple(
+                (backwards, chain)
+                for q, backwards in self._schema.roles(prop)
+                for chain in self._schema.chains
+                if chain.result == q
+            )
+        return found
+
+    def group(self, role: Role) -> Group:
+        """Along which edges a role leads."""
+        return self._schema.group(role)
+
+    def _work_out(self, prop: int, subject: Kind, object_: Kind) -> Step:
+        wider_subject, wider_object = self._added(prop, subject, object_)
+        if wider_subject is not subject or wider_object is not object_:
+            return self.step(prop, wider_subject, wider_object)
+        clash, keys = None, []
+        limits: list[tuple[bool, Limit]] = []
+        for role in self._schema.roles(prop):
+            q, backwards = role
+            owner, filler = (object_, subject) if backwards else (subject, object_)
+            axioms = self._schema.axioms[q]
+            for restriction, cls in axioms.none:
+                if _in(restriction, owner) and _in(cls, filler):
+                    clash = (role, restriction, cls)
+            limits += [
+                (not backwards, limit)
+                for limit in axioms.limits
+                if limit.owner != ANY
+                and Limit(limit.role, ANY, ANY) not in axioms.limits
+                and _in(limit.owner, owner)
+                and _in(limit.filler, filler)
+            ]
+            keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
+        others = bool(clash or keys or object_.clash)
+        of_values = not others and self._are_of_values(prop, limits)
+        rules = self._rules_of(prop)
+        return Step(
+            subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
+        )
+
+    def _are_of_values(self, prop: int, limits: list[tuple[bool, Limit]]) -> bool:
+        """Whether limits are kept if the subject has no other edge with the predicate."""
+        alone = Group((prop,), ())
+        return all(at_subject and self.group(limit.role) == alone for at_subject, limit in limits)
+
+    def _added(self, prop: int, subject: Kind, object_: Kind) -> tuple[Kind, Kind]:
+        """The kinds with what domains, ranges and restrictions add at once."""
+        to_subject = to_object = 0
+        for q, backwards in self._schema.roles(prop):
+            axioms = self._schema.axioms[q]
+            x, y = (object_, subject) if backwards else (subject, object_)
+            to_x, to_y = axioms.domain, axioms.range
+            for restriction, cls in axioms.some:
+                if _in(cls, y):
+                    to_x |= 1 << restriction
+            for restriction, cls in axioms.only:
+                if _in(restriction, x):
+                    to_y |= 1 << cls
+            if backwards:
+                to_subject, to_object = to_subject | to_y, to_object | to_x
+            else:
+                to_subject, to_object = to_subject | to_x, to_object | to_y
+        return self._kinds.widen(subject, to_subject), self._kinds.widen(object_, to_object)
+
+    def _edge_rules(self, prop: int) -> EdgeRules | None:
+        schema = self._schema
+        roles = schema.roles(prop) if prop != SAME else {}
+        irreflexive = next((role for role in roles if schema.axioms[role[0]].irreflexive), None)
+        limits: list[tuple[bool, Limit]] = []
+        exclusive: list[tuple[Role, Role]] = []
+        heads: list[tuple[bool, Chain]] = []
+        tails: list[tuple[bool, Chain]] = []
+        by_value = False
+        for role in roles:
+            q, backwards = role
+            axioms = schema.axioms[q]
+            for limit in axioms.limits:
+                if limit.owner == ANY:
+                    limits.append((limit.role[1] == backwards, limit))
+                    by_value |= limit.role[1]
+            exclusive += [(role, (other, backwards != flip)) for other, flip in axioms.exclusive]
+            heads += [(not backwards, chain) for chain in schema.chains if chain.first == q]
+            tails += [(not backwards, chain) for chain in schema.chains if chain.second == q]
+            by_value |= bool(axioms.keys or axioms.exclusive)
+        by_value |= bool(heads or tails)
+        others = irreflexive or exclusive or heads or tails
+        if not (limits or others):
+            return None
+        of_values = not others and self._are_of_values(prop, limits)
+        return EdgeRules(
+            irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value, of_values
+        )
+
+
+def _in(cls: int, kind: Kind) -> bool:
+    return cls == ANY or bool(kind.mask >> cls & 1)

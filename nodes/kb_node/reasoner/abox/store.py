@@ -1,0 +1,287 @@
+"""The ABox in columns: terms by number, edges as linked lists, nothing that can be worked out.
+
+A *node* is the number of an individual or literal. An *edge* is the number of a row subject, predicate,
+object. Freed numbers are used again.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Mapping, MutableSequence, Sequence, Set
+from typing import Any, Final
+
+from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
+from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.fastpaths.layout import Layout
+from nodes.kb_node.reasoner.terms import is_literal
+from schemas.explanations import Term
+
+BLOCK: Final = 256
+"""Nodes or edges that room is made for at once."""
+ASSERTED, VALUE, DERIVED = 0, 1, 2
+"""Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
+
+
+Terms = tuple[Term, ...]
+
+
+class Store:
+    """Terms, kinds and edges."""
+
+    def __init__(self, kinds: Kinds) -> None:
+        self._kinds = kinds
+        self.terms: list[Term] = []
+        self.kind: list[Kind] = []
+        self.subject: list[int] = []
+        self.predicate: list[int] = []
+        self.object: list[int] = []
+        self.source = bytearray()
+        self.out = Adjacency(self.predicate)
+        self.into = Adjacency(self.predicate)
+        self.numbers: dict[Term, int] = {}
+        self._places = array("i")
+        self._free_nodes: list[int] = []
+        self._free_edges: list[int] = []
+
+    # Nodes
+
+    def find(self, term: Term) -> int | None:
+        """The node of a term, or None."""
+        return self.numbers.get(term)
+
+    def node(self, term: Term) -> int:
+        """The node of a term; a new one if it is not there."""
+        found = self.numbers.get(term)
+        if found is not None:
+            return found
+        kinds = self._kinds
+        kind = kinds.literal(term) if is_literal(term) else kinds.individual(term)
+        node = self._free_nodes_for(1).pop()
+        self.terms[node], self.kind[node], self.numbers[term] = term, kind, node
+        if kind.mask and kind.excluded is None:
+            self.file(node, kind, kind)
+        return node
+
+    def _free_nodes_for(self, count: int) -> list[int]:
+        """At least so many free numbers to pop; such nodes are bare and filed nowhere."""
+        free = self._free_nodes
+        while len(free) < count:
+            free.extend(reversed(self._more_nodes(BLOCK)))
+        return free
+
+    def _more_nodes(self, count: int) -> range:
+        """Make room for so many nodes."""
+        first, room = len(self.terms), array("i", [NONE]) * count
+        self.terms.extend([""] * count)
+        self.kind.extend([self._kinds.nothing] * count)
+        for column in (self._places, self.out.heads, self.into.heads):
+            column.extend(room)
+        return range(first, first + count)
+
+    def is_bare(self, node: int) -> bool:
+        """Whether a node has no edges."""
+        return self.out.heads[node] == NONE and self.into.heads[node] == NONE
+
+    def release(self, node: int) -> bool:
+        """Forget a node that nothing is said of any more; whether it was forgotten."""
+        kind = self.kind[node]
+        told = kind.excluded is None and kind.given
+        if told or not self.is_bare(node):
+            return False
+        self._forget(node)
+        return True
+
+    def _forget(self, node: int) -> None:
+        self.file(node, self.kind[node], None)
+        del self.numbers[self.terms[node]]
+        self.terms[node] = ""
+        self._free_nodes.append(node)
+
+    def file(self, node: int, old: Kind, new: Kind | None) -> None:
+        """List an individual under its new kind instead of its old one; with None no more."""
+        place = self._places[node]
+        if place != NONE:
+            nodes = old.nodes
+            last = nodes.pop()
+            if last != node:
+                nodes[place] = last
+                self._places[last] = place
+            self._places[node] = NONE
+        if new is not None:
+            self._places[node] = len(new.nodes)
+            new.nodes.append(node)
+
+    # Edges
+
+    @property
+    def holes(self) -> int:
+        """For how many nodes or edges, whichever is more, there is room between others."""
+        return max(len(self._free_nodes), len(self._free_edges))
+
+    def add(self, subject: int, predicate: int, object_: int, source: int) -> int:
+        """Store a new edge."""
+        edge = self._free_edges_for(1).pop()
+        self.subject[edge], self.predicate[edge], self.object[edge] = subject, predicate, object_
+        if source != ASSERTED:
+            self.source[edge] = source
+        self.out.link(subject, edge, predicate)
+        self.into.link(object_, edge, predicate)
+        return edge
+
+    def write(self, layout: Layout, individuals: Terms, others: Terms) -> None:
+        """Add new individuals with their edges, all of which leave from them."""
+        terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self._places
+        free = self._free_nodes_for(len(individuals) + len(others))
+        nodes: list[int] = []
+        for term, kind in zip(individuals, layout.kinds, strict=True):
+            node = free.pop()
+            nodes.append(node)
+            terms[node], kinds[node], numbers[term] = term, kind, node
+            if kind.mask:
+                places[node] = len(kind.nodes)
+                kind.nodes.append(node)
+        for term, kind in zip(others, layout.others, strict=True):
+            node = numbers.get(term, NONE)
+            if node == NONE:
+                node = free.pop()
+                terms[node], kinds[node], numbers[term] = term, kind, node
+            nodes.append(node)
+        free = self._free_edges_for(len(layout.edges))
+        left = len(free) - len(layout.edges)
+        edges = free[left:]
+        del free[left:]
+        subject, predicate, object_ = self.subject, self.predicate, self.object
+        heads, link = self.into.heads, self.into.link
+        for edge, (s, p, o) in zip(edges, layout.edges, strict=True):
+            node = nodes[o]
+            subject[edge], predicate[edge], object_[edge] = nodes[s], p, node
+            if heads[node] == NONE:
+                heads[node] = edge
+            else:
+                link(node, edge, p)
+        heads, group, after, before = self.out.heads, self.out.group, self.out.after, self.out.before
+        for place, at in layout.heads:
+            heads[nodes[place]] = edges[at]
+        for at, to in layout.groups:
+            group[edges[at]] = edges[to]
+        for at, to in layout.pairs:
+            after[edges[at]], before[edges[to]] = edges[to], edges[at]
+        for at in layout.values:
+            self.source[edges[at]] = VALUE
+
+    def append(self, layout: Layout, individuals: Sequence[Terms], others: Sequence[Terms]) -> None:
+        """Like `write` for many, in new rows side by side; the other objects are there.
+
+        `individuals` and `others` are column by column.
+        """
+        count, width, length = len(individuals[0]), len(layout.kinds), len(layout.edges)
+        rows, edges = self._more_nodes(count * width), self._more_edges(count * length)
+        _put(self.kind, rows, layout.kinds * count)
+        _put(self.predicate, edges, [p for _, p, _ in layout.edges] * count)
+        nodes: list[list[int]] = []  # of the same objects wherever a number stands, for memory's sake
+        for place, (terms, kind) in enumerate(zip(individuals, layout.kinds, strict=True)):
+            here = rows[place::width]
+            nodes.append(list(here))
+            self.numbers.update(zip(terms, nodes[place], strict=True))
+            _put(self.terms, here, terms)
+            if kind.mask:
+                _put(self._places, here, range(len(kind.nodes), len(kind.nodes) + count))
+                kind.nodes.extend(here)
+        nodes += [list(map(self.numbers.__getitem__, terms)) for terms in others]
+        for at, (s, p, o) in enumerate(layout.edges):
+            here = edges[at::length]
+            _put(self.subject, here, nodes[s])
+            _put(self.object, here, nodes[o])
+            self.into.link_each(nodes[o], here, p)
+        for place, at in layout.heads:
+            _put(self.out.heads, rows[place::width], edges[at::length])
+        for at, to in layout.groups:
+            _put(self.out.group, edges[at::length], edges[to::length])
+        for at, to in layout.pairs:
+            _put(self.out.after, edges[at::length], edges[to::length])
+            _put(self.out.before, edges[to::length], edges[at::length])
+        for at in layout.values:
+            _put(self.source, edges[at::length], bytes([VALUE]) * count)
+
+    def add_literals(self, kinds: Mapping[Term, Kind]) -> None:
+        """Make room for literals, of known kinds, that edges will enter; what is there already stays."""
+        new = [term for term in kinds if term not in self.numbers]
+        rows = self._more_nodes(len(new))
+        self.numbers.update(zip(new, rows, strict=True))
+        _put(self.terms, rows, new)
+        _put(self.kind, rows, [kinds[term] for term in new])
+
+    def _free_edges_for(self, count: int) -> list[int]:
+        """At least so many free numbers to pop; such edges are in no list, and asserted."""
+        free = self._free_edges
+        while len(free) < count:
+            free.extend(reversed(self._more_edges(BLOCK)))
+        return free
+
+    def _more_edges(self, count: int) -> range:
+        """Make room for so many edges."""
+        first, room = len(self.subject), array("i", [NONE]) * count
+        for row in (self.subject, self.predicate, self.object):
+            row.extend(room)
+        for side in (self.out, self.into):
+            for column in (side.after, side.before, side.group):
+                column.extend(room)
+        self.source.extend(bytes(count))
+        return range(first, first + count)
+
+    def remove(self, edge: int) -> None:
+        """Forget an edge."""
+        self.out.unlink(self.subject[edge], edge)
+        self.into.unlink(self.object[edge], edge)
+        self._free_edge(edge)
+
+    def _free_edge(self, edge: int) -> None:
+        self.predicate[edge] = NONE
+        if self.source[edge] != ASSERTED:
+            self.source[edge] = ASSERTED
+        self._free_edges.append(edge)
+
+    def turn(self, edge: int, term: Term) -> None:
+        """Let an edge lead to another literal, and forget the old one if nobody has it any more."""
+        old = self.object[edge]
+        self.into.unlink(old, edge)
+        if self.into.heads[old] == NONE:
+            self._forget(old)
+        self.object[edge] = node = self.node(term)
+        self.into.link(node, edge, self.predicate[edge])
+
+    def erase(self, nodes: Set[int], edges: Iterable[int]) -> None:
+        """Forget individuals and all edges that leave from them, where no other enters."""
+        out, into = self.out, self.into
+        for edge in edges:
+            node = self.object[edge]
+            if node in nodes:
+                into.clear(edge)
+            else:
+                into.unlink(node, edge)
+                if into.heads[node] == NONE:
+                    self.release(node)
+            out.clear(edge)
+            self._free_edge(edge)
+        for node in nodes:
+            out.heads[node] = into.heads[node] = NONE
+            self._forget(node)
+
+    def edge(self, subject: int, predicate: int, object_: int) -> int:
+        """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""
+        if self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+            return NONE
+        leaving, entering = self.out.of(subject, predicate), self.into.of(object_, predicate)
+        for one, other in zip(leaving, entering, strict=False):
+            if self.object[one] == object_:
+                return one
+            if self.subject[other] == subject:
+                return other
+        return NONE
+
+
+def _put(column: MutableSequence[Any], rows: range, values: Iterable[Any]) -> None:
+    """Write values into rows at equal distances."""
+    if isinstance(column, array):
+        values = array("i", values)
+    column[rows.start : rows.stop : rows.step] = values

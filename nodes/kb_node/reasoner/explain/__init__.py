@@ -1,0 +1,1 @@
+"""Why something holds: reasons, a smallest set of asserted triples, and sentences."""

@@ -1,0 +1,195 @@
+"""From triples that are enough for a conclusion to an explanation: a smallest set of them, and the steps.
+
+Finding it takes many small closures, so it is done once for each *shape*: the same triples with other
+individuals and other numbers in them have the same proof.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.explain.sentences import local_name, sentence
+from nodes.kb_node.reasoner.rules.closure import Closure
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
+from schemas.explanations import Explanation, Step, Term, Triple
+
+_MOST = 2000
+"""Shapes remembered."""
+_FREE_DATATYPES = {iri(name)[1:-1] for name in ("xsd:float", "xsd:double")}
+"""Datatypes whose values differ in nothing but themselves, as far as the memo is concerned."""
+_MARK = re.compile("\ue000(\\d+)\ue001")
+"""Stands for a term in a sentence that is to be filled in."""
+
+
+class Proof:
+    """A proof, and the terms in it that another proof of the shape has others for."""
+
+    def __init__(self, explanation: Explanation, terms: tuple[Term, ...]) -> None:
+        self.explanation = explanation
+        self.terms = terms
+        self._text = _pieces(explanation, terms)
+
+    def about(self, terms: Sequence[Term]) -> Explanation:
+        """The same proof about other terms."""
+        goal, support, steps = _renamed(self.explanation, dict(zip(self.terms, terms, strict=True)))
+        if self._text is None:
+            text = sentence(goal, support, steps)
+        else:
+            text = "".join([_spoken(terms[part]) if isinstance(part, int) else part for part in self._text])
+        return Explanation(conclusion=goal, support=support, steps=steps, text=text)
+
+
+class Prover:
+    """Explains, and remembers the shapes it has explained."""
+
+    def __init__(self) -> None:
+        self._proofs: dict[tuple[object, ...], Proof] = {}
+
+    def prove(self, triples: Iterable[Triple], goal: Triple | None) -> Explanation:
+        """Explain why `goal` follows from `triples`, or with None why they are inconsistent.
+
+        `support` is minimal: without any one of its triples the conclusion does not follow.
+
+        Raises:
+            ValueError: it does not follow.
+        """
+        proof, terms = self.proof(triples, goal)
+        return proof.explanation if terms == proof.terms else proof.about(terms)
+
+    def proof(self, triples: Iterable[Triple], goal: Triple | None) -> tuple[Proof, tuple[Term, ...]]:
+        """The proof of the shape, and the terms that it is now about."""
+        triples = list(triples)
+        shape, terms = _shape(triples, goal)
+        proof = self._proofs.get(shape)
+        if proof is None:
+            support, steps = _shrink(triples, goal)
+            text = sentence(goal, support, steps)
+            explanation = Explanation(conclusion=goal, support=support, steps=steps, text=text)
+            if len(self._proofs) >= _MOST:
+                self._proofs.clear()
+            proof = self._proofs[shape] = Proof(explanation, terms)
+        return proof, terms
+
+
+def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object, ...], tuple[Term, ...]]:
+    """Triples and goal with individuals by number, and the terms that were numbered."""
+    fixed = {triple[1] for triple in triples} | {o for _, p, o in triples if p == TYPE}
+    fixed.update(term for triple in triples if is_schema(triple) for term in triple)
+    fixed_values = {datatypes.value(term) for term in fixed if is_literal(term)}
+    numbers: dict[Term, object] = {}
+
+    def number(term: Term) -> object:
+        found = numbers.get(term)
+        if found is None:
+            found = numbers[term] = _number(term, numbers, fixed_values)
+        return found
+
+    rows = triples if goal is None else [*triples, goal]
+    shape = tuple((s if s in fixed else number(s), p, o if o in fixed else number(o)) for s, p, o in rows)
+    return (goal is None, *shape), tuple(numbers)
+
+
+def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value | None]) -> object:
+    """What a term is in a shape: for a literal also its datatype, and which other is of the same value."""
+    if not is_literal(term):
+        return len(numbers)
+    datatype, value = literal(term).datatype, datatypes.value(term)
+    if value is None or value in fixed or datatype not in _FREE_DATATYPES:
+        return (len(numbers), term)
+    literals = ((i, other) for i, other in enumerate(numbers) if is_literal(other))
+    same = next((i for i, other in literals if datatypes.value(other) == value), None)
+    return (len(numbers), datatype, same)
+
+
+def _renamed(
+    explanation: Explanation, names: Mapping[Term, Term]
+) -> tuple[Triple | None, tuple[Triple, ...], tuple[Step, ...]]:
+    """Goal, support and steps with other terms."""
+    renamed: dict[Triple, Triple] = {}
+    name = names.get
+
+    def other(fact: Triple) -> Triple:
+        found = renamed.get(fact)
+        if found is None:
+            s, p, o = fact
+            found = renamed[fact] = (name(s, s), p, name(o, o))
+        return found
+
+    steps = tuple(
+        [
+            Step(
+                rule=step.rule,
+                premises=tuple([other(fact) for fact in step.premises]),
+                conclusion=step.conclusion and other(step.conclusion),
+            )
+            for step in explanation.steps
+        ]
+    )
+    goal = explanation.conclusion
+    return goal and other(goal), tuple([other(fact) for fact in explanation.support]), steps
+
+
+def _pieces(explanation: Explanation, terms: Sequence[Term]) -> list[str | int] | None:
+    """The sentence in pieces: text, and the numbers of the terms that are named in between.
+
+    None when a mark is in the text as it is.
+    """
+    if _MARK.search(explanation.text):
+        return None
+    marks = {term: _mark(term, i) for i, term in enumerate(terms)}
+    pieces: list[str | int] = list(_MARK.split(sentence(*_renamed(explanation, marks))))
+    pieces[1::2] = map(int, pieces[1::2])
+    return pieces
+
+
+def _mark(term: Term, number: int) -> Term:
+    """A term of the same sort that is spoken as a number between marks."""
+    text = f"\ue000{number}\ue001"
+    if is_literal(term):
+        return f'"{text}{term[term.rindex(chr(34)) :]}'
+    return f"<{text}>" if is_named(term) else f"_:{text}"
+
+
+def _spoken(term: Term) -> str:
+    if is_literal(term):
+        return literal(term).text
+    return local_name(term) if is_named(term) else term[2:]
+
+
+def _shrink(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:
+    """A minimal set of the triples from which the goal follows, and the steps."""
+    closure = Closure(triples, mentions=goal or ())
+    if not _reached(closure, goal):
+        raise ValueError(f"{goal} does not follow")
+    support = closure.leaves(goal)
+    for triple in support:
+        if triple in closure.leaves(goal):
+            fewer = Closure((t for t in closure.leaves(goal) if t != triple), mentions=goal or ())
+            if _reached(fewer, goal):
+                closure = fewer
+    closure = Closure(closure.leaves(goal), mentions=goal or ())
+    return tuple(closure.leaves(goal)), _steps(closure, goal)
+
+
+def _reached(closure: Closure, goal: Triple | None) -> bool:
+    return closure.clash is not None if goal is None else closure.clash is None and closure.holds(goal)
+
+
+def _steps(closure: Closure, goal: Triple | None) -> tuple[Step, ...]:
+    """The rule applications below a conclusion, premises first."""
+    steps: dict[Triple | None, Step] = {}
+    pending: list[tuple[Triple | None, bool]] = [(goal, False)]
+    while pending:
+        fact, is_ready = pending.pop()
+        reason = closure.reason(fact)
+        if reason is None or fact in steps:
+            continue
+        if is_ready:
+            steps[fact] = Step(rule=reason.rule, premises=reason.premises, conclusion=fact)
+        else:
+            pending.append((fact, True))
+            pending += [(premise, False) for premise in reversed(reason.premises)]
+    return tuple(steps.values())

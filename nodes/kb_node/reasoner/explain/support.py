@@ -1,0 +1,247 @@
+"""Asserted triples that are enough for a claim, found by searching backwards, least deep first.
+
+The result need not be minimal: `proof.prove` shrinks it. Facts of the schema are traced in its own closure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import inf
+from typing import TypeVar
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.kinds import bits
+from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
+from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
+from nodes.kb_node.reasoner.tbox.axioms import ANY, Role
+from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri
+from schemas.explanations import Term, Triple
+
+_T = TypeVar("_T")
+_DEEPEST = 200
+"""Rules one upon the other; no proof in a home comes near."""
+
+
+class Support:
+    """Backward search in an ABox as it stands."""
+
+    def __init__(self, abox: ABox, told_by: SchemaSupport, before: float = inf) -> None:
+        """Search an ABox; `before` leaves out what was concluded later than a reason of that number."""
+        self._abox = abox
+        self._before = before
+        self._schema = abox.schema
+        self._told_by = told_by
+        self._failed: dict[tuple[int, int], int] = {}
+        self._found: dict[tuple[int, int], Found] = {}
+
+    def of_clash(self, claims: Iterable[Claim]) -> Found:
+        """Asserted triples that contradict each other as the claims of a Clash say."""
+        claims = tuple(claims)
+        return self.of(claims) | self._axioms_about(claims)
+
+    def of_triple(self, triple: Triple) -> Found:
+        """Asserted triples from which a triple follows that holds and is not of the schema."""
+        s, p, o = triple
+        store, schema = self._abox.store, self._schema
+        subject, object_ = store.find(s), store.find(o)
+        if p == TYPE:
+            return self._claim(Member(_known(subject), _known(schema.find_class(o))))
+        if p == SAME_AS:
+            return _known(self._same(_known(subject), _known(object_)))
+        return self.of_edge(_known(subject), _known(schema.find_property(p)), o)
+
+    def of_edge(self, subject: int, predicate: int, object_: Term) -> Found:
+        """Why a node is related to a term, or to another spelling of a literal."""
+        abox = self._abox
+        role = (predicate, False)
+        for edge, here, there in abox.related(subject, abox.steps.group(role)):
+            if (node := abox.named(there, object_)) is not None:
+                implied = role if abox.store.subject[edge] == here else (predicate, True)
+                same = self._same(subject, here), self._same(there, node)
+                return union(self._edge(edge, implied), *(ends for ends in same if ends))
+        raise AssertionError(f"no edge to {object_}")
+
+    def of(self, claims: Iterable[Claim]) -> Found:
+        """Asserted triples, of the schema too, from which all claims follow."""
+        return union(*map(self._claim, claims))
+
+    def _claim(self, claim: Claim) -> Found:
+        if isinstance(claim, Edge):
+            return self._edge(claim.edge, claim.role)
+        if isinstance(claim, Same):
+            return self._same(claim.one, claim.other) or {}
+        for depth in range(_DEEPEST):
+            found = self._member(claim.node, claim.cls, depth)
+            if found is not None:
+                return found
+        raise AssertionError(f"no proof of {claim}")
+
+    def _axioms_about(self, claims: Iterable[Claim]) -> Found:
+        """The axioms that may make claims a contradiction, or their nodes the same."""
+        found: Found = {}
+        for claim in claims:
+            if isinstance(claim, Edge):
+                prop = self._abox.store.predicate[claim.edge]
+                for q, _ in dict.fromkeys(((prop, False), claim.role or (prop, False))):
+                    found |= self._told_by.about(self._schema.axioms[q].term)
+            elif isinstance(claim, Member) and claim.cls >= 0:
+                found |= self._told_by.about_class(claim.cls)
+        return found
+
+    # Edges and equality
+
+    def _edge(self, edge: int, role: Role | None = None) -> Found:
+        abox, store = self._abox, self._abox.store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        found: Found = {}
+        if role is not None:
+            roles, turned = self._schema.roles(p), (role[0], not role[1])
+            found = self._told_by.facts((*roles.get(role, ()), *roles.get(turned, ())))
+        if store.source[edge] == ASSERTED:
+            return found | {(store.terms[s], self._schema.axioms[p].term, store.terms[o]): None}
+        if store.source[edge] == DERIVED:
+            reason = abox.reasons[edge]
+            return (
+                found | self._earlier(reason).of(reason.claims) | self._told_by.chains(self._schema.axioms[p])
+            )
+        found_before = [cls for cls in self._givers(edge) if (s, cls) in self._found]
+        for cls in found_before or self._givers(edge):
+            return found | self._claim(Member(s, cls)) | self._told_by.restriction(cls)
+        raise AssertionError(f"nothing gives {store.terms[s]} its {self._schema.axioms[p].term}")
+
+    def _givers(self, edge: int) -> Iterator[int]:
+        """The classes of a subject that its edge may come with."""
+        store = self._abox.store
+        mask = store.kind[store.subject[edge]].mask
+        value = (store.predicate[edge], store.terms[store.object[edge]])
+        return (cls for cls, known in self._schema.values.items() if known == value and mask >> cls & 1)
+
+    def _earlier(self, reason: Reason) -> Support:
+        """A search among what was there when a conclusion was drawn, so that no proof rests on itself."""
+        return Support(self._abox, self._told_by, reason.order)
+
+    def _same(self, one: int, other: int) -> Found | None:
+        """The links on the way from one node to the other; None when there is none yet."""
+        if one == other or (equals := self._abox.equals.get(one)) is None:
+            return {}
+        links = [link for link in equals.links if link.order < self._before]
+        trail: dict[int, Found] = {one: {}}
+        pending = [one]
+        while pending and other not in trail:
+            here = pending.pop(0)
+            for link in links:
+                if link.link and here in link.link:
+                    there = link.link[1] if link.link[0] == here else link.link[0]
+                    if there not in trail:
+                        trail[there] = trail[here] | self._earlier(link).of_clash(link.claims)
+                        pending.append(there)
+        return trail.get(other)
+
+    # Classes
+
+    def _member(self, node: int, cls: int, depth: int) -> Found | None:
+        """Why a node is in a class, by at most `depth` edges and intersections; None if not by so few."""
+        key = (node, cls)
+        if key in self._found:
+            return self._found[key]
+        if self._failed.get(key, -1) >= depth:
+            return None
+        found = self._given(node, cls)
+        if found is None and depth > 0:
+            found = next(self._ways(node, cls, depth - 1), None)
+        if found is None:
+            self._failed[key] = depth
+        else:
+            self._found[key] = found
+        return found
+
+    def _given(self, node: int, cls: int) -> Found | None:
+        """A given class of the node, or of one that is the same, that is a subclass."""
+        store, schema = self._abox.store, self._schema
+        for member in self._abox.members(node):
+            for given in store.kind[member].given:
+                if schema.supers[given] >> cls & 1:
+                    same = self._same(node, member)
+                    if same is not None:
+                        return self._told(member, given) | self._told_by.below(given, cls) | same
+        return None
+
+    def _told(self, node: int, given: int) -> Found:
+        name = self._schema.classes[given]
+        if name.startswith("{") or self._abox.is_literal(node):
+            return {}
+        return {(self._abox.store.terms[node], TYPE, name): None}
+
+    def _ways(self, node: int, cls: int, depth: int) -> Iterator[Found]:
+        """Derivations of a class that are not by subclass alone."""
+        schema = self._schema
+        for members, whole in schema.intersections:
+            if schema.supers[whole] >> cls & 1:
+                parts = [self._member(node, part, depth) for part in bits(members)]
+                if None not in parts:
+                    axiom = self._told_by.axiom(schema.classes[whole], "owl:intersectionOf")
+                    yield union(axiom, self._told_by.below(whole, cls), *(part for part in parts if part))
+        store = self._abox.store
+        for member in self._abox.members(node):
+            same = self._same(node, member)
+            for edge in (*store.out.all(member), *store.into.all(member)):
+                if same is None or not self._may_use(edge, depth):
+                    continue
+                for way in self._by_edge(edge, member, cls, depth):
+                    yield same | way
+
+    def _may_use(self, edge: int, depth: int) -> bool:
+        """Whether an edge is there without the conclusion that is looked for."""
+        store = self._abox.store
+        if store.source[edge] == ASSERTED:
+            return True
+        if store.source[edge] == DERIVED:
+            return self._abox.reasons[edge].order < self._before
+        return any(self._member(store.subject[edge], cls, depth) is not None for cls in self._givers(edge))
+
+    def _by_edge(self, edge: int, node: int, cls: int, depth: int) -> Iterator[Found]:
+        """What domains, ranges and restrictions say of one end of an edge."""
+        store, schema = self._abox.store, self._schema
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        for role in schema.roles(p):
+            axioms = schema.axioms[role[0]]
+            x, y = (o, s) if role[1] else (s, o)
+            ends = ((x, axioms.domain, "rdfs:domain"), (y, axioms.range, "rdfs:range"))
+            for end, mask, name in ends:
+                for wider in bits(mask) if end == node else ():
+                    if schema.supers[wider] >> cls & 1:
+                        fact = (axioms.term, iri(name), schema.classes[wider])
+                        yield (
+                            self._edge(edge, role)
+                            | self._told_by.facts([fact])
+                            | self._told_by.below(wider, cls)
+                        )
+            if x == node:
+                for restriction, filler in axioms.some:
+                    yield from self._through(edge, role, (restriction, cls), (y, filler), restriction, depth)
+            if y == node:
+                for restriction, filler in axioms.only:
+                    yield from self._through(edge, role, (filler, cls), (x, restriction), restriction, depth)
+
+    def _through(
+        self, edge: int, role: Role, gained: tuple[int, int], needed: tuple[int, int], axiom: int, depth: int
+    ) -> Iterator[Found]:
+        """A restriction: gaining its class here needs a class at the other end."""
+        narrow, cls = gained
+        if not self._schema.supers[narrow] >> cls & 1:
+            return
+        far, wanted = needed
+        there = {} if wanted == ANY else self._member(far, wanted, depth)
+        if there is not None:
+            yield (
+                there
+                | self._edge(edge, role)
+                | self._told_by.restriction(axiom)
+                | self._told_by.below(narrow, cls)
+            )
+
+
+def _known(value: _T | None) -> _T:
+    assert value is not None
+    return value

@@ -1,0 +1,1 @@
+"""Fast paths for changes that look like others whose consequences are known; none changes an answer."""

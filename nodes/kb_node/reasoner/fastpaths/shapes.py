@@ -1,0 +1,197 @@
+"""What follows of new individuals, worked out once for each shape of what is said of them.
+
+Two runs have one *shape* if they have one form, and their other objects are of the same kinds. Where nothing
+follows but kinds, a run of a known shape is written down as it will stand, without looking at any rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count, repeat
+from typing import NamedTuple
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.store import VALUE
+from nodes.kb_node.reasoner.explain.proof import Proof
+from nodes.kb_node.reasoner.fastpaths.batches import batches
+from nodes.kb_node.reasoner.fastpaths.layout import Layout
+from nodes.kb_node.reasoner.fastpaths.runs import Run, Runs, Shape
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE
+from schemas.explanations import Explanation, Term, Triple
+
+_MOST = 2000
+"""Shapes remembered."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
+class Written:
+    """What a run of a known shape leaves. One object is one shape."""
+
+    layout: Layout
+    constants: tuple[Term, ...]
+    """The values that come with classes; they are the last of the layout's other objects."""
+    touched: tuple[int, ...]
+    """The places of those that are subjects or have a named class."""
+
+
+class Alike(NamedTuple):
+    """A run and its shape. Runs of one shape have their triples in one order, and their objects by kind."""
+
+    shape: Written
+    run: Run
+
+    @property
+    def touched(self) -> list[Term]:
+        """Those of its individuals that are subjects or have a named class."""
+        return [self.run.individuals[place] for place in self.shape.touched]
+
+
+class Contradiction(NamedTuple):
+    """Why no run of a shape is accepted, whatever else is said."""
+
+    proof: Proof
+    places: tuple[int, ...]
+    """The new individuals that stand for the terms of the proof."""
+
+    def of(self, run: Run) -> Explanation:
+        """The explanation with the names of a run."""
+        return self.proof.about([run.individuals[place] for place in self.places])
+
+
+class Shapes:
+    """The shapes that are known. None stands for one that every run must be worked out of."""
+
+    def __init__(self, abox: ABox) -> None:
+        self._abox = abox
+        self._runs = Runs(abox.store, abox.kinds)
+        self.known: dict[Shape, Written | Contradiction | None] = {}
+
+    def runs(self, triples: Sequence[Triple], start: int = 0, stop: int | None = None) -> Iterator[Run]:
+        """The runs that begin there; each is read against the store as it is when the run is asked for."""
+        return self._runs.of(triples, start, len(triples) if stop is None else stop)
+
+    def write_all(self, triples: Sequence[Triple], start: int) -> tuple[list[Alike], int]:
+        """Write down the runs of known shapes that begin there and follow one another; and where they end.
+
+        None, and nothing done, where they are few or not so plain, or holes in the store are to be filled.
+        """
+        store = self._abox.store
+        if store.holes > len(triples) - start:
+            return [], len(triples)
+        found, end = batches(self._runs, triples, start)
+        end = max(end, start + 1)
+        if found is None:
+            return [], end
+        shapes: list[Written] = []
+        for batch in found.of_shape:
+            shape = self.known.get((batch.form, batch.kinds))
+            if not isinstance(shape, Written) or not self._has_constants(shape):
+                return [], end
+            shapes.append(shape)
+        store.add_literals(found.kind_of)
+        alike: list[Alike] = []
+        for shape, batch in zip(shapes, found.of_shape, strict=True):
+            constants = [(term,) * len(batch.triples) for term in shape.constants]
+            store.append(shape.layout, batch.individuals, [*batch.others, *constants])
+            alike += map(Alike, repeat(shape), batch.runs())
+        return alike, end
+
+    def write(self, written: Written, run: Run) -> bool:
+        """Write down what a run of a known shape leaves; False, and nothing done, if it cannot be."""
+        if not self._has_constants(written):
+            return False
+        self._abox.store.write(written.layout, run.individuals, run.others + written.constants)
+        return True
+
+    def _has_constants(self, written: Written) -> bool:
+        """Whether the values that come with classes are as they were."""
+        store, constants = self._abox.store, written.constants
+        for term, kind in zip(constants, written.layout.others[-len(constants) :], strict=False):
+            node = store.find(term)
+            if node is None or store.kind[node] is not kind:
+                return False
+        return True
+
+    def learn(self, run: Run) -> None:
+        """Remember the shape of a run that was just worked out."""
+        if run.form is not None:
+            self._remember(run, self._written(run))
+
+    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """Remember the shape of triples that were refused, if `proof` about `terms` is of nothing else."""
+        first = next(self.runs(triples))
+        if first.form is None or len(first.triples) < len(triples):
+            return
+        there, places = set(triples), first.places
+        support = [fact for fact in proof.about(terms).support if not is_schema(fact)]
+        is_of_itself = all(fact in there and (fact[1] == TYPE or fact[2] in places) for fact in support)
+        named = tuple([places.get(term, 0) for term in terms])  # any other term is not in the proof itself
+        self._remember(first, Contradiction(proof, named) if is_of_itself else None)
+
+    def _remember(self, run: Run, found: Written | Contradiction | None) -> None:
+        if len(self.known) >= _MOST:
+            self.known.clear()
+        self.known[run.shape] = found
+
+    def _written(self, run: Run) -> Written | None:
+        """What stands in the store of a run that was just worked out; None if it is more than kinds."""
+        abox, store = self._abox, self._abox.store
+        places = run.places
+        individuals = [store.numbers[term] for term in places]
+        others = [store.numbers[term] for term in run.others]
+        if run.kinds != tuple([store.kind[node] for node in others]):
+            return None
+        if len(set(run.triples)) < len(run.triples):
+            return None
+        values = [e for node in individuals for e in store.out.all(node) if store.source[e] == VALUE]
+        constants = [store.terms[store.object[edge]] for edge in values]
+        others += [store.object[edge] for edge in values]
+        place = count(len(places))
+        edges = {
+            self._edge(t): places[t[2]] if t[2] in places else next(place)
+            for t in run.triples
+            if t[1] != TYPE
+        }
+        edges |= {edge: next(place) for edge in values}
+        if any(edge not in edges for node in individuals for edge in store.out.all(node)):
+            return None
+        if not all(map(abox.is_plain, edges)) or not abox.equals.keys().isdisjoint(individuals):
+            return None
+        known = [e for e, to in edges.items() if to >= len(places)]
+        said = [(store.subject[e], store.predicate[e]) for e in known if store.source[e] != VALUE]
+        come = {(store.subject[e], store.predicate[e]) for e in values}
+        if len(set(said)) < len(said) or not come.isdisjoint(said):
+            return None  # another run may have one object twice where this one has two of a kind
+        return Written(self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run)))
+
+    def _edge(self, triple: Triple) -> int:
+        store, predicate = self._abox.store, self._abox.schema.property(triple[1])
+        return store.edge(store.numbers[triple[0]], predicate, store.numbers[triple[2]])
+
+    def _layout(self, individuals: list[int], others: list[int], edges: dict[int, int]) -> Layout:
+        """How individuals stand in the store, with the `edges` that leave from them and where these lead."""
+        store, out = self._abox.store, self._abox.store.out
+        place = {node: i for i, node in enumerate(individuals)}
+        index = {edge: i for i, edge in enumerate(edges)}
+
+        def linked(column: Sequence[int]) -> tuple[tuple[int, int], ...]:
+            return tuple([(i, index[column[edge]]) for edge, i in index.items() if column[edge] != NONE])
+
+        return Layout(
+            kinds=tuple([store.kind[node] for node in individuals]),
+            others=tuple([store.kind[node] for node in others]),
+            edges=tuple([(place[store.subject[e]], store.predicate[e], to) for e, to in edges.items()]),
+            values=tuple([i for edge, i in index.items() if store.source[edge] == VALUE]),
+            heads=tuple([(i, index[e]) for node, i in place.items() if (e := out.heads[node]) != NONE]),
+            groups=linked(out.group),
+            pairs=linked(out.after),
+        )
+
+    def _touched(self, run: Run) -> Iterator[int]:
+        store, subjects = self._abox.store, {s for s, _, _ in run.triples}
+        for place, term in enumerate(run.individuals):
+            if term in subjects or store.kind[store.numbers[term]].names:
+                yield place

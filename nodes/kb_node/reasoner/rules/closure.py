@@ -1,0 +1,251 @@
+"""The rule table applied to a graph as it stands: forward chaining, every fact stored with its reason.
+
+Exact and general, and slow beside `abox.py`: it closes the schema (a few thousand facts), carries graphs that
+use the vocabulary in ways the compiled engine does not know, proves what an explanation claims, and is what
+the compiled engine is tested against.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from itertools import combinations
+
+from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.rules.facts import Facts, Reason
+from nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
+from nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
+from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
+from schemas.explanations import Term, Triple
+
+
+class Closure(Facts):
+    """A graph and all that follows from it, until a contradiction is met."""
+
+    def __init__(
+        self, triples: Iterable[Triple] = (), base: Closure | None = None, mentions: Iterable[Term] = ()
+    ) -> None:
+        """Close a graph.
+
+        `base` is a closure to start from, which stays as it is; `mentions` are terms that are asked about
+        and need not be in the graph.
+        """
+        base = base or _empty()
+        self.clash: Reason | None = base.clash
+        self.facts: dict[Triple, Reason | None] = base.facts.copy()
+        self._index: dict[Pattern, dict[Triple, None]] = {k: v.copy() for k, v in base._index.items()}
+        self._triggers: dict[Pattern, list[Plan]] = {k: list(v) for k, v in base._triggers.items()}
+        self._watchers: dict[Pattern, list[Rule]] = {k: list(v) for k, v in base._watchers.items()}
+        self._literals: dict[datatypes.Value, list[Term]] = {k: list(v) for k, v in base._literals.items()}
+        self._datatypes: list[Term] = list(base._datatypes)
+        self._compared: list[Term] = list(base._compared)
+        self._agenda: deque[Triple] = deque()
+        for term in mentions:
+            self._meet(term)
+        self.insert(triples)
+
+    def insert(self, triples: Iterable[Triple]) -> None:
+        """Assert triples and draw all conclusions, or stop at the first clash (`clash` is set then).
+
+        Lists must be complete when the triple that owns them arrives, at the latest in the same call.
+        """
+        for triple in sorted(triples, key=_cells_first):
+            if triple not in self.facts:
+                self._add(triple, None)
+            else:
+                self.facts[triple] = None
+        while self._agenda and self.clash is None:
+            self._fire(self._agenda.popleft())
+
+    # Facts
+
+    def _add(self, fact: Triple, reason: Reason | None) -> None:
+        if fact in self.facts:
+            return
+        self.facts[fact] = reason
+        self._agenda.append(fact)
+        for term in fact:
+            self._meet(term)
+            if is_literal(term) and datatypes.is_ill_typed(term):
+                self._conclude("dt-not-type", (fact,), None)
+        s, p, o = fact
+        if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and datatypes.excludes(o, s):
+            self._conclude("dt-not-type", (fact,), None)
+        if p == SAME_AS and is_literal(o) and s != o:
+            self._tell_apart(fact)
+
+    def _meet(self, term: Term) -> None:
+        """Table 8, as far as the graph at hand can tell the difference, when a term is first seen."""
+        if datatypes.is_datatype(term) and term not in self._datatypes:
+            self._datatypes.append(term)
+            for same in list(self._literals.values()):
+                for known in same:
+                    self._type(known, (term,))
+        value = datatypes.value(term) if is_literal(term) else None
+        if value is not None and term not in (same := self._literals.setdefault(value, [])):
+            for other in same:
+                self._add((term, SAME_AS, other), Reason("dt-eq", ()))
+                self._add((other, SAME_AS, term), Reason("dt-eq", ()))
+            same.append(term)
+            self._type(term, self._datatypes)
+
+    def _type(self, literal: Term, candidates: Sequence[Term]) -> None:
+        for datatype in candidates:
+            if datatypes.contains(datatype, literal):
+                self._add((literal, TYPE, datatype), Reason("dt-type2", ()))
+
+    def _tell_apart(self, fact: Triple) -> None:
+        """Literals that something is the same as get all their types, and their differences (dt-diff)."""
+        literal = fact[2]
+        self._type(literal, datatypes.datatypes(literal))
+        value = datatypes.value(literal)
+        if value is None or literal in self._compared:
+            return
+        for other in self._compared:
+            if datatypes.value(other) != value:
+                self._add((literal, DIFFERENT_FROM, other), Reason("dt-diff", ()))
+                self._add((other, DIFFERENT_FROM, literal), Reason("dt-diff", ()))
+        self._compared.append(literal)
+
+    # Rules
+
+    def _watch(self, rule: Rule) -> None:
+        """Put a rule to work: on the facts at hand, and on those to come."""
+        if not rule.schema:
+            self._start(rule)
+            return
+        atom = rule.schema[0]
+        if atom[1] in ("in", "of"):
+            for bindings, cells in self._choices(atom):
+                self._watch(bind(rule, bindings, cells))
+            return
+        self._watchers.setdefault(pattern(atom), []).append(rule)
+        for fact in list(self.match(*pattern(atom))):
+            self._specialise(rule, fact)
+
+    def _specialise(self, rule: Rule, fact: Triple) -> None:
+        bindings = unify(rule.schema[0], fact)
+        if bindings is not None:
+            self._watch(bind(rule, bindings, (fact,)))
+
+    def _choices(self, atom: Atom) -> Iterator[tuple[dict[str, Term], tuple[Triple, ...]]]:
+        """The ways to choose members of a list."""
+        names, _, head = atom
+        members, cells = self.members(head) or ([], ())
+        variables = names.split(",")
+        for choice in combinations(members, len(variables)):
+            yield dict(zip(variables, choice, strict=True)), cells
+
+    def _start(self, rule: Rule) -> None:
+        """Put a rule to work whose schema atoms are all matched."""
+        rule = self._without_lists(rule)
+        data = tuple(atom for atom in rule.data if not (atom[1] == SAME_AS and atom[0] == atom[2]))
+        for i, atom in enumerate(data):
+            self._triggers.setdefault(pattern(atom), []).append(plan(rule, data, i))
+        whole = plan(rule, data)
+        self._join(whole, 0, [""] * whole.variables, ())
+
+    def _without_lists(self, rule: Rule) -> Rule:
+        """Write the list atoms `all`, `path`, `agree` out, member by member."""
+        data: list[Atom] = []
+        premises = rule.premises
+        for s, p, o in rule.data:
+            kind, _, head = next((w for w in (p, o) if w.endswith(")")), "").rstrip(")").partition("(")
+            members, cells = (self.members(head) if kind else None) or ([], ())
+            premises += cells
+            if kind == "all":
+                data += [(s, p, member) for member in members]
+            elif kind == "path":
+                stops = [s, *(f"?{i}" for i in range(1, len(members))), o]
+                data += [(stops[i], member, stops[i + 1]) for i, member in enumerate(members)]
+            elif kind == "agree":
+                data += [(who, member, f"?{i}") for i, member in enumerate(members) for who in (s, o)]
+            if not members:
+                data.append((s, p, o))  # no list atom, or no list: then nothing matches it
+        return rule._replace(data=tuple(data), premises=premises)
+
+    def _fire(self, fact: Triple) -> None:
+        """Index a fact, and apply the rules to it and to the facts indexed before: each pair meets once."""
+        self._note(fact)
+        for key in patterns(fact):
+            for found in list(self._triggers.get(key, ())):
+                self._take(found, 0, fact, [""] * found.variables, ())
+        for key in patterns(fact):
+            for rule in list(self._watchers.get(key, ())):
+                self._specialise(rule, fact)
+
+    def _join(self, found: Plan, at: int, known: list[Term], premises: tuple[Triple, ...]) -> None:
+        """Match the atoms of a rule from one on, and apply the rule to each match."""
+        if at == len(found.accesses):
+            self._apply(found, known, premises)
+            return
+        s, p, o = found.accesses[at].key
+        key = (
+            known[s] if isinstance(s, int) else s,
+            known[p] if isinstance(p, int) else p,
+            known[o] if isinstance(o, int) else o,
+        )
+        for fact in self.match(*key):
+            self._take(found, at, fact, known, premises)
+
+    def _take(
+        self, found: Plan, at: int, fact: Triple, known: list[Term], premises: tuple[Triple, ...]
+    ) -> None:
+        """A fact for one atom of a rule: settle its variables and go on with the next atom."""
+        access = found.accesses[at]
+        for one, other in access.repeats:
+            if fact[one] != fact[other]:
+                return
+        for variable, place in access.takes:
+            known[variable] = fact[place]
+        if at + 1 == len(found.accesses):
+            self._apply(found, known, (*premises, fact))
+        else:
+            self._join(found, at + 1, known, (*premises, fact))
+
+    def _apply(self, found: Plan, known: list[Term], matched: tuple[Triple, ...]) -> None:
+        head: Triple | None = None
+        if found.head is not None:
+            s, p, o = found.head
+            head = (
+                known[s] if isinstance(s, int) else s,
+                known[p] if isinstance(p, int) else p,
+                known[o] if isinstance(o, int) else o,
+            )
+            if head in self.facts or (head[1] == SAME_AS and head[0] == head[2]):
+                return
+        premises = sorted(zip(found.places, matched, strict=True))
+        self._conclude(found.rule.name, (*(fact for _, fact in premises), *found.rule.premises), head)
+
+    def _conclude(self, rule: str, premises: tuple[Triple, ...], head: Triple | None) -> None:
+        reason = Reason(rule, tuple(dict.fromkeys(premises)))
+        if head is not None:
+            self._add(head, reason)
+        elif self.clash is None:
+            self.clash = reason
+
+
+class _Empty(Closure):
+    """The axiomatic triples, and all rules at work."""
+
+    def __init__(self) -> None:
+        self.clash, self.facts, self._agenda = None, {}, deque()
+        self._index, self._triggers, self._watchers = {}, {}, {}
+        self._literals, self._datatypes, self._compared = {}, [], []
+        for number in NUMBERS:
+            self._meet(number)
+        for rule in RULES:
+            self._watch(rule)
+        for axiom, name in AXIOMS.items():
+            self._add(axiom, Reason(name, ()))
+        self.insert(())
+
+
+@cache
+def _empty() -> Closure:
+    return _Empty()
+
+
+def _cells_first(triple: Triple) -> bool:
+    return triple[1] not in (FIRST, REST)

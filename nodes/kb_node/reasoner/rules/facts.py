@@ -1,0 +1,127 @@
+"""Facts with their reasons, closed under the rules: to be asked, not to be changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from msgspec import Struct, msgpack
+
+from nodes.kb_node.reasoner.rules.matching import Pattern, indexed
+from nodes.kb_node.reasoner.rules.rule_table import DECLARATIONS
+from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, SAME_AS
+from schemas.explanations import Term, Triple
+
+
+class Reason(NamedTuple):
+    """Why a fact holds: a rule and the facts it was applied to. Asserted facts have None instead."""
+
+    rule: str
+    premises: tuple[Triple, ...]
+
+
+class Facts:
+    """A graph and all that follows from it."""
+
+    clash: Reason | None = None
+    """Why it is contradictory."""
+
+    def __init__(self, facts: dict[Triple, Reason | None]) -> None:
+        """Facts that are closed, each with its reason, or None where it is asserted."""
+        self.facts = facts
+        self._index: dict[Pattern, dict[Triple, None]] = {}
+        for fact in facts:
+            self._note(fact)
+
+    def _note(self, fact: Triple) -> None:
+        for key in indexed(fact):
+            self._index.setdefault(key, {})[fact] = None
+
+    def match(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterable[Triple]:
+        """All facts of a pattern; None is a wildcard."""
+        if s is not None and p is not None and o is not None:
+            return ((s, p, o),) if (s, p, o) in self.facts else ()
+        if s is None and p is None and o is None:
+            return self.facts
+        if s is not None and o is not None:
+            return [fact for fact in self._index.get((s, None, None), ()) if fact[2] == o]
+        return self._index.get((s, p, o), ())
+
+    def holds(self, triple: Triple) -> bool:
+        """Whether a triple follows. Everything is the same as itself (eq-ref)."""
+        s, p, o = triple
+        return triple in self.facts or triple in DECLARATIONS or (p == SAME_AS and s == o)
+
+    def leaves(self, goal: Triple | None) -> list[Triple]:
+        """The asserted triples that a fact (None: the clash) was concluded from, in the proof's order."""
+        seen: set[Triple | None] = set()
+        leaves: list[Triple] = []
+        pending = [goal]
+        while pending:
+            fact = pending.pop()
+            if fact in seen:
+                continue
+            seen.add(fact)
+            reason = self.reason(fact)
+            if reason is not None:
+                pending += reversed(reason.premises)
+            elif fact is not None and fact in self.facts:
+                leaves.append(fact)
+        return leaves
+
+    def reason(self, fact: Triple | None) -> Reason | None:
+        """How a fact (or None: the clash) was concluded; None for what is asserted or not there."""
+        return self.clash if fact is None else self.facts.get(fact)
+
+    def members(self, head: Term) -> tuple[list[Term], tuple[Triple, ...]] | None:
+        """Members and cells of an asserted list; None when it is cut off, branches or runs in a circle."""
+        members: list[Term] = []
+        cells: list[Triple] = []
+        while head != NIL:
+            first = [fact for fact in self.match(head, FIRST) if self.facts[fact] is None]
+            rest = [fact for fact in self.match(head, REST) if self.facts[fact] is None]
+            if len(first) != 1 or len(rest) != 1 or rest[0] in cells:
+                return None
+            members.append(first[0][2])
+            cells += (first[0], rest[0])
+            head = rest[0][2]
+        return members, tuple(cells)
+
+
+class _Packed(Struct, array_like=True):
+    """Facts in numbers: terms by their place in `terms`, facts by theirs in `facts`."""
+
+    terms: list[Term]
+    facts: list[tuple[int, int, int]]
+    rules: list[str]
+    """The rule that made each; empty for what is asserted."""
+    premises: list[list[int]]
+
+
+def pack(facts: Facts) -> bytes:
+    """Facts that are consistent, to be kept; `unpack` gives them back."""
+    terms = {term: i for i, term in enumerate(dict.fromkeys(term for fact in facts.facts for term in fact))}
+    places = {fact: i for i, fact in enumerate(facts.facts)}
+    return msgpack.encode(
+        _Packed(
+            terms=list(terms),
+            facts=[(terms[s], terms[p], terms[o]) for s, p, o in places],
+            rules=["" if reason is None else reason.rule for reason in facts.facts.values()],
+            premises=[
+                [] if reason is None else [places[fact] for fact in reason.premises]
+                for reason in facts.facts.values()
+            ],
+        )
+    )
+
+
+def unpack(content: bytes) -> Facts:
+    """What `pack` was given."""
+    packed = msgpack.decode(content, type=_Packed)
+    terms = packed.terms
+    facts = [(terms[s], terms[p], terms[o]) for s, p, o in packed.facts]
+    reasons = (
+        Reason(rule, tuple([facts[premise] for premise in premises])) if rule else None
+        for rule, premises in zip(packed.rules, packed.premises, strict=True)
+    )
+    return Facts(dict(zip(facts, reasons, strict=True)))

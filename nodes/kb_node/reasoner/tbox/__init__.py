@@ -1,0 +1,1 @@
+"""The TBox, compiled: what it says, in numbers."""
