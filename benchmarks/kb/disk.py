@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from benchmarks.kb.made import Cost, Figures, cost, each, entities
 from nodes.kb_node import answers
-from nodes.kb_node.journal import FILENAME, Journal
-from nodes.kb_node.seed import seed
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.seed import seed
 from ontology import HOUSEHOLD_TTL
 from schemas import codec
 from schemas.commits import Transaction

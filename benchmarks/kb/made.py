@@ -9,7 +9,7 @@ from statistics import median, quantiles
 from time import perf_counter, process_time, thread_time
 from typing import Any, NamedTuple
 
-from nodes.kb_node import rdf_files
+from nodes.kb_node.documents import rdf
 from ontology import HOUSEHOLD_TTL, stars
 from ontology import vocabulary as v
 from schemas.entities import Pose
@@ -21,7 +21,7 @@ Figures = dict[str, float]
 
 def tbox() -> list[Triple]:
     """The household TBox."""
-    return rdf_files.parse(Path(HOUSEHOLD_TTL).read_bytes(), str(HOUSEHOLD_TTL))
+    return rdf.parse(Path(HOUSEHOLD_TTL).read_bytes(), str(HOUSEHOLD_TTL))
 
 
 def pose(random_: random.Random) -> Pose:

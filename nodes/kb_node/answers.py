@@ -6,9 +6,9 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from nodes.kb_node import rdf_files
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.second_opinion import owlrl_faults
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.text import PREFIXES
 from ontology import vocabulary as v
@@ -78,8 +78,8 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
     return Document(
-        content=rdf_files.serialise(picture.written, syntax),
-        media_type=rdf_files.MEDIA_TYPES[syntax],
+        content=rdf.serialise(picture.written, syntax),
+        media_type=rdf.MEDIA_TYPES[syntax],
         triples=len(picture.written),
         seq=picture.seq,
     )

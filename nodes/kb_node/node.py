@@ -9,14 +9,16 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, blank_nodes, garbage, loading, past, rdf_files, tboxes, terms, undo
+from nodes.kb_node import answers, gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.journal import FILENAME, Journal
-from nodes.kb_node.journal_file import NotWritten
+from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.storage import history
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.bridge import (
@@ -62,7 +64,7 @@ class KnowledgeBase:
     def __init__(self, node: Node, journal: Journal) -> None:
         self._node = node
         self._journal = journal
-        self._past = past.Past(journal)
+        self._past = history.Past(journal)
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
         self._announcer = Announcer(node.session, self.map.entities())
@@ -81,7 +83,7 @@ class KnowledgeBase:
 
     def on_commit(self, transaction: Transaction) -> Commit | None:
         """One transaction: journal (durable), publish, reply."""
-        terms.require_triples(transaction.insert)
+        term_syntax.require_triples(transaction.insert)
         return self._commit(transaction)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
@@ -112,10 +114,10 @@ class KnowledgeBase:
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
 
-        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        Raises BadRequest, with nothing done, when there is one that is not of RDF term_syntax.
         """
         for transaction in several.transactions:
-            terms.require_triples(transaction.insert)
+            term_syntax.require_triples(transaction.insert)
         before = self.map.seq
         results = self.map.commit_together(several.transactions)
         for error in results:
@@ -130,14 +132,14 @@ class KnowledgeBase:
         """An RDF document in one commit."""
         label = f"f{uuid.uuid4().hex[:8]}"
         with self._telling_of(load.filename) as tell:
-            triples = rdf_files.parse(
+            triples = rdf.parse(
                 load.content,
                 load.filename,
                 label_prefix=label,
                 progress=lambda count: tell(f"{count:,} triples read"),
             )
             tell(f"{len(triples):,} triples to check and write")
-            transaction, sorted_out = loading.of_document(self.map, load, triples)
+            transaction, sorted_out = document_change.of_document(self.map, load, triples)
             commit = self._commit(transaction)
             return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
 
@@ -150,7 +152,7 @@ class KnowledgeBase:
             self._node.beat()
 
         try:
-            with garbage.uncollected(freeze=True):
+            with gc_pause.uncollected(freeze=True):
                 yield tell
         finally:
             self._node.describe(self._summary())
@@ -160,7 +162,7 @@ class KnowledgeBase:
         return self.map.snapshot()
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
-        """Commits of the past, whole."""
+        """Commits of the history, whole."""
         return self._aside.submit(self._past.commits, query.seqs)
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
@@ -198,13 +200,13 @@ class KnowledgeBase:
         return self._aside.submit(answers.export, answers.picture(self.map, query.inferred), query.format)
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
-        """Commits of the past."""
+        """Commits of the history."""
         return self._aside.submit(self._past.history, query)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
         """Where an entity was last; where it is, if it is there."""
         if (entity := self.map.find(query.name)) is not None:
-            return past.sighting(entity, None)
+            return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
     def on_undo(self, command: Undo) -> Commit:
@@ -213,15 +215,15 @@ class KnowledgeBase:
 
     def on_load_tbox(self, load: LoadTBox) -> Commit | None:
         """Another TBox, in one commit; none for the one that holds."""
-        read = rdf_files.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
-        transaction = loading.of_tbox(self.map, load, tbox)
+        transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
             return self._journal.commit_of(load.id)
         try:
             return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
-        except tboxes.DoesNotFit as error:
-            raise tboxes.DoesNotFit(
+        except tbox_validation.DoesNotFit as error:
+            raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
             ) from None
 
@@ -273,7 +275,7 @@ def run(config: KbConfig) -> None:
     with open_node("kb_node", config.network) as node:
         journal = Journal(path)
         try:
-            with garbage.uncollected(freeze=True):
+            with gc_pause.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal)
             node.run()
             knowledge_base.close()

@@ -6,8 +6,8 @@ from collections.abc import Callable, Container, Iterable
 from itertools import chain, islice
 from operator import itemgetter
 
+from nodes.kb_node.progress import steadily
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.steadily import steadily
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Transaction

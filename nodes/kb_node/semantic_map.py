@@ -8,24 +8,16 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import (
-    bodies,
-    effects,
-    entities,
-    fingerprint,
-    garbage,
-    placing,
-    preconditions,
-    rdf_files,
-    tbox_cache,
-    tboxes,
-)
-from nodes.kb_node.alike import Patterns
-from nodes.kb_node.classes import ClassTable
-from nodes.kb_node.journal import Checkpoint, Journal
-from nodes.kb_node.journal_file import NotWritten
+from nodes.kb_node import gc_pause, preconditions
+from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.entities import entity_changes, entity_reading, placing
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.entities.fast_reading import Patterns
+from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.steadily import parts, steadily
+from nodes.kb_node.storage import closure_cache, commit_encoding, fingerprint
+from nodes.kb_node.storage.journal import Checkpoint, Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Snapshot, Star, Transaction
@@ -59,7 +51,7 @@ class SemanticMap:
         journal.verify(progress)
         start = journal.last_checkpoint()
         self.tbox = self.tbox_at(start.seq)
-        self.reasoner = reasoner or tbox_cache.reasoner(self.tbox, journal.path.parent)
+        self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
@@ -85,7 +77,7 @@ class SemanticMap:
         return self._entities.get(name)
 
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
-        """The entities, or those of a class by inference, in the order of their names."""
+        """The entity_reading, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
         found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
@@ -96,14 +88,14 @@ class SemanticMap:
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
     def stars(self, names: Iterable[str], *, together: bool = True) -> tuple[Star, ...]:
-        """The triples about some entities, taken together or each alone.
+        """The triples about some entity_reading, taken together or each alone.
 
         Raises UnknownName, Refused for the TBox's.
         """
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entities.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
+            entity_reading.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
             for iri in iris
         )
 
@@ -130,7 +122,7 @@ class SemanticMap:
 
     def tbox_at(self, seq: int) -> frozenset[Triple]:
         """The TBox that held after commit `seq`. Raises Refused when it is damaged."""
-        return frozenset(rdf_files.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
+        return frozenset(rdf.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
     # Changing
 
@@ -166,9 +158,9 @@ class SemanticMap:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
-        with garbage.uncollected():
+        with gc_pause.uncollected():
             commit = self._signed(transaction, retracted, inserted)
-            begun = bodies.early(commit)
+            begun = commit_encoding.early(commit)
             return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
@@ -186,8 +178,8 @@ class SemanticMap:
         before = self.classes
 
         def make_durable(commit: Commit) -> None:
-            tboxes.require_fit(self.abox(), before, self.classes)
-            self._journal.append(commit, rdf_files.serialise(new, "ntriples"))
+            tbox_validation.require_fit(self.abox(), before, self.classes)
+            self._journal.append(commit, rdf.serialise(new, "ntriples"))
 
         return self._switch(commit, new, make_durable)
 
@@ -266,7 +258,7 @@ class SemanticMap:
         self._change(insert=start.triples)
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
-            self._show(entities.of_the_tbox(self.reasoner, self.classes))
+            self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
         elif start.read_by == fingerprint.of_code():
             self._show(start.entities)
         else:
@@ -312,7 +304,7 @@ class SemanticMap:
         before = self.tbox, self.reasoner, self.classes
         abox = {*self.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
-            self.tbox, self.reasoner = tbox, tboxes.compiled(tbox)
+            self.tbox, self.reasoner = tbox, tbox_validation.compiled(tbox)
             self.classes = ClassTable(self.reasoner)
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
@@ -328,7 +320,9 @@ class SemanticMap:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
-        owners = subjects.union(*(entities.owners(self.reasoner, s) for s in steadily(known, self._progress)))
+        owners = subjects.union(
+            *(entity_reading.owners(self.reasoner, s) for s in steadily(known, self._progress))
+        )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
             commit = self._with_effects(commit, owners, change, subjects - known)
@@ -374,13 +368,13 @@ class SemanticMap:
         return commit
 
     def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
-        reading = effects.Reading(self.reasoner, self.classes, self._patterns, self._progress)
-        return effects.of(commit, change, self._entities, reading, owners=owners, new=new)
+        reading = entity_changes.Reading(self.reasoner, self.classes, self._patterns, self._progress)
+        return entity_changes.of(commit, change, self._entities, reading, owners=owners, new=new)
 
     def _read_again(self, known: Entity) -> Entity | None:
         """An entity as this code reads it, changed when it was."""
         iri = v.iri(known.iri)
-        entity = entities.read_entity(self.reasoner, self.classes, iri, known.provenance)
+        entity = entity_reading.read_entity(self.reasoner, self.classes, iri, known.provenance)
         return (
             None
             if entity is None
@@ -394,7 +388,7 @@ class SemanticMap:
 
     def _known(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
-        return effects.known(self._entities, iri)
+        return entity_changes.known(self._entities, iri)
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from nodes.kb_node import garbage, tboxes
-from nodes.kb_node.journal import Journal
+from nodes.kb_node import gc_pause
+from nodes.kb_node.documents import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import Journal
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Undo
@@ -26,13 +27,13 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
     _require_authority(command, target)
     reverse = _reverse_tbox if target.tbox else _reverse
     try:
-        with garbage.uncollected():
+        with gc_pause.uncollected():
             commit = reverse(semantic_map, journal, command, target)
     except errors.Inconsistent as error:
         raise errors.Inconsistent(
             f"commit {target.seq} cannot be undone: {error.text}", explanation=error.explanation
         ) from None
-    except tboxes.DoesNotFit as error:
+    except tbox_validation.DoesNotFit as error:
         raise errors.Refused(
             f"commit {target.seq} cannot be undone: {error.text}; first remove or update what does not fit,"
             " or let another TBox hold: semmap load --tbox FILE"

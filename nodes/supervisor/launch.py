@@ -26,7 +26,7 @@ def run_node(name: str, settings: Settings) -> None:
 def seed(settings: Settings) -> None:
     """Make the journal, or say that it is there, on stdout. A world that cannot be is told first."""
     from nodes.coordinator.files.content import kind_of
-    from nodes.kb_node.seed import seed as seed_journal
+    from nodes.kb_node.storage.seed import seed as seed_journal
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from nodes.sim_node.models.sources import Models

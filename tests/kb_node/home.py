@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from nodes.kb_node import rdf_files
-from nodes.kb_node.journal import Journal
+from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import Journal
 from ontology import stars
 from ontology import vocabulary as v
 from schemas.commits import Transaction
@@ -45,12 +45,12 @@ dm:lexicalReference a owl:DatatypeProperty .
 dm:float_coordinates_x a owl:DatatypeProperty ; rdfs:range xsd:float .
 """
 )
-TBOX = rdf_files.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
+TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 
 
 def new_map(folder: Path, tbox=TBOX) -> SemanticMap:
     """An empty map with a new journal in `folder`."""
-    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf_files.serialise(tbox, "ntriples")))
+    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf.serialise(tbox, "ntriples")))
 
 
 def reopened(semantic_map: SemanticMap) -> SemanticMap:
@@ -67,7 +67,7 @@ def close(semantic_map: SemanticMap) -> None:
 
 def turtle(text: str):
     """Triples from Turtle with the usual prefixes."""
-    return tuple(rdf_files.parse((PREFIXES + text).encode(), "test"))
+    return tuple(rdf.parse((PREFIXES + text).encode(), "test"))
 
 
 def transaction(number, insert=(), retract=(), **fields):

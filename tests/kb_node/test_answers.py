@@ -1,7 +1,8 @@
 import pytest
 
-from nodes.kb_node import answers, rdf_files
-from nodes.kb_node.documents import sort_out
+from nodes.kb_node import answers
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.abox_document import sort_out
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Explain
@@ -104,9 +105,7 @@ def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
     document = answers.export(answers.picture(furnished, inferred=False), syntax)
     before = furnished.abox()
     assert (document.seq, document.triples) == (1, len(before))
-    kept, skipped, _ = sort_out(
-        rdf_files.parse(document.content, "export"), furnished.classes, skip_unknown=False
-    )
+    kept, skipped, _ = sort_out(rdf.parse(document.content, "export"), furnished.classes, skip_unknown=False)
     furnished.commit(transaction(2, kept, furnished.abox()))
     assert skipped == []
     assert canonical(furnished.abox()) == canonical(before)
@@ -115,7 +114,7 @@ def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
 @pytest.mark.parametrize("syntax", SYNTAXES)
 def test_an_export_with_what_follows_can_be_loaded(furnished, syntax):
     document = answers.export(answers.picture(furnished, inferred=True), syntax)
-    triples = rdf_files.parse(document.content, "export")
+    triples = rdf.parse(document.content, "export")
     assert set(turtle(":kitchen1 a dm:Location . :chair1 a dm:Seat .")) <= set(triples)
     assert not {v.OWL_THING, v.dm("Chair")} & {s for s, _, _ in triples}
     before = list(furnished.entities())

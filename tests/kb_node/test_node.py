@@ -8,8 +8,8 @@ from contextlib import contextmanager, suppress
 import pytest
 
 from nodes import bus
-from nodes.kb_node import rdf_files
-from nodes.kb_node.seed import seed
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
@@ -167,7 +167,7 @@ def test_questions_are_answered(session):
     there = ask(session, "last-seen", LastSeen(name="q"))
     assert (there.pose, there.removed) == (ask(session, "get", Get(name="q")).pose, None)
     document = ask(session, "export", Export(format="turtle", inferred=True))
-    assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf_files.parse(document.content, "export")
+    assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf.parse(document.content, "export")
 
 
 def load(number, content, **fields):

@@ -3,10 +3,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.kb_node import fingerprint
-from nodes.kb_node.journal import Journal
-from nodes.kb_node.journal_file import NotWritten
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage import fingerprint
+from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors

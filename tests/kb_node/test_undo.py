@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node import rdf_files
+from nodes.kb_node.documents import rdf
 from nodes.kb_node.undo import undo
 from ontology import stars
 from ontology import vocabulary as v
@@ -280,7 +280,7 @@ def test_what_came_with_a_tbox_into_the_abox_goes_with_it(semantic_map):
     mine = turtle(":chair9 a dm:Chair .")
     before = triples(semantic_map)
     semantic_map.replace_tbox(
-        transaction("t", mine, verb="load"), rdf_files.parse(NEW_CLASSES.encode(), "t", label_prefix="n")
+        transaction("t", mine, verb="load"), rdf.parse(NEW_CLASSES.encode(), "t", label_prefix="n")
     )
     assert "chair9" in {entity.name for entity in semantic_map.entities()}
     take_back(semantic_map)

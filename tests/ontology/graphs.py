@@ -5,7 +5,7 @@ from pathlib import Path
 import rdflib
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
-from nodes.kb_node.owlrl_closure import QuickGraph
+from nodes.kb_node.owlrl.closure_process import QuickGraph
 from ontology.vocabulary import ABOX, TBOX
 
 DM = rdflib.Namespace(TBOX)

@@ -8,7 +8,7 @@ import pytest
 from rdflib import OWL, RDF, Graph, URIRef
 from rdflib.term import Node
 
-from nodes.kb_node.owlrl_closure import close
+from nodes.kb_node.owlrl.closure_process import close
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.ontology.graphs import DM, MAP, classes, forget_unused_classes, local, named, read
 

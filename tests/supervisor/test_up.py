@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.seed import seed
+from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import JOURNAL, SETTINGS
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.conftest import free_endpoint, running

@@ -122,7 +122,7 @@ def down(data: Path | None, connect: str | None) -> None:
 @click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
-    from nodes.kb_node.repair import repair as repair_journal
+    from nodes.kb_node.storage.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 

@@ -9,7 +9,7 @@ import time
 import pyoxigraph as ox
 import pytest
 
-from nodes.kb_node import rdf_files
+from nodes.kb_node.documents import rdf
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.sparql import readers, text
 from nodes.kb_node.sparql.consequences import inferred
@@ -75,7 +75,7 @@ def flat():
     """One for all tests: whatever was cancelled, it goes on."""
     files = (HOUSEHOLD_TTL, FLAT_TTL)
     made = Home(
-        [t for file in files for t in rdf_files.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
+        [t for file in files for t in rdf.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
     )
     yield made
     made.service.close()

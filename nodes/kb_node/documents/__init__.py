@@ -1,0 +1,1 @@
+"""Documents in and out: RDF in every syntax, ABoxes and TBoxes."""

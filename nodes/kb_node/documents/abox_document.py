@@ -1,0 +1,127 @@
+"""RDF documents that describe an ABox: what of them may come into the map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import chain
+from typing import NamedTuple
+
+from nodes.kb_node.entities.class_table import ClassTable
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.explanations import Term, Triple
+
+_VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
+_TBOX = f"<{v.TBOX}"
+_FEW = 5
+_WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
+_FLOATS = frozenset(chain(*_WHOLES))
+_BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
+_OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
+
+
+class SortedOut(NamedTuple):
+    """The triples that fit the TBox, a word on each individual left out, and on what may be a mistake."""
+
+    triples: list[Triple]
+    skipped: list[str]
+    notes: list[str]
+
+
+def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool) -> SortedOut:
+    """What of a document may come into the map. A number of a star may be written as any kind of number.
+
+    Raises UnknownClass naming all individuals of unknown classes, unless `skip_unknown`; then what is of
+    unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
+    Raises BadFile for a TBox.
+    """
+    triples = list(map(_with_float, triples))
+    declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
+    known = declared.union(classes.names)
+    types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
+    spatial = _with_subclasses(classes.spatial, triples)
+    if declared and not any(o in spatial for _, o in types):
+        raise errors.BadFile("it declares classes and has no entity; a TBox is loaded with --tbox")
+    unknown = sorted((s, o) for s, o in types if o not in known)
+    users: dict[str, list[str]] = {}
+    for s, c in unknown:
+        users.setdefault(v.local_name(c), []).append(v.local_name(s))
+    if unknown and not skip_unknown:
+        raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
+    words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
+    gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
+    doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
+    kept = _without(gone, [t for t in triples if t not in doubtful])
+    notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
+    return SortedOut(kept, words, list(notes))
+
+
+def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
+    """Classes, and those which the triples put below them."""
+    found, above = set(roots), [(s, o) for s, p, o in triples if p == v.RDFS_SUB_CLASS_OF]
+    while below := {s for s, o in above if o in found and s not in found}:
+        found |= below
+    return found
+
+
+def _with_float(triple: Triple) -> Triple:
+    """`0` and `0.5` in Turtle are an integer and a decimal; a star's numbers are floats all the same."""
+    s, p, o = triple
+    if p in _FLOATS and o.endswith(_OTHER_NUMBERS):
+        return (s, p, v.literal(v.lexical(o), v.XSD_FLOAT))
+    return triple
+
+
+def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
+    """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
+    declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
+    known = declared | classes.properties
+    users: dict[str, list[str]] = {}
+    for s, p, _ in triples:
+        if p.startswith(_TBOX) and p not in known:
+            users.setdefault(v.local_name(p), []).append(v.local_name(s))
+    return [errors.unknown_properties(users, map(v.local_name, sorted(known)))] if users else []
+
+
+def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
+    """A word on classes that the TBox does not have: nobody can ask the map for things of them."""
+    names = sorted(v.local_name(c) for c in declared.difference(classes.names))
+    if not names:
+        return []
+    few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
+    return [f"the classes of the map stay those of its TBox, without {few}; --tbox loads others"]
+
+
+def _halves(triples: list[Triple]) -> list[str]:
+    """A word on positions, orientations and sizes that lack a number: they are as good as none."""
+    said: dict[Term, int] = {}
+    for s, p, _ in triples:
+        if p in _BITS:
+            said[s] = said.get(s, 0) | _BITS[p]
+    lacking = [
+        f"{_called(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        for s, bits in said.items()
+        for whole in _WHOLES
+        if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
+    ]
+    if not lacking:
+        return []
+    few = ", ".join(lacking[:_FEW]) + (f" and {len(lacking) - _FEW} more like that" if lacking[_FEW:] else "")
+    return [f"a position, orientation or size counts only when it is whole: {few}"]
+
+
+def _called(individual: Term) -> str:
+    return "a blank node" if individual.startswith("_:") else v.local_name(individual)
+
+
+def is_built_in(term: Term) -> bool:
+    """Is it a term of OWL's own vocabularies, or an anonymous class?"""
+    return term.startswith("_:") or (term.startswith("<") and v.bare(term).startswith(_VOCABULARIES))
+
+
+def _without(gone: set[Term], triples: list[Triple]) -> list[Triple]:
+    """`triples` without those about `gone`, and about what is in no other star."""
+    edges = [(s, o) for s, p, o in triples if p in stars.STAR_PROPERTIES]
+    gone = gone.union({o for s, o in edges if s in gone} - {o for s, o in edges if s not in gone})
+    return [(s, p, o) for s, p, o in triples if s not in gone and o not in gone]

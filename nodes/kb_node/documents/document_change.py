@@ -1,0 +1,55 @@
+"""What a file brings into the map, as a transaction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from nodes.kb_node.documents import abox_document, tbox_validation
+from nodes.kb_node.semantic_map import SemanticMap
+from schemas.bridge import LoadDocument, LoadTBox
+from schemas.commits import Transaction
+from schemas.explanations import Triple
+
+
+def of_document(
+    semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
+) -> tuple[Transaction, abox_document.SortedOut]:
+    """What of an ABox may come into the map, and what is to be said of the rest.
+
+    Raises UnknownClass, BadFile for a TBox.
+    """
+    sorted_out = abox_document.sort_out(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
+    transaction = _transaction(
+        load,
+        retract=semantic_map.abox() if load.replace else (),
+        insert=(t for t in sorted_out.triples if t not in semantic_map.tbox),
+    )
+    return transaction, sorted_out
+
+
+def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:
+    """What another TBox changes of the ABox: its imports. None if it is the one that holds."""
+    imports, before = tbox_validation.imports(tbox), tbox_validation.imports(semantic_map.tbox)
+    transaction = _transaction(
+        load,
+        retract=(t for t in before if t not in imports and semantic_map.has(t)),
+        insert=(t for t in imports if not semantic_map.has(t)),
+    )
+    imports_differ = transaction.retract or transaction.insert
+    if not imports_differ and tbox == semantic_map.tbox:
+        return None
+    return transaction
+
+
+def _transaction(
+    load: LoadDocument | LoadTBox, *, retract: Iterable[Triple], insert: Iterable[Triple]
+) -> Transaction:
+    return Transaction(
+        id=load.id,
+        source=load.source,
+        agent=load.agent,
+        verb="load",
+        reason=load.reason,
+        retract=tuple(retract),
+        insert=tuple(insert),
+    )

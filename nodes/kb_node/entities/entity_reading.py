@@ -1,0 +1,266 @@
+"""Entities and their stars, read from the triples."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from itertools import islice
+
+from msgspec import structs
+
+from nodes.kb_node.entities.class_table import ClassTable, Kind
+from nodes.kb_node.reasoner import Reasoner
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Star
+from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size
+from schemas.explanations import Term, Triple
+
+_NAME = re.compile(NAME_PATTERN)
+_FEW = 16
+_IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
+_OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
+
+
+Objects = Mapping[Term, Sequence[Term]]
+"""What is asserted of a subject: predicate to objects."""
+About = Callable[[Term], Objects]
+
+
+def about(reasoner: Reasoner, triples: Iterable[Triple], new: Set[Term]) -> About:
+    """What is asserted of each subject; of `new` ones, `triples` hold all there is."""
+    if not new:
+        return reasoner.about
+    at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
+    for s, p, o in triples:
+        said = at_hand.get(s)
+        if said is not None:
+            said.setdefault(p, []).append(o)
+    return lambda subject: at_hand.get(subject) or reasoner.about(subject)
+
+
+def read_entity(
+    reasoner: Reasoner,
+    classes: ClassTable,
+    iri: Term,
+    provenance: Provenance,
+    about: About | None = None,
+) -> Entity | None:
+    """The Entity that the triples about `iri` describe, all of it by `provenance`; None if it is no entity.
+
+    `about` is where to look the triples up, if not in the reasoner. Raises BadRequest for an entity that
+    cannot be named, or whose star makes no sense: a number that is none, is not finite or is out of all
+    bounds, a size that is not positive.
+    """
+    types = reasoner.types(iri)
+    if types.isdisjoint(classes.spatial):
+        return None
+    about = about or reasoner.about
+    said = about(iri)
+    kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
+    assert kind is not None
+    return entity_of(
+        iri,
+        kind,
+        provenance,
+        pose=_pose(about, iri, said.get(v.HAS_POSITION, ())),
+        size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
+        preferred=_references(about, said.get(v.HAS_PREFERRED_REFERENCE, ())),
+        alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
+        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+    )
+
+
+def entity_of(
+    iri: Term,
+    kind: Kind,
+    provenance: Provenance,
+    *,
+    pose: Pose | None,
+    size_m: Size | None,
+    preferred: Iterable[str],
+    alternatives: Iterable[str],
+    conflict: str = "",
+) -> Entity:
+    """The entity of a kind whose star says this, all of it by `provenance`.
+
+    Of several preferred references the first in the alphabet counts. Raises BadRequest for one that cannot
+    be named.
+    """
+    return Entity(
+        name=_name(iri, kind.class_name),
+        class_=kind.class_name,
+        iri=v.bare(iri),
+        types=kind.types,
+        pose=pose,
+        size_m=size_m,
+        preferred_reference=min(preferred, default=None),
+        alternative_references=tuple(alternatives),
+        conflict=conflict,
+        place=kind.place,
+        fixed=kind.fixed,
+        model=kind.model,
+        provenance=provenance,
+        pose_provenance=provenance,
+        shape_provenance=provenance,
+        reference_provenance=provenance,
+    )
+
+
+def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
+    """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
+    iri = v.iri(known.iri)
+    nodes = [o for _, _, o in reasoner.asserted(iri, v.HAS_POSITION, None)]
+    return structs.replace(known, pose=_pose(reasoner.about, iri, nodes), provenance=provenance)
+
+
+def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
+    """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
+    iris = {i for c in classes.spatial for i in reasoner.instances(c)}
+    read = (read_entity(reasoner, classes, iri, _OF_THE_TBOX) for iri in sorted(iris))
+    return [entity for entity in read if entity is not None]
+
+
+def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
+    """`entity` with the provenance of what is still as in `known`; `concerned`: something was said of it."""
+    same_shape = (entity.class_, entity.size_m, entity.model, entity.fixed) == (
+        known.class_,
+        known.size_m,
+        known.model,
+        known.fixed,
+    )
+    same_references = (entity.preferred_reference, entity.alternative_references) == (
+        known.preferred_reference,
+        known.alternative_references,
+    )
+    said = entity.provenance
+    return structs.replace(
+        entity,
+        provenance=said if concerned else known.provenance,
+        pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
+        shape_provenance=known.shape_provenance if same_shape else said,
+        reference_provenance=known.reference_provenance if same_references else said,
+    )
+
+
+def _name(iri: Term, class_name: str) -> str:
+    """The name that an entity's IRI (http, https, urn or file) ends in. Raises BadRequest."""
+    if not iri.startswith("<"):
+        raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
+    if not _IRI.match(iri):
+        raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
+    name = v.local_name(iri)
+    if not _NAME.match(name):
+        raise errors.BadRequest(
+            f"the {class_name} {iri} needs an IRI that ends in a name of letters a to z, digits, '_', '.'"
+            " and '-', not beginning with a digit"
+        )
+    return name
+
+
+def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
+    """The individuals to whose star a triple about `subject` may belong: itself, and who points to it."""
+    return {subject, *_users(reasoner, subject)}
+
+
+def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: Set[Term], tbox: frozenset[Triple]) -> Star:
+    """The triples about an entity: its own, and what others say of it.
+
+    What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox
+    says does not. Raises Refused for an entity that the TBox itself has.
+    """
+    said = list(reasoner.asserted(iri))
+    if not tbox.isdisjoint(said):
+        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
+    own = list(said)
+    nodes: dict[Term, list[Term]] = {}
+    for predicate in stars.STAR_PROPERTIES:
+        objects = sorted({o for _, p, o in said if p == predicate})
+        private = {o for o in objects if all(user in leaving for user in _users(reasoner, o))}
+        about = {o: list(reasoner.asserted(o, None, None)) for o in private - leaving}
+        own += [t for triples in about.values() if tbox.isdisjoint(triples) for t in triples]
+        # A position or size that is somebody else's too is not changed: a change makes a new one.
+        shared = predicate in (v.HAS_POSITION, v.HAS_SIZE) and len(private) < len(objects)
+        nodes[predicate] = [] if shared else objects
+    coordinates, size = nodes[v.HAS_POSITION], nodes[v.HAS_SIZE]
+    return Star(
+        seq=seq,
+        name=v.local_name(iri),
+        iri=iri,
+        own=tuple(dict.fromkeys(own)),
+        incoming=tuple(t for t in reasoner.asserted(None, None, iri) if t[0] != iri),
+        coordinates=coordinates[0] if coordinates else None,
+        size=size[0] if size else None,
+        preferred=tuple(nodes[v.HAS_PREFERRED_REFERENCE]),
+        alternatives=tuple(nodes[v.HAS_ALTERNATIVE_REFERENCE]),
+    )
+
+
+def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
+    """The individuals in whose star `node` is."""
+    incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
+    if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
+        return (s for s, p, _ in incoming if p in stars.STAR_PROPERTIES)
+    return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
+
+
+def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:
+    if not nodes:
+        return None
+    said = about(min(nodes))
+    position = _numbers(iri, v.COORDINATE_XYZ, said)
+    if position is None:
+        return None
+    orientation = _numbers(iri, v.ORIENTATION_WXYZ, said)
+    if orientation is None:
+        return Pose(position_m=position)  # type: ignore[arg-type]
+    try:
+        return Pose(position_m=position, orientation_wxyz=orientation)  # type: ignore[arg-type]
+    except ValueError as error:
+        raise errors.BadRequest(f"{v.local_name(iri)}: {error}") from None
+
+
+def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float, float] | None:
+    if not nodes:
+        return None
+    size = _numbers(iri, v.SIZE_XYZ, about(min(nodes)))
+    if size is not None and min(size) <= 0:
+        raise errors.BadRequest(f"{v.local_name(iri)}: the size {size} must be positive")
+    return size  # type: ignore[return-value]
+
+
+def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[float, ...] | None:
+    """One number a predicate; None where one is missing."""
+    if said.keys().isdisjoint(predicates):
+        return None
+    found: list[float] = []
+    for predicate in predicates:
+        terms = said.get(predicate, ())
+        if not terms:
+            continue
+        term = terms[0] if len(terms) == 1 else min(terms)
+        try:
+            value = float(term[1 : term.rindex('"')]) if term[0] == '"' else math.nan
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= REACH_M:
+            raise errors.BadRequest(
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_said(term)}; it must be a number"
+                f" from -{REACH_M:g} to {REACH_M:g}"
+            )
+        found.append(value)
+    return tuple(found) if len(found) == len(predicates) else None
+
+
+def _said(term: Term) -> str:
+    return v.lexical(term) if term[0] == '"' else v.local_name(term)
+
+
+def _references(about: About, nodes: Sequence[Term]) -> list[str]:
+    found: list[str] = []
+    for node in sorted(nodes):
+        texts = sorted(about(node).get(v.LEXICAL_REFERENCE, ()))
+        found += [v.lexical(text) for text in texts if text[0] == '"']
+    return found

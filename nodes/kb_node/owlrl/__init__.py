@@ -1,0 +1,1 @@
+"""owlrl as a second opinion, in a process of its own."""

@@ -1,0 +1,62 @@
+"""The closure of a TBox, kept beside the journal so that a start need not work it out again."""
+
+from __future__ import annotations
+
+import hashlib
+import zlib
+from collections.abc import Collection
+from contextlib import suppress
+from pathlib import Path
+
+from msgspec import MsgspecError
+
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.rules.facts import Facts, pack, unpack
+from nodes.kb_node.storage import fingerprint
+from schemas.explanations import Triple
+
+_SUFFIX = ".closure"
+_DIGEST_BYTES = 16
+
+
+def reasoner(tbox: Collection[Triple], folder: Path) -> Reasoner:
+    """A reasoner with the TBox. Raises Inconsistent.
+
+    What is in `folder` counts only for the same triples and the same code, and if it is not damaged.
+    """
+    closed = _read(_path(tbox, folder))
+    found = Reasoner(tbox, closed=closed)
+    if closed is None:
+        keep(found.closed, tbox, folder)
+    return found
+
+
+def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
+    """Write down the closure of a TBox, if it has one of its own and the folder takes it."""
+    if closed is None:
+        return
+    body = zlib.compress(pack(closed), 1)
+    with suppress(OSError):  # then the next start works it out again
+        for old in folder.glob(f"*{_SUFFIX}"):
+            old.unlink(missing_ok=True)
+        _path(tbox, folder).write_bytes(_digest(body) + body)
+
+
+def _path(tbox: Collection[Triple], folder: Path) -> Path:
+    name = hashlib.blake2b(fingerprint.of_code(), digest_size=_DIGEST_BYTES)
+    for triple in sorted(tbox):
+        name.update("\n".join(triple).encode())
+    return folder / f"{name.hexdigest()}{_SUFFIX}"
+
+
+def _read(path: Path) -> Facts | None:
+    try:
+        content = path.read_bytes()
+        body = content[_DIGEST_BYTES:]
+        return unpack(zlib.decompress(body)) if content == _digest(body) + body else None
+    except (OSError, zlib.error, MsgspecError):
+        return None
+
+
+def _digest(body: bytes) -> bytes:
+    return hashlib.blake2b(body, digest_size=_DIGEST_BYTES).digest()

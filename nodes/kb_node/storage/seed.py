@@ -1,0 +1,143 @@
+"""A new journal from ontology files, checked before anything on disk is touched."""
+
+from __future__ import annotations
+
+import os
+import uuid
+from datetime import datetime
+from pathlib import Path
+
+from nodes.kb_node.documents import abox_document, rdf, tbox_validation
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage import closure_cache
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.sqlite_file import InUse
+from ontology import vocabulary as v
+from schemas import errors, wording
+from schemas.commits import Transaction
+from schemas.explanations import Triple
+
+KEPT = "kept"
+
+
+def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> str:
+    """Make the journal of folder `data` from a TBox and an ABox file; say what was done.
+
+    A journal that is there already wins and stays as it is, unless `fresh`: then it is moved to
+    `data/kept/<time>/`. Raises BadFile or Inconsistent with existing data untouched.
+    """
+    path = data / FILENAME
+    if path.exists() and not fresh:
+        Journal(path).close()  # one that cannot be read is told before anything starts
+        return f"going on with the map in {data} (--fresh begins anew and keeps this one aside)"
+    tbox_triples = read_triples(tbox, "t")
+    reasoner = tbox_validation.compiled(tbox_triples, str(tbox))
+    closed = reasoner.closed  # as it is before the ABox may add to the schema
+    abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]
+    notes: list[str] = []
+    if abox is not None:
+        said = read_triples(abox, "a")
+        try:
+            sorted_out = abox_document.sort_out(said, ClassTable(reasoner), skip_unknown=False)
+        except errors.UnknownClass as error:
+            text = error.text.removesuffix(errors.SKIP_UNKNOWN)
+            raise type(error)(
+                f"{abox}: {text}; other classes are given with --tbox FILE, another map with --abox FILE|none"
+            ) from None
+        except errors.BadRequest as error:
+            raise type(error)(f"{abox}: {error.text}") from None
+        abox_triples += sorted_out.triples
+        notes = sorted_out.notes
+    source = abox.name if abox is not None else "nothing"
+    transaction = Transaction(
+        id=f"seed-{uuid.uuid4().hex}",
+        source="file",
+        reason=f"begun from {source}",
+        insert=tuple(abox_triples),
+    )
+    try:
+        data.mkdir(parents=True, exist_ok=True)
+        _require_unused(path)
+        new = path.with_name(f"new-{FILENAME}")
+        size = _make(new, tbox_triples, reasoner, transaction)
+        put_in_place(new, path)
+        closure_cache.keep(closed, tbox_triples, data)
+    except (errors.Inconsistent, errors.BadRequest) as error:
+        raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
+    except OSError as error:
+        raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
+    return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
+
+
+def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
+    """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
+    remove(path)
+    try:
+        journal = Journal.create(path, rdf.serialise(tbox, "ntriples"))
+        try:
+            semantic_map = SemanticMap(journal, reasoner=reasoner)
+            semantic_map.commit(transaction)
+            semantic_map.checkpoint()
+        finally:
+            journal.close()
+    except errors.SemmapError:
+        remove(path)
+        raise
+    return len(semantic_map)
+
+
+def _require_unused(path: Path) -> None:
+    """Raises Refused when a knowledge base is at work on the journal; a damaged one may be set aside."""
+    if path.exists():
+        try:
+            Journal(path).close()
+        except InUse:
+            raise
+        except errors.Refused:
+            return
+
+
+def put_in_place(new: Path, path: Path) -> Path | None:
+    """Let the journal `new` take the place of the one at `path`; where that is kept now, if there was one."""
+    kept = set_aside(path.parent)
+    new.rename(path)
+    _sync(path.parent)
+    return kept
+
+
+def _sync(folder: Path) -> None:
+    """Make a renaming in `folder` durable."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def set_aside(data: Path) -> Path | None:
+    """Move a present journal out of the way, for whoever may want it back; where to."""
+    present = [p for p in data.glob(f"{FILENAME}*") if p.is_file()]
+    if not present:
+        return None
+    kept = data / KEPT / f"{datetime.now():%Y-%m-%dT%H-%M-%S.%f}"
+    kept.mkdir(parents=True, exist_ok=True)
+    for p in present:
+        p.rename(kept / p.name)
+    return kept
+
+
+def read_triples(path: Path, label_prefix: str = "") -> list[Triple]:
+    """The triples of a file, its blank nodes named with `label_prefix`. Raises BadFile."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
+    return rdf.parse(content, str(path), label_prefix=label_prefix)
+
+
+def remove(path: Path) -> None:
+    """Delete a journal that is not used yet."""
+    for p in path.parent.glob(f"{path.name}*"):
+        p.unlink()

@@ -1,0 +1,53 @@
+from nodes.kb_node.documents import document_change
+from ontology import vocabulary as v
+from schemas.bridge import LoadDocument, LoadTBox
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+
+SIGNED = {"id": "7", "source": "file", "agent": "a", "reason": "why", "content": b"", "filename": "f.ttl"}
+
+
+def document(**fields):
+    return LoadDocument(**SIGNED, **{"replace": False, "skip_unknown": False, **fields})
+
+
+def test_a_document_is_signed_by_who_loads_it(semantic_map):
+    made, _ = document_change.of_document(semantic_map, document(), turtle(":a a dm:Chair ."))
+    assert (made.id, made.source, made.agent, made.verb, made.reason) == ("7", "file", "a", "load", "why")
+    assert (made.insert, made.retract) == (turtle(":a a dm:Chair ."), ())
+
+
+def test_what_the_tbox_says_too_is_not_of_the_abox(semantic_map):
+    both = turtle(":a a dm:Chair . dm:Chair a owl:Class .")
+    made, _ = document_change.of_document(semantic_map, document(), both)
+    assert made.insert == turtle(":a a dm:Chair .")
+
+
+def test_what_is_replaced_goes_in_the_same_transaction(semantic_map):
+    semantic_map.commit(transaction(1, chair()))
+    made, _ = document_change.of_document(semantic_map, document(replace=True), turtle(":a a dm:Chair ."))
+    assert set(made.retract) == set(chair())
+
+
+def test_what_was_left_out_is_told(semantic_map):
+    content = turtle(":a a dm:Chair . :b a dm:Chiar .")
+    made, sorted_out = document_change.of_document(semantic_map, document(skip_unknown=True), content)
+    assert made.insert == turtle(":a a dm:Chair .")
+    assert sorted_out.skipped == ["b (unknown class 'Chiar')"]
+
+
+def test_the_tbox_that_holds_is_no_change(semantic_map):
+    imports = (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.iri(v.TBOX.rstrip("#")))
+    semantic_map.commit(transaction(1, [imports]))
+    assert document_change.of_tbox(semantic_map, LoadTBox(**SIGNED), frozenset(home.TBOX)) is None
+
+
+def test_another_tbox_is_imported_instead(semantic_map):
+    before = (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.iri(v.TBOX.rstrip("#")))
+    semantic_map.commit(transaction(1, [before]))
+    made = document_change.of_tbox(
+        semantic_map, LoadTBox(**SIGNED), frozenset(turtle("<urn:other> a owl:Ontology ."))
+    )
+    assert made is not None
+    assert made.retract == (before,)
+    assert made.insert == ((v.ABOX_ONTOLOGY, v.OWL_IMPORTS, "<urn:other>"),)

@@ -1,0 +1,21 @@
+"""What a change of the triples does to the entities."""
+
+from nodes.kb_node.documents import rdf
+from ontology import vocabulary as v
+from tests.kb_node import home
+from tests.kb_node.home import TBOX_TURTLE, chair, transaction
+
+X = v.COORDINATE_XYZ[0]
+MEASURED = f"dm:Measured a owl:Class . {X} rdfs:domain dm:Measured ."
+
+
+def test_what_has_coordinates_itself_has_the_classes_that_follow(tmp_path):
+    tbox = rdf.parse((TBOX_TURTLE + MEASURED).encode(), "tbox.ttl", label_prefix="t")
+    semantic_map = home.new_map(tmp_path, tbox)
+    semantic_map.commit(transaction(1, chair("chair1")))
+    assert "Measured" not in semantic_map.entity("chair1").types
+    said = (v.entity_iri("chair1"), X, v.literal("1.0", v.XSD_FLOAT))
+    commit = semantic_map.commit(transaction(2, [said]))
+    assert [entity.name for entity in commit.changed] == ["chair1"]
+    assert "Measured" in semantic_map.entity("chair1").types
+    home.close(semantic_map)

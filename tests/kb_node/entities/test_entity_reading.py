@@ -1,0 +1,187 @@
+import pytest
+
+from nodes.kb_node.entities import entity_reading
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.entities import Pose
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+
+CHAIR1 = v.entity_iri("chair1")
+
+
+def entity_of(semantic_map, text):
+    semantic_map.commit(transaction(text, turtle(f":a a dm:Chair . {text}")))
+    return semantic_map.entity("a")
+
+
+def positioned(x="1.0", y="2.0", z="3.0", more=""):
+    return (
+        f':a dm:hasPosition [ dm:float_coordinates_x "{x}"^^xsd:float ;'
+        f' dm:float_coordinates_y "{y}"^^xsd:float ; dm:float_coordinates_z "{z}" {more} ] .'
+    )
+
+
+def turned(w, x, y, z):
+    return "".join(
+        f'; dm:float_orientation_{axis} "{value}"' for axis, value in zip("wxyz", (w, x, y, z), strict=True)
+    )
+
+
+def test_a_star_is_read_back_as_it_was_written(semantic_map):
+    pose = Pose(position_m=(1.5, -2.25, 0.0), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
+    star = stars.star(
+        "chair1",
+        v.dm("Chair"),
+        pose=pose,
+        size_m=(0.5, 0.5, 1e-3),
+        preferred='my\n"chair"',
+        alternatives=("b", "a"),
+    )
+    (entity,) = semantic_map.commit(transaction(1, star)).changed
+    assert (entity.pose, entity.size_m) == (pose, (0.5, 0.5, 1e-3))
+    assert (entity.preferred_reference, entity.alternative_references) == ('my\n"chair"', ("b", "a"))
+    assert (entity.model, entity.fixed, entity.place) == ("chair", False, False)
+
+
+def test_what_is_not_said_is_none(semantic_map):
+    entity = entity_of(semantic_map, "")
+    assert (entity.pose, entity.size_m, entity.preferred_reference) == (None, None, None)
+    assert entity.alternative_references == ()
+
+
+def test_half_a_position_is_none_and_half_an_orientation_is_identity(semantic_map):
+    assert (
+        entity_of(semantic_map, ':a dm:hasPosition [ dm:float_coordinates_x "1.0"^^xsd:float ] .').pose
+        is None
+    )
+    semantic_map.commit(transaction(2, retract=semantic_map.abox()))
+    entity = entity_of(semantic_map, positioned(more='; dm:float_orientation_w "0.5"'))
+    assert entity.pose == Pose(position_m=(1.0, 2.0, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        (positioned(y="NaN"), r"a: float_coordinates_y is NaN; it must be a number from -10000 to 10000"),
+        (positioned(x="INF"), "a: float_coordinates_x is INF; it must be a number"),
+        (positioned(x="1e300"), "a: float_coordinates_x is 1e300; it must be a number"),
+        (positioned(z="here"), "a: float_coordinates_z is here; it must be a number"),
+        (positioned(z="1e9"), "a: float_coordinates_z is 1e9; it must be a number"),
+        (':a dm:hasSize [ dm:float_size_x :b ] .', "a: float_size_x is b; it must be a number"),
+        (
+            ":a dm:hasSize [ dm:float_size_x 1.0 ; dm:float_size_y 0.0 ; dm:float_size_z 1.0 ] .",
+            r"a: the size \(1.0, 0.0, 1.0\) must be positive",
+        ),
+        (
+            ":a dm:hasSize [ dm:float_size_x -1.0 ; dm:float_size_y 1.0 ; dm:float_size_z 1.0 ] .",
+            r"a: the size \(-1.0, 1.0, 1.0\) must be positive",
+        ),
+        (positioned(more=turned(1, 1, 0, 0)), r"a: the quaternion .* has length 1.414; it must be 1"),
+        (positioned(more=turned(2, 0, 0, "x")), "a: float_orientation_z is x; it must be a number"),
+    ],
+)  # fmt: skip
+def test_a_star_that_makes_no_sense_is_refused(semantic_map, text, fault):
+    with pytest.raises((errors.BadRequest, errors.Inconsistent), match=fault):
+        entity_of(semantic_map, text)
+    assert (len(semantic_map), semantic_map.seq) == (0, 0)
+
+
+def test_a_reference_that_is_no_text_is_none(semantic_map):
+    assert (
+        entity_of(
+            semantic_map, ":a dm:hasPreferredReference [ dm:lexicalReference :b ] ."
+        ).preferred_reference
+        is None
+    )
+
+
+@pytest.mark.parametrize(
+    ("iri", "fault"),
+    [
+        ("_:b", "a Chair is a blank node; an entity needs an IRI"),
+        ("<http://a.org/x#1chair>", "needs an IRI that ends in a name of letters a to z, digits"),
+        ("<http://a.org/x#my%20chair>", "needs an IRI that ends in a name of letters a to z, digits"),
+        ("<http://a.org/x#>", "needs an IRI that ends in a name of letters a to z, digits"),
+        ("<javascript:x#chair>", "needs an IRI of http, https, urn or file"),
+    ],
+)
+def test_an_entity_needs_a_name(semantic_map, iri, fault):
+    with pytest.raises(errors.BadRequest, match=fault):
+        semantic_map.commit(transaction(1, [(iri, v.RDF_TYPE, v.dm("Chair"))]))
+
+
+def test_the_most_special_asserted_class_is_its_class(semantic_map):
+    entity = entity_of(semantic_map, ":a a dm:Object , dm:Seat .")
+    assert (entity.class_, entity.model) == ("Chair", "chair")
+    assert entity_of(semantic_map, ":a a dm:Door .").fixed
+
+
+def test_of_two_positions_one_is_read_and_given_in_the_star(semantic_map):
+    two = ":a dm:hasPosition :p2 , :p1 ." + "".join(
+        f':p{i} dm:float_coordinates_x "{i}"^^xsd:float ;'
+        " dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 ."
+        for i in (1, 2)
+    )
+    assert entity_of(semantic_map, two).pose == Pose(position_m=(1.0, 0.0, 0.0))
+    (star,) = semantic_map.stars(["a"])
+    assert star.coordinates == v.entity_iri("p1")
+    assert {s for s, _, _ in star.own} == {v.entity_iri(n) for n in ("a", "p1", "p2")}
+
+
+SHARED = [(v.entity_iri(n), v.HAS_PREFERRED_REFERENCE, v.entity_iri("r")) for n in ("chair1", "chair2")]
+REFERENCE = turtle(":r a dm:PreferredReference ; dm:lexicalReference 'chair' .")
+
+
+def test_a_shared_reference_is_nobody_s_own_until_all_users_leave(semantic_map):
+    semantic_map.commit(transaction(1, [*chair(), *chair("chair2"), *SHARED, *REFERENCE]))
+    (one,) = semantic_map.stars(["chair1"])
+    assert set(one.own) == {*chair(), SHARED[0]}
+    assert one.preferred == (v.entity_iri("r"),)
+    both = semantic_map.stars(["chair1", "chair2"])
+    assert set(REFERENCE) <= set(both[0].own)
+    semantic_map.commit(transaction(2, retract=one.own))
+    assert semantic_map.entity("chair2").preferred_reference == "chair"
+    (other,) = semantic_map.stars(["chair2"])
+    assert set(REFERENCE) <= set(other.own)
+    semantic_map.commit(transaction(3, retract=other.own))
+    assert semantic_map.abox() == []
+
+
+def test_removing_two_users_together_takes_what_they_share(semantic_map):
+    semantic_map.commit(transaction(1, [*chair(), *chair("chair2"), *SHARED, *REFERENCE]))
+    own = [t for star in semantic_map.stars(["chair1", "chair2"]) for t in star.own]
+    semantic_map.commit(transaction(2, retract=own))
+    assert semantic_map.abox() == []
+
+
+def test_shared_coordinates_are_not_changed_in_place(semantic_map):
+    also = (v.entity_iri("chair2"), v.HAS_POSITION, v.entity_iri("chair1_coordinates"))
+    is_one = (v.entity_iri("chair2"), v.RDF_TYPE, v.dm("Chair"))
+    semantic_map.commit(transaction(1, [*chair(), also, is_one]))
+    for star in semantic_map.stars(["chair1"]) + semantic_map.stars(["chair2"]):
+        assert star.coordinates is None
+        assert not any(s == v.entity_iri("chair1_coordinates") for s, _, _ in star.own)
+    assert semantic_map.entity("chair1").pose == semantic_map.entity("chair2").pose is not None
+
+
+def test_what_others_say_is_incoming(semantic_map):
+    said = turtle(":k dm:near :chair1 .")
+    semantic_map.commit(transaction(1, [*chair(), *said]))
+    (star,) = semantic_map.stars(["chair1"])
+    assert star.incoming == said
+
+
+def test_what_the_tbox_says_is_nobody_s_own(tmp_path):
+    semantic_map = home.new_map(tmp_path, [*home.TBOX, *REFERENCE])
+    semantic_map.commit(transaction(1, [*chair(), SHARED[0]]))
+    (star,) = semantic_map.stars(["chair1"])
+    assert set(star.own) == {*chair(), SHARED[0]}
+    home.close(semantic_map)
+
+
+def test_owners_are_the_thing_and_who_points_to_it(semantic_map):
+    semantic_map.commit(transaction(1, chair()))
+    node = v.entity_iri("chair1_coordinates")
+    assert entity_reading.owners(semantic_map.reasoner, node) == {node, CHAIR1}

@@ -1,0 +1,23 @@
+"""The graph that owlrl works on is like any other."""
+
+import rdflib
+from rdflib import RDF, Literal, URIRef
+from rdflib.paths import OneOrMore
+
+from nodes.kb_node.owlrl.closure_process import QuickGraph
+
+A, B, C, P = (URIRef(f"urn:{name}") for name in "abcp")
+
+
+def test_it_has_what_was_added_and_not_removed():
+    quick, plain = QuickGraph(), rdflib.Graph()
+    for graph in (quick, plain):
+        graph.add((A, P, B))
+        graph.addN([(B, P, C, graph), (C, P, Literal(1), graph)])
+        graph.parse(data="<urn:a> a <urn:C> . <urn:b> a <urn:C> .", format="turtle")
+        graph.remove((B, None, None))
+        graph.add((B, P, A))
+    assert set(quick) == set(plain)
+    asked = [(s, p, o) for s in (A, B, C, None) for p in (P, RDF.type, None) for o in (A, B, C, None)]
+    asked += [(A, P * OneOrMore, A), (C, P, Literal(1)), (C, P, Literal("1"))]
+    assert [triple in quick for triple in asked] == [triple in plain for triple in asked]

@@ -1,0 +1,167 @@
+from datetime import datetime
+
+import pytest
+
+from nodes.kb_node.storage.history import Past
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import History
+from schemas.entities import Pose
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+
+TBOX_WITH_SINK = [*home.TBOX, *turtle(":sink a dm:Door .")]
+
+
+def move(number, name, before, after, **fields):
+    node, iri = v.entity_iri(f"{name}_coordinates"), v.entity_iri(name)
+    there, here = (stars.position(iri, node, Pose(position_m=at)) for at in (before, after))
+    return transaction(number, set(here) - set(there), set(there) - set(here), **fields)
+
+
+A, B, C = (1.0, 2.0, 0.0), (3.0, 2.0, 0.0), (4.0, 2.0, 0.0)
+
+
+@pytest.fixture
+def seen(tmp_path):
+    """A map with a past, and each of its snapshots by commit."""
+    semantic_map = home.new_map(tmp_path, TBOX_WITH_SINK)
+    snapshots = {}
+    for step in (
+        transaction(1, [*chair(), *chair("chair2")], verb="add", agent="ann", reason="two chairs"),
+        move(2, "chair1", A, B, source="scene", reason="chair1 came to rest"),
+        transaction(3, turtle(":kitchen1 a dm:Kitchen .")),
+        move(4, "chair1", B, C, source="perception", agent="camera", confidence=0.75),
+        transaction(5, (), chair("chair2"), reason="tidy"),
+        transaction(6, turtle(":sink dm:hasPreferredReference :r . :r dm:lexicalReference 'sink' .")),
+    ):
+        semantic_map.commit(step)
+        snapshots[semantic_map.seq] = semantic_map.snapshot().entities
+    yield Past(semantic_map._journal), snapshots
+    home.close(semantic_map)
+
+
+def test_the_map_as_it_was_after_each_commit(seen):
+    past, snapshots = seen
+    for seq, entities in snapshots.items():
+        assert past.entities(seq) == entities
+        assert tuple(past.entity(e.name, seq) for e in entities) == entities
+    assert [e.name for e in past.entities(4, "Seat")] == ["chair1", "chair2"]
+    assert past.entities(2, "Kitchen", ["Kitchen"]) == ()
+    with pytest.raises(errors.UnknownClass, match=r"unknown class 'Sead'; did you mean Seat"):
+        past.entities(4, "Sead")
+
+
+def test_the_map_as_it_was_at_a_time(seen):
+    past, snapshots = seen
+    stamps = {c.seq: c.stamp_ns for c in past.history(History())}
+    for seq in snapshots:
+        assert past._journal.seq_at(stamps[seq]) == seq
+        assert past._journal.seq_at(stamps[seq] - 1) == seq - 1
+        for when in (stamps[seq], stamps[seq] / 1e9):
+            assert past.entities(when) == snapshots[seq]
+            assert [c.seq for c in past.history(History(since=when, until=when))] == [seq]
+    now = datetime.now().isoformat()
+    assert past.entities(now) == snapshots[6]
+    assert past.entity("chair1", now).pose.position_m == C
+
+
+def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
+    past, snapshots = seen
+    second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
+    stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
+    monkeypatch.setattr(past._journal, "stamp_of", lambda seq: second_ns + stamps[seq])
+    for when, seqs in {
+        "2026-03-01T12:30:04": [1],
+        "2026-03-01T12:30:05": [2, 3],
+        second_ns // 10**9: [2, 3],
+        "2026-03-01T12:30:05.000": [1, 2],
+        "2026-03-01T12:30": [1, 2, 3, 4, 5],
+        "2026-03-01T12": [1, 2, 3, 4, 5, 6],
+        "2026-03-01": [1, 2, 3, 4, 5, 6],
+    }.items():
+        assert [c.seq for c in past.history(History(since=when, until=when))] == seqs
+        assert past.entities(when) == snapshots[seqs[-1]]
+    today = f"{datetime.now():%Y-%m-%d}"
+    assert past.entities(today) == snapshots[6]
+
+
+@pytest.mark.parametrize(
+    ("when", "text"),
+    [
+        (7, "there is no commit 7 yet; the last one is 6"),
+        (0, "there was no map then; it begins with commit 1 at 20"),
+        ("2001-01-01", "there was no map then; it begins with commit 1 at 20"),
+        (4e9, "that is in the future"),
+    ],
+)
+def test_the_future_and_what_was_before_it_all_are_refused(seen, when, text):
+    past, _ = seen
+    for ask in (lambda: past.entities(when), lambda: past.entity("chair1", when)):
+        with pytest.raises(errors.Refused, match=text):
+            ask()
+
+
+def test_who_was_not_there_then_is_named(seen):
+    past, _ = seen
+    with pytest.raises(errors.UnknownName, match=r"no entity was named 'chair2' after commit 5$"):
+        past.entity("chair2", 5)
+    with pytest.raises(
+        errors.UnknownName, match=r"no entity was named 'chiar2' after commit 2; did you mean"
+    ):
+        past.entity("chiar2", 2)
+    assert past.entity("sink", 1).class_ == "Door"
+
+
+def test_history_tells_who_when_why_and_what(seen):
+    past, _ = seen
+    commits = past.history(History())
+    assert [c.seq for c in commits] == [1, 2, 3, 4, 5, 6]
+    first, fourth, fifth = commits[0], commits[3], commits[4]
+    assert (first.source, first.agent, first.verb, first.reason) == ("operator", "ann", "add", "two chairs")
+    assert (first.inserted, first.retracted, first.changed) == (2 * len(chair()), 0, ("chair1", "chair2"))
+    assert (fourth.source, fourth.agent, fourth.confidence) == ("perception", "camera", 0.75)
+    assert (fifth.changed, fifth.removed) == ((), ("chair2",))
+
+
+@pytest.mark.parametrize(
+    ("query", "seqs"),
+    [
+        (History(name="chair1"), [1, 2, 4]),
+        (History(name="chair2"), [1, 5]),
+        (History(name="chair1", since=2), [2, 4]),
+        (History(name="chair1", until=3), [1, 2]),
+        (History(name="chair1", limit=1), [4]),
+        (History(limit=2), [5, 6]),
+        (History(since=2, until=4), [2, 3, 4]),
+        (History(until=3, limit=2), [2, 3]),
+        (History(since=5, until=4), []),
+        (History(until=99), [1, 2, 3, 4, 5, 6]),
+        (History(since="2001-01-01"), [1, 2, 3, 4, 5, 6]),
+        (History(until="2001-01-01"), []),
+        (History(since="2999-01-01"), []),
+        (History(name="sink"), [6]),
+    ],
+)
+def test_history_of_an_entity_and_of_a_span_of_time(seen, query, seqs):
+    past, _ = seen
+    assert [c.seq for c in past.history(query)] == seqs
+
+
+def test_history_of_nobody_is_refused(seen):
+    past, _ = seen
+    with pytest.raises(errors.UnknownName, match=r"no entity was ever named 'chair3'; did you mean chair"):
+        past.history(History(name="chair3"))
+
+
+def test_last_seen_is_the_last_commit_that_touched_the_pose(seen):
+    past, _ = seen
+    chair1, chair2, sink = map(past.last_seen, ("chair1", "chair2", "sink"))
+    assert (chair1.pose.position_m, chair1.removed) == (C, None)
+    assert (chair1.provenance.commit, chair1.provenance.agent) == (4, "camera")
+    assert (chair2.pose.position_m, chair2.provenance.commit) == (A, 1)
+    assert (chair2.removed.commit, chair2.removed.reason) == (5, "tidy")
+    assert (sink.pose, sink.provenance.commit) == (None, 0)
+    with pytest.raises(errors.UnknownName):
+        past.last_seen("chair9")

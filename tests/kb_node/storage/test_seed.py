@@ -1,0 +1,148 @@
+import pytest
+
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.seed import KEPT, seed
+from ontology import vocabulary as v
+from schemas import errors
+from tests.kb_node.home import PREFIXES, TBOX_TURTLE
+
+ABOX = (
+    PREFIXES
+    + """
+<http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1> a owl:Ontology .
+:chair1 a dm:Chair ; dm:hasPosition [ a dm:Coordinates ] .
+"""
+)
+ANONYMOUS = "dm:Stool a owl:Class ; rdfs:subClassOf dm:Seat , [ a owl:Class ] .\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    folder = tmp_path / "my files"
+    folder.mkdir()
+    (folder / "my tbox.ttl").write_text(TBOX_TURTLE + ANONYMOUS)
+    (folder / "my abox.ttl").write_text(ABOX)
+    return folder / "my tbox.ttl", folder / "my abox.ttl"
+
+
+@pytest.fixture
+def data(tmp_path):
+    return tmp_path / "data"
+
+
+def read(data):
+    """The names in the map, and the map's triples, as a knowledge base finds them at its start."""
+    journal = Journal(data / FILENAME)
+    semantic_map = SemanticMap(journal)
+    journal.close()
+    return [entity.name for entity in semantic_map.entities()], set(semantic_map.abox())
+
+
+def contents(folder):
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_a_map_is_begun_from_two_files(data, files):
+    assert seed(data, *files) == "1 entity from my abox.ttl"
+    names, triples = read(data)
+    assert names == ["chair1"]
+    assert (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.TBOX_ONTOLOGY) in triples
+    assert not any(p == v.RDFS_SUB_CLASS_OF for _, p, _ in triples)
+
+
+def test_a_map_may_begin_empty(data, files):
+    assert seed(data, files[0], None) == "0 entities from nothing"
+    assert read(data)[0] == []
+
+
+def test_a_map_that_is_there_wins(data, files):
+    seed(data, *files)
+    before = contents(data)
+    assert seed(data, files[0], None).startswith("going on with the map in ")
+    assert contents(data) == before
+
+
+def test_fresh_keeps_the_old_map_aside(data, files):
+    seed(data, *files)
+    for _ in range(2):
+        seed(data, files[0], None, fresh=True)
+    assert read(data)[0] == []
+    kept = sorted((data / KEPT).iterdir())
+    assert [read(folder)[0] for folder in kept] == [["chair1"], []]
+
+
+def test_fresh_sets_a_damaged_journal_aside_too(data, files):
+    data.mkdir()
+    (data / FILENAME).write_bytes(b"no database " * 99)
+    seed(data, *files, fresh=True)
+    assert read(data)[0] == ["chair1"]
+    assert len(list((data / KEPT).iterdir())) == 1
+
+
+def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
+    seed(data, *files)
+    running = Journal(data / FILENAME)
+    before = contents(data)
+    with pytest.raises(errors.Refused, match="another knowledge base is using"):
+        seed(data, *files, fresh=True)
+    assert contents(data).keys() == before.keys()
+    running.close()
+
+
+@pytest.mark.parametrize(
+    ("tbox", "abox", "error", "text"),
+    [
+        (None, "", errors.BadFile, "my tbox.ttl cannot be read: No such file or directory"),
+        (TBOX_TURTLE, None, errors.BadFile, "my abox.ttl cannot be read: No such file or directory"),
+        (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is no valid Turtle"),
+        (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is no valid Turtle"),
+        (TBOX_TURTLE, " ", errors.BadFile, "my abox.ttl is empty"),
+        (ABOX, ABOX, errors.BadFile, "no class of things in space: is it a TBox"),
+        (
+            TBOX_TURTLE + "dm:x a dm:Chair , dm:Kitchen .",
+            ABOX,
+            errors.Inconsistent,
+            r"the TBox .* is inconsistent: x ",
+        ),
+        (TBOX_TURTLE, ABOX + ":chair1 a dm:Kitchen .", errors.Inconsistent, "my abox.ttl: chair1 cannot be "),
+        (
+            TBOX_TURTLE,
+            ABOX + ":x a dm:Xylophone .",
+            errors.UnknownClass,
+            "'Xylophone' .*; other classes are given with --tbox FILE, another map with --abox FILE",
+        ),
+        (TBOX_TURTLE, ABOX + "[] a dm:Chair .", errors.BadRequest, "my abox.ttl: a Chair is a blank node"),
+    ],
+)
+@pytest.mark.parametrize("fresh", [False, True])
+def test_what_cannot_begin_a_map_leaves_the_old_data_alone(data, files, tbox, abox, error, text, fresh):
+    if fresh:
+        seed(data, *files)
+    before = contents(data)
+    for path, content in zip(files, (tbox, abox), strict=True):
+        path.unlink()
+        if content is not None:
+            path.write_text(content)
+    with pytest.raises(error, match=text):
+        seed(data, *files, fresh=fresh)
+    assert contents(data) == before
+
+
+def test_what_the_disk_does_not_take_is_no_fault_of_the_files(data, files, monkeypatch):
+    def refuse(path, tbox):
+        raise errors.Refused(f"no journal can be made at {path}: disk full")
+
+    monkeypatch.setattr(Journal, "create", refuse)
+    with pytest.raises(errors.Refused, match=r"^no journal can be made at "):
+        seed(data, *files)
+
+
+def test_a_folder_is_no_file(data, files):
+    with pytest.raises(errors.BadFile, match="cannot be read: Is a directory"):
+        seed(data, files[0].parent, None)
+
+
+def test_a_file_is_no_data_folder(files):
+    with pytest.raises(errors.Refused, match=r"no map can be kept in .*: File exists"):
+        seed(files[1], files[0], None)

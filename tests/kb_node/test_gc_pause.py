@@ -1,0 +1,41 @@
+import gc
+
+import pytest
+
+from nodes.kb_node import gc_pause
+
+
+@pytest.fixture(autouse=True)
+def unfrozen():
+    gc.unfreeze()
+    yield
+    gc.enable()
+    gc.unfreeze()
+
+
+def test_nothing_is_collected_meanwhile():
+    with gc_pause.uncollected():
+        assert not gc.isenabled()
+        with gc_pause.uncollected():
+            pass
+        assert not gc.isenabled()
+    assert gc.isenabled()
+
+
+def test_it_is_collected_again_after_an_error():
+    with pytest.raises(ZeroDivisionError), gc_pause.uncollected():
+        raise ZeroDivisionError
+    assert gc.isenabled()
+
+
+def test_many_new_objects_are_frozen_and_few_if_it_is_said():
+    with gc_pause.uncollected():
+        few = [[] for _ in range(10)]
+    assert gc.get_freeze_count() == 0
+    with gc_pause.uncollected():
+        many = [[] for _ in range(gc_pause._MANY + 1)]
+    assert gc.get_freeze_count() > len(many)
+    gc.unfreeze()
+    with gc_pause.uncollected(freeze=True):
+        pass
+    assert gc.get_freeze_count() > len(few)
