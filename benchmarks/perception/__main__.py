@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.perception import live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
-from nodes.perception_node.recognition.learnt import shipped
+from nodes.perception_node.recognition.shipped_votes import shipped
 
 PARTS = ("recorded", "simulated", "unknown", "tracking", "live")
 

@@ -16,10 +16,10 @@ from benchmarks.perception.recorded import data_folder
 from benchmarks.perception.rooms import rooms
 from benchmarks.perception.simulated import shots
 from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.learnt import shipped
+from nodes.perception_node.recognition.shipped_votes import shipped
 from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.learnt import MergeModel
 from nodes.perception_node.segmentation.merging import Judge
+from nodes.perception_node.segmentation.shipped_trees import MergeModel
 from nodes.training.segmentation.recorded import Scene, read_scenes
 from nodes.training.segmentation.teach import learn, lessons, made_up
 

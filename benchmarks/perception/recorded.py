@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from benchmarks.perception.table import Row
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.learnt import MergeModel, shipped
 from nodes.perception_node.segmentation.merging import Judge
+from nodes.perception_node.segmentation.shipped_trees import MergeModel, shipped
 from nodes.training.segmentation.recorded import Scene, read_scenes
 from nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
 

@@ -15,9 +15,9 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.perception.baseline import clustered, guessed
 from benchmarks.perception.rooms import Room, rooms
 from benchmarks.perception.table import Row
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Look, look
-from nodes.perception_node.recognition.learnt import Learnt
+from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.sim_node.models.table import MODELS
 from nodes.training.scenes import Item, Shot, Stage
 from nodes.training.taxonomy import class_of_models

@@ -18,13 +18,13 @@ from msgspec import structs
 
 from benchmarks.perception.rooms import THIN_M, THINGS
 from benchmarks.perception.table import Row
-from nodes.perception_node.association import associate
-from nodes.perception_node.class_hierarchy import ClassHierarchy
-from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.occupancy import occupancy_in
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Learnt, Look, look
-from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.tracking.association import associate
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.occupancy import occupancy_in
+from nodes.perception_node.tracking.tracks import Tracks
 from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import look_at
 from nodes.training.scenes import Item, Stage

@@ -16,16 +16,16 @@ from typing import Any
 from msgspec import structs
 
 from nodes import bus
-from nodes.perception_node.association import associate, renamed
-from nodes.perception_node.class_hierarchy import ClassHierarchy, hierarchy_of
-from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
-from nodes.perception_node.frame_worker import FrameWorker
-from nodes.perception_node.map_updates import subject_of
-from nodes.perception_node.occupancy import occupancy_in
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.frame_worker import FrameWorker
 from nodes.perception_node.pipeline import Look, look, shipped
 from nodes.perception_node.segmented_cloud import segmented_cloud
-from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.tracking.association import associate, renamed
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hierarchy_of
+from nodes.perception_node.tracking.map_updates import subject_of
+from nodes.perception_node.tracking.occupancy import occupancy_in
+from nodes.perception_node.tracking.tracks import Tracks
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapView
 from schemas import codec, keys, wording

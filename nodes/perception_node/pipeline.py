@@ -9,17 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.disputes import settled
-from nodes.perception_node.furniture import with_what_hangs_below
-from nodes.perception_node.fusion import Member, fuse, held_for_one
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.recognition.learnt import Learnt, shipped
 from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.recognise import recognise
+from nodes.perception_node.recognition.shipped_votes import Learnt, shipped
 from nodes.perception_node.recognition.vote import leaves
-from nodes.perception_node.sights import Sight, see
-from nodes.perception_node.things import Thing, thing_of
+from nodes.perception_node.views.disputes import settled
+from nodes.perception_node.views.furniture_planes import with_what_hangs_below
+from nodes.perception_node.views.fusion import Member, fuse, held_for_one
+from nodes.perception_node.views.merged_thing import Thing, thing_of
+from nodes.perception_node.views.segmented_view import Sight, see
 from schemas.perception import CameraView, Observation, Observations
 
 __all__ = ["Learnt", "Look", "look", "look_at", "observe", "one_by_one", "parts_in", "shipped"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nodes.perception_node.recognition.joining import signs, worth_trying
-from nodes.perception_node.recognition.learnt import Learnt
+from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.perception_node.recognition.vote import leaves
 from nodes.perception_node.segmentation.trees import Trees
 from nodes.training.pairs import Pairs

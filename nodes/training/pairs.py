@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from nodes.perception_node.pipeline import Parts, parts_in
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.joining import between, near
-from nodes.perception_node.sights import see
+from nodes.perception_node.views.segmented_view import see
 from nodes.training.samples import NOTHING, shared_pixels, view_sets
 from nodes.training.scenes import Item, Shot
 from nodes.training.tables import Table

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from nodes.perception_node.recognition.learnt import CLUTTER, SHIPPED, UNKNOWN, VOTERS, Learnt, save
 from nodes.perception_node.recognition.perceptron import Perceptron
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, VOTERS, Learnt, save
 from nodes.perception_node.recognition.sides import SIZE_FEATURES
 from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
 from nodes.sim_node.models.table import MODELS

@@ -9,15 +9,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.boxes import Box
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Parts, parts_in
 from nodes.perception_node.recognition.features import features_of
 from nodes.perception_node.recognition.sides import shifts, side_features
 from nodes.perception_node.segmentation.segment import LOWEST_M
-from nodes.perception_node.segments import map_points
-from nodes.perception_node.sights import Sight, labelled, see
-from nodes.perception_node.things import Thing
+from nodes.perception_node.views.boxes import Box
+from nodes.perception_node.views.merged_thing import Thing
+from nodes.perception_node.views.segmented_view import Sight, labelled, see
+from nodes.perception_node.views.segments import map_points
 from nodes.sim_node.models.parts import about, bounds, rotation_matrix
 from nodes.sim_node.models.parts import product as rotated
 from nodes.training.scenes import Item, Shot, tinted

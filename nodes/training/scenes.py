@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import Cloud
-from nodes.perception_node.projection import cloud_of
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.projection import cloud_of
 from nodes.sim_node.models.library import Model, assemble
 from nodes.sim_node.models.parts import Colour, Vec3
 from nodes.sim_node.models.table import MODELS

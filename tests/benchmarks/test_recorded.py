@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.perception.recorded import Counts, group_of, score
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.training.segmentation.recorded import Scene, mirrored
 from tests.data import data_folder
 

@@ -10,8 +10,8 @@ import zenoh
 from msgspec import structs
 
 from nodes import bus
-from nodes.perception_node.cloud import Cloud
 from nodes.perception_node.config import PerceptionConfig
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.node import Perception, summary
 from nodes.perception_node.pipeline import Look
 from nodes.runtime.loop import Node

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import look, observe
-from nodes.perception_node.recognition.learnt import shipped
-from nodes.perception_node.segments import map_points
+from nodes.perception_node.recognition.shipped_votes import shipped
+from nodes.perception_node.views.segments import map_points
 from tests.perception_node.scenes import HEIGHT_M, KINDS, shot
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 from msgspec import structs
 
-from nodes.perception_node.association import associate
-from nodes.perception_node.class_hierarchy import ClassHierarchy
 from nodes.perception_node.config import TrackingConfig
-from nodes.perception_node.occupancy import Occupancy
-from nodes.perception_node.tracks import Tracks
+from nodes.perception_node.tracking.association import associate
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.occupancy import Occupancy
+from nodes.perception_node.tracking.tracks import Tracks
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance, Size, Source, orientation_from_yaw
 from schemas.perception import Observation

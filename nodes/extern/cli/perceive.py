@@ -19,7 +19,7 @@ from schemas import errors, wording
 from schemas.perception import Observation
 
 if TYPE_CHECKING:
-    from nodes.perception_node.sights import Sight
+    from nodes.perception_node.views.segmented_view import Sight
 
 _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the camera above its origin"}
 
@@ -46,9 +46,9 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
         raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
     import numpy as np  # half of what the command line would take to start
 
-    from nodes.perception_node.files.reading import read_frames
+    from nodes.perception_node.input.files.cloud_files import read_frames
     from nodes.perception_node.pipeline import one_by_one, shipped
-    from nodes.perception_node.sights import see
+    from nodes.perception_node.views.segmented_view import see
 
     frames = list(read_frames(files, intrinsics))
     if labels is not None and len(frames) != 1:

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.boxes import Numbers, in_frame
-from nodes.perception_node.things import Thing
+from nodes.perception_node.views.boxes import Numbers, in_frame
+from nodes.perception_node.views.merged_thing import Thing
 
 _SLICES = 8
 _RINGS = 5

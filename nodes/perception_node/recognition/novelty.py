@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nodes.perception_node.boxes import Numbers
+from nodes.perception_node.views.boxes import Numbers
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from nodes.perception_node.boxes import Box, Numbers
-from nodes.perception_node.recognition.learnt import CLUTTER, Learnt
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, Learnt
 from nodes.perception_node.recognition.sides import completed, side_features
 from nodes.perception_node.recognition.trimming import looked_at_again
 from nodes.perception_node.recognition.vote import answer, expected_sizes
-from nodes.perception_node.things import Thing
+from nodes.perception_node.views.boxes import Box, Numbers
+from nodes.perception_node.views.merged_thing import Thing
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.perception import Observation
 

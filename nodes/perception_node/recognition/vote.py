@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from nodes.perception_node.boxes import Numbers
-from nodes.perception_node.recognition.learnt import CLUTTER, UNKNOWN, Learnt
 from nodes.perception_node.recognition.perceptron import Perceptron, log_softmax
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN, Learnt
+from nodes.perception_node.views.boxes import Numbers
 
 _CLEAR = 2.0 / 3.0
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from nodes.perception_node.cloud import Transform
+from nodes.perception_node.input.cloud import Transform
 from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]

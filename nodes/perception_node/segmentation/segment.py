@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation.grid import Floats, Grid, Labels, Mask, grid_of, spread
-from nodes.perception_node.segmentation.learnt import shipped
 from nodes.perception_node.segmentation.merging import Judge, merge
 from nodes.perception_node.segmentation.normals import normals
 from nodes.perception_node.segmentation.patches import patches
 from nodes.perception_node.segmentation.picture import as_picture
 from nodes.perception_node.segmentation.planes import Plane, find_planes
+from nodes.perception_node.segmentation.shipped_trees import shipped
 from nodes.perception_node.segmentation.statistics import Statistics, Upright, statistics
 
 LOWEST_M, HIGHEST_M = 0.009, 0.5

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation.grid import spread
 from nodes.perception_node.segmentation.merging import merge
 from nodes.perception_node.segmentation.pairs import NAMES, features

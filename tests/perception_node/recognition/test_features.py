@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from nodes.perception_node.recognition.features import features_of
-from nodes.perception_node.segments import Segment
-from nodes.perception_node.things import thing_of
+from nodes.perception_node.views.merged_thing import thing_of
+from nodes.perception_node.views.segments import Segment
 
 TRIMMED = slice(22, None)
 """The columns of `geometry` that leave 3 % of the cells and more out at each end."""

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from nodes.perception_node.recognition.joining import between, near, signs, worth_trying
-from nodes.perception_node.recognition.learnt import CLUTTER, shipped
-from nodes.perception_node.segments import Segment
-from nodes.perception_node.things import thing_of
+from nodes.perception_node.recognition.shipped_votes import CLUTTER, shipped
+from nodes.perception_node.views.merged_thing import thing_of
+from nodes.perception_node.views.segments import Segment
 
 CLASSES = shipped().classes
 

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.recognition.learnt import shipped
 from nodes.perception_node.recognition.pieces import put_together
-from nodes.perception_node.things import thing_of
+from nodes.perception_node.recognition.shipped_votes import shipped
+from nodes.perception_node.views.merged_thing import thing_of
 from tests.perception_node.scenes import shot
 from tests.perception_node.test_fusion import truly_cut
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation.grid import grid_of, shades_of, spread
 from tests.perception_node.segmentation.scenes import boxes_on_table
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation.picture import as_picture
 from tests.perception_node.segmentation.scenes import boxes_on_table
 

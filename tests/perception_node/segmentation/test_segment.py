@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nodes.perception_node.cloud import Cloud
+from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation import segment
-from nodes.perception_node.segmentation.learnt import load, save, shipped
+from nodes.perception_node.segmentation.shipped_trees import load, save, shipped
 from schemas.errors import BadFile
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES

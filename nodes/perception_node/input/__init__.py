@@ -1,0 +1,1 @@
+"""What cameras and files give: frames and clouds."""

@@ -1,0 +1,81 @@
+"""Frames from files, whatever their format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
+from nodes.perception_node.input.files import image_files, pcd, ply
+from schemas.errors import BadFile, BadRequest
+from schemas.wording import counted
+
+_DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
+_PICTURES = (".png", ".tif", ".tiff")
+
+
+def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
+    """Each frame in the order of the files, with the file that gave its points.
+
+    A depth picture takes the colour picture that stands before or after it; both need `camera`, a JSON
+    file of its intrinsics. Raises BadFile and BadRequest.
+    """
+    waiting: Path | None = None  # a picture whose partner has not come
+    for path in files:
+        if path.suffix.lower() not in _PICTURES:
+            yield path, read_cloud(path)
+        elif waiting is None:
+            waiting = path
+        else:
+            pair, waiting = (waiting, path), None
+            yield _frame(pair, camera)
+    if waiting is not None:
+        yield _frame((waiting,), camera)
+
+
+def read_cloud(path: Path) -> Cloud:
+    """The cloud in a PCD or PLY file. Raises BadFile."""
+    decode = _DECODERS.get(path.suffix.lower())
+    if decode is None:
+        raise BadFile(f"{path} is no cloud: known are {', '.join(_DECODERS)} and pictures as .png")
+    try:
+        cloud = decode(path.read_bytes())
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path} is no cloud: {error}") from None
+    return checked(cloud, path)
+
+
+def checked(cloud: Cloud, path: Path) -> Cloud:
+    """The cloud itself. Raises BadFile for one in which nothing could be found."""
+    if cloud.points_camera.size == 0:
+        raise BadFile(f"{path} is empty: it has no points")
+    if cloud.measured < FEWEST_POINTS:
+        raise BadFile(
+            f"{path} has {counted(cloud.measured, 'point')} from {NEAREST_M:g} to {FARTHEST_M:g} m before the"
+            f" camera; at least {FEWEST_POINTS} are needed"
+        )
+    return cloud
+
+
+def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
+    """The frame of one depth picture and at most one of colour."""
+    if camera_file is None:
+        raise BadRequest(f"{files[0]} is a picture: give the camera's intrinsics too, --intrinsics FILE.json")
+    of = camera_file
+    try:
+        camera = image_files.read_camera(of)
+        depths = []
+        for of in files:
+            depths.append(image_files.is_depth(of))
+        if sum(depths) != 1:
+            said = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
+            raise BadFile(f"{' and '.join(map(str, files))}: {said} a depth picture of 16 bits; one must be")
+        of = files[depths.index(True)]
+        color = files[depths.index(False)] if len(files) > 1 else None
+        return of, checked(image_files.read_pictures(of, color, camera), of)
+    except OSError as error:
+        raise BadFile(f"{of} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{of}: {error}") from None

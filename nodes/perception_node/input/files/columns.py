@@ -1,0 +1,68 @@
+"""From the columns of a file to a cloud."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
+
+MAX_POINTS = 50_000_000
+"""No frame has more; a header that says so is damaged."""
+
+Column = NDArray[Any]
+
+
+Field = tuple[str, np.dtype[Any], int]
+"""Name, type of an element, elements a point."""
+
+
+def columns_of_text(body: bytes, fields: Sequence[Field], points: int) -> dict[str, Column]:
+    """Each field of one element a point, (points,), of numbers in words. Raises ValueError for too few."""
+    per_point = sum(count for _, _, count in fields)
+    words = body.split()
+    if len(words) < points * per_point:
+        raise ValueError(f"truncated: {len(words) // per_point} of {points} points")
+    table = np.array(words[: points * per_point], dtype=np.float64).reshape(points, per_point)
+    columns, place = {}, 0
+    with np.errstate(invalid="ignore", over="ignore"):  # a label may be NaN, where the point is
+        for name, dtype, count in fields:
+            if count == 1:
+                columns[name] = table[:, place].astype(dtype)
+            place += count
+    return columns
+
+
+def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
+    """The cloud of columns of (height * width,) each: `x`, `y`, `z` [m], and colours where there are any.
+
+    Colours are packed as 0xRRGGBB in `rgb` or `rgba`, an integer or the same bits called a float, or stand in
+    `red`, `green` and `blue`. Points nearer or farther than any camera measures become NaN.
+    Raises ValueError for missing columns.
+    """
+    if missing := [name for name in "xyz" if name not in columns]:
+        raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
+    points = np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1)
+    measured = (np.abs(points) < FARTHEST_M).all(axis=-1) & (points[:, 2] > NEAREST_M)  # NaN is not
+    points[~measured] = np.nan
+    colors = _colors(columns)
+    return Cloud(
+        points_camera=points.reshape(height, width, 3),
+        colors=None if colors is None else colors.reshape(height, width, 3),
+    )
+
+
+def _colors(columns: Mapping[str, Column]) -> NDArray[np.uint8] | None:
+    """(N, 3) rgb."""
+    if all(name in columns for name in ("red", "green", "blue")):
+        values = np.stack([columns[name] for name in ("red", "green", "blue")], axis=-1)
+        return np.asarray(np.nan_to_num(np.clip(values, 0, 255)), np.uint8)
+    for name in ("rgb", "rgba"):
+        packed = columns.get(name)
+        if packed is not None and packed.dtype.itemsize == 4:
+            bits = np.ascontiguousarray(packed).view(np.uint32)
+            return np.stack([bits >> shift & 255 for shift in (16, 8, 0)], axis=-1).astype(np.uint8)
+    return None

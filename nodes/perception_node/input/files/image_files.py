@@ -1,0 +1,88 @@
+"""A frame as two pictures, one of colour and one of depth, and the camera that took them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+from PIL import Image
+
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from schemas.wording import sentence
+
+_DEPTH_MODES = ("I;16", "I;16B", "I", "F")
+_MOST_PIXELS = 50_000_000
+
+
+class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A pinhole camera [pixel], the middle of the first pixel at 0.
+
+    `depth_scale` makes metres of a depth picture's numbers.
+    `map_from_camera` is the (4, 4) pose of the camera row by row, where somebody knows it.
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    depth_scale: float = 0.001
+    map_from_camera: tuple[float, ...] | None = None
+
+
+def read_camera(path: Path) -> PinholeCamera:
+    """The camera in a JSON file. Raises ValueError saying what is wrong, and OSError."""
+    try:
+        camera = msgspec.json.decode(path.read_bytes(), type=PinholeCamera)
+    except msgspec.DecodeError as error:
+        raise ValueError(f"no intrinsics: {sentence(error, PinholeCamera)}") from None
+    if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):
+        raise ValueError("no intrinsics: fx, fy and depth_scale must be above 0")
+    if camera.map_from_camera is not None:
+        numbers = np.array(camera.map_from_camera)
+        if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
+            raise ValueError("map_from_camera is no pose of 16 numbers: a rotation, a position, 0 0 0 1")
+    return camera
+
+
+def is_depth(path: Path) -> bool:
+    """Whether a picture is one of depth: 16 bits or more in a single channel. Raises ValueError, OSError."""
+    with _opened(path) as image:
+        return image.mode in _DEPTH_MODES
+
+
+def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Cloud:
+    """The frame of a depth picture and one of colour. Raises ValueError saying what is wrong, and OSError."""
+    with _opened(depth) as image:
+        depth_m = np.asarray(image, dtype=np.float32) * np.float32(camera.depth_scale)
+    colors = None
+    if color is not None:
+        with _opened(color) as image:
+            colors = np.asarray(image.convert("RGB"))
+        if colors.shape[:2] != depth_m.shape:
+            (h, w), (height, width) = colors.shape[:2], depth_m.shape
+            raise ValueError(f"colour is {w} x {h} pixels, depth {width} x {height}")
+    intrinsics = np.array([[camera.fx, 0, camera.cx + 0.5], [0, camera.fy, camera.cy + 0.5], [0, 0, 1]])
+    height, width = depth_m.shape
+    if not fits(intrinsics, width, height):
+        said = " ".join(f"{name} {getattr(camera, name):g}" for name in ("fx", "fy", "cx", "cy"))
+        raise ValueError(f"the intrinsics {said} do not fit a picture of {width} x {height} pixels")
+    pose = None if camera.map_from_camera is None else np.reshape(camera.map_from_camera, (4, 4))
+    return cloud_of(depth_m, colors, intrinsics, pose)
+
+
+def _opened(path: Path) -> Image.Image:
+    try:
+        image = Image.open(path)
+        if image.width * image.height > _MOST_PIXELS:
+            raise ValueError(f"a picture of {image.width} x {image.height} pixels is too big")
+        image.load()
+    except (SyntaxError, Image.DecompressionBombError) as error:
+        raise ValueError(f"no picture: {error}") from None
+    except OSError as error:
+        if error.errno is not None:
+            raise
+        raise ValueError("no picture, or a truncated one") from None
+    return image

@@ -1,0 +1,77 @@
+"""The thread that looks: it takes the newest frames, and never holds up the node or the session."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
+from nodes.perception_node.input.frames import Frames, Pair, read_cloud, thinning
+from nodes.perception_node.pipeline import Look
+from schemas.errors import BadRequest
+from schemas.scenes import CameraFrame
+
+log = logging.getLogger(__name__)
+
+_TAKE_S = 0.5
+
+Seen = Callable[[Sequence[Cloud], Look, float], None]
+"""Told of clouds of one moment, what they show, and how long the look took [s]."""
+
+
+class FrameWorker:
+    """Looks at frames as fast as it can; those that come meanwhile are passed over."""
+
+    def __init__(
+        self, look: Callable[[Sequence[Cloud]], Look], on_look: Seen, complain: Callable[[str], None]
+    ) -> None:
+        """`on_look` and `complain` are called on the worker's thread; `complain(text)` says what is wrong."""
+        self._look = look
+        self._on_look = on_look
+        self._complain = complain
+        self._frames = Frames()
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="frames", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Let the look in hand be finished, and no other be begun."""
+        self._stopping.set()
+        self._thread.join()
+
+    def keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
+        """A plane of a camera has come. On any thread; at once."""
+        try:
+            self._frames.put(frame, read)
+        except BadRequest as error:
+            self._complain(error.text)
+
+    def _run(self) -> None:
+        while not self._stopping.is_set():
+            pairs = self._frames.take(_TAKE_S)
+            try:
+                clouds = [cloud for pair in pairs if (cloud := self._read(pair)) is not None]
+                if clouds:
+                    start = time.perf_counter()
+                    found = self._look(clouds)
+                    self._on_look(clouds, found, time.perf_counter() - start)
+            except Exception as error:
+                log.exception("fault in a look")
+                self._complain(f"a look failed: {type(error).__name__}: {error}")
+
+    def _read(self, pair: Pair) -> Cloud | None:
+        frame = pair.depth.frame
+        try:
+            cloud = read_cloud(pair)
+        except BadRequest as error:
+            self._complain(error.text)
+            return None
+        step = thinning(frame)
+        if step > 1:
+            size = f"{frame.width} x {frame.height} pixels"
+            self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
+        if cloud.measured < FEWEST_POINTS:
+            self._complain(f"camera {frame.camera} measures no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
+        return cloud

@@ -1,0 +1,191 @@
+"""From the planes that cameras publish to clouds: what belongs together, and whether it makes sense."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.input.cloud import Cloud, Transform
+from nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from schemas.errors import BadRequest
+from schemas.scenes import CameraFrame
+
+T = TypeVar("T", np.float32, np.uint8)
+
+MOST_PIXELS = 640 * 480 * 3 // 2
+"""Of a picture with more, every second, third ... row and column is used."""
+_SILENT_S = 2.0
+"""A camera that was silent for so long may begin with another clock."""
+_LATE_S = 1.0
+"""So long the others of a moment wait for a camera."""
+
+
+class Plane(NamedTuple):
+    """One plane of one camera, its pixels not read yet."""
+
+    frame: CameraFrame
+    read: Callable[[], bytes]
+
+
+class Pair(NamedTuple):
+    """The two planes of one frame."""
+
+    rgb: Plane
+    depth: Plane
+
+    @property
+    def stamp_ns(self) -> int:
+        """When it was taken."""
+        return self.depth.frame.stamp_ns
+
+
+class Frames:
+    """The newest frame of each camera. Filled by other threads than the one that takes.
+
+    Cameras that were once heard of with the same stamp see together, and are waited for a little. Cameras
+    with clocks of their own take turns.
+    """
+
+    def __init__(self) -> None:
+        self._news = threading.Condition()
+        self._planes: dict[tuple[str, str], tuple[Plane, float]] = {}
+        self._pairs: dict[str, Pair] = {}
+        self._partners: dict[str, set[str]] = {}
+        self._taken_ns = 0
+        self._taken: set[str] = set()
+        self._turns = 0
+        self._last_turn: dict[str, int] = {}
+
+    def put(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
+        """A plane has come. Raises BadRequest for one of the past."""
+        key, now = (frame.camera, frame.encoding), time.monotonic()
+        with self._news:
+            before = self._planes.get(key)
+            speaking = before is not None and now - before[1] < _SILENT_S
+            if before is not None and speaking and frame.stamp_ns <= before[0].frame.stamp_ns:
+                raise BadRequest(
+                    f"camera {frame.camera}: a frame of the past is passed over; stamps must grow"
+                )
+            self._planes[key] = Plane(frame, read), now
+            self._pair_up(frame)
+
+    def take(self, timeout_s: float) -> tuple[Pair, ...]:
+        """What cameras saw at one moment, the newest there is, in the order of their names; maybe nothing."""
+        deadline = time.monotonic() + timeout_s
+        with self._news:
+            while not self._pairs:
+                if not self._news.wait(deadline - time.monotonic()):
+                    return ()
+            late = time.monotonic() + _LATE_S
+            while (missing := self._missing()) and self._news.wait(late - time.monotonic()):
+                pass
+            for camera in missing:
+                self._partners.pop(camera, None)
+            cameras = self._next()
+            self._turns += 1
+            for camera in cameras:
+                self._partners[camera] = cameras | (self._partners.get(camera, set()) - missing)
+                self._last_turn[camera] = self._turns
+            for camera in self._outdated():
+                del self._pairs[camera]
+            pairs = tuple(self._pairs.pop(camera) for camera in sorted(cameras))
+            self._taken, self._taken_ns = cameras, pairs[0].stamp_ns
+            return pairs
+
+    def _pair_up(self, frame: CameraFrame) -> None:
+        rgb, _ = self._planes.get((frame.camera, "rgb8"), (None, 0.0))
+        depth, _ = self._planes.get((frame.camera, "depth32f"), (None, 0.0))
+        if rgb is None or depth is None or rgb.frame.stamp_ns != depth.frame.stamp_ns:
+            return
+        if frame.stamp_ns == self._taken_ns:  # too late for its look, but the next ones wait for it
+            for camera in (*self._taken, frame.camera):
+                self._partners.setdefault(camera, set()).update(self._taken, {frame.camera})
+            return
+        self._pairs[frame.camera] = Pair(rgb, depth)
+        self._news.notify_all()
+
+    def _next(self) -> set[str]:
+        """The cameras of one moment: those whose turn was longest ago or, of these, the newest."""
+        current = self._pairs.keys() - self._outdated()
+        first = min(current, key=lambda name: (self._last_turn.get(name, 0), -self._pairs[name].stamp_ns))
+        stamp_ns = self._pairs[first].stamp_ns
+        return {camera for camera, pair in self._pairs.items() if pair.stamp_ns == stamp_ns}
+
+    def _outdated(self) -> set[str]:
+        """Cameras of which there is a frame older than that of another that sees together with them."""
+        return {
+            camera
+            for camera, pair in self._pairs.items()
+            for partner in self._partners.get(camera, set()) & self._pairs.keys()
+            if self._pairs[partner].stamp_ns > pair.stamp_ns
+        }
+
+    def _missing(self) -> set[str]:
+        cameras = self._next()
+        return set().union(*(self._partners.get(camera, set()) for camera in cameras)) - cameras
+
+
+def read_cloud(pair: Pair) -> Cloud:
+    """The points of a frame, thinned if they are too many. Raises BadRequest for one that makes no sense."""
+    frame = pair.depth.frame
+    colour = pair.rgb.frame
+    if (frame.width, frame.height) != (colour.width, colour.height):
+        raise BadRequest(
+            f"camera {frame.camera}: its picture has {colour.width} x {colour.height} pixels, its depth"
+            f" {frame.width} x {frame.height}; they must be of one size"
+        )
+    shape = (frame.height, frame.width)
+    intrinsics, pose = _intrinsics(frame), _pose(frame)
+    depth_m = _pixels(pair.depth, np.float32, shape)
+    rgb = _pixels(pair.rgb, np.uint8, (*shape, 3))
+    step = thinning(frame)
+    if step > 1:
+        depth_m, rgb = (
+            np.ascontiguousarray(depth_m[::step, ::step]),
+            np.ascontiguousarray(rgb[::step, ::step]),
+        )
+        intrinsics = intrinsics.copy()
+        intrinsics[:2, 2] -= 0.5
+        intrinsics[:2] /= step
+        intrinsics[:2, 2] += 0.5
+    return cloud_of(depth_m, rgb, intrinsics, pose, camera=frame.camera, stamp_ns=frame.stamp_ns)
+
+
+def thinning(frame: CameraFrame) -> int:
+    """Every how many-th row and column of a frame is used."""
+    return max(1, math.ceil(math.sqrt(frame.width * frame.height / MOST_PIXELS)))
+
+
+def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
+    content, wanted = plane.read(), math.prod(shape) * np.dtype(kind).itemsize
+    if len(content) != wanted or not wanted:
+        raise BadRequest(
+            f"camera {plane.frame.camera}: {len(content)} bytes are no {plane.frame.encoding} picture of"
+            f" {plane.frame.width} x {plane.frame.height} pixels, which has {wanted}"
+        )
+    return np.frombuffer(content, np.dtype(kind).newbyteorder("<")).astype(kind, copy=False).reshape(shape)
+
+
+def _intrinsics(frame: CameraFrame) -> Transform:
+    numbers = np.array(frame.intrinsics, dtype=float)
+    if numbers.size == 9 and fits(numbers.reshape(3, 3), frame.width, frame.height):
+        return numbers.reshape(3, 3)
+    raise BadRequest(
+        f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit a picture of {frame.width} x"
+        f" {frame.height} pixels; they are fx 0 cx 0 fy cy 0 0 1"
+    )
+
+
+def _pose(frame: CameraFrame) -> Transform:
+    numbers = np.array(frame.map_from_camera, dtype=float)
+    if numbers.size == 16 and is_pose(numbers.reshape(4, 4)):
+        return numbers.reshape(4, 4)
+    raise BadRequest(
+        f"camera {frame.camera}: its map_from_camera is no pose: a rotation, a position, 0 0 0 1"
+    )

@@ -1,0 +1,139 @@
+"""Which observation is of which thing: optimal assignment, in steps from the surest on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.costs import Target, cost_anywhere, cost_in_place, size_difference
+from nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
+from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from nodes.perception_node.tracking.tracks import Track
+from schemas.perception import Observation
+
+A = TypeVar("A")
+B = TypeVar("B")
+K = TypeVar("K", str, int)
+Cost = Callable[[Target, Observation, ClassHierarchy], float]
+
+_PROHIBITIVE = 1e6
+_COVERED = 0.6
+"""A thing of which this share is in a segment's box may be a part of the segment."""
+_FILLED = 0.2
+"""Its parts fill this share of a segment's box: that of a table holds what lies on it, but not much of it."""
+_LIKE = 0.15
+
+
+class Candidate(NamedTuple):
+    """Something that may be seen: what is remembered of it, and what it should look like."""
+
+    track: Track
+    target: Target
+
+
+class Matching(NamedTuple):
+    """Which observation, by its number, is of which entity and of which of those that are none yet.
+
+    `occupancy` tells of each entity that was not seen what is seen of its box; `odd` are those of them in
+    whose box something of another size is seen. `new` are the observations of nothing known.
+    """
+
+    known: dict[str, int]
+    tentative: dict[int, int]
+    occupancy: dict[str, Occupancy]
+    odd: set[str]
+    new: list[int]
+
+
+def match(
+    known: Mapping[str, Candidate],
+    tentative: Sequence[Candidate],
+    observations: Sequence[Observation],
+    occupancy_of: OccupancyOf,
+    classes: ClassHierarchy,
+    config: TrackingConfig,
+) -> Matching:
+    """Things in their places first; then what vanished, found elsewhere; then what is no entity yet."""
+
+    def pairs(of: Mapping[K, Candidate], to: Collection[int], cost: Cost) -> dict[K, int]:
+        free = sorted(to)
+        targets, seen = [c.target for c in of.values()], [observations[j] for j in free]
+        found = assign(targets, seen, lambda target, o: cost(target, o, classes))
+        return {list(of)[a]: free[b] for a, b in found}
+
+    there = {name: c for name, c in known.items() if not c.track.unseen}
+    single = {j for j, o in enumerate(observations) if not _is_of_several(o, there.values())}
+    seen = pairs(there, single, cost_in_place)
+    occupancy = {name: _occupancy(c.target, occupancy_of) for name, c in known.items() if name not in seen}
+    rest = single.difference(seen.values())
+    parts = {
+        name: {j for j in rest if _may_be_of(c.target, observations[j])}
+        for name, c in known.items()
+        if occupancy.get(name) != "free"
+    }
+    gone = {name for name in occupancy if known[name].track.is_gone(config)}
+    standing = [name for name in parts if name in there and name not in gone]
+    left = rest.difference(*(parts[name] for name in standing))
+    relatives = {
+        j
+        for name in standing
+        for j in parts[name]
+        if classes.related(known[name].target.class_, observations[j].class_)
+    }
+    vanished = {
+        name: known[name]
+        for name, seen_there in occupancy.items()
+        if seen_there == "free" or name in gone or name not in there
+    }
+    found = pairs(vanished, rest - relatives, cost_anywhere)
+    again = pairs(dict(enumerate(tentative)), left.difference(found.values()), cost_in_place)
+    unseen = occupancy.keys() - found.keys()
+    for name in unseen:
+        others = {*found.values(), *(seen.values() if name not in there else ())}
+        if any(_may_be_of(known[name].target, observations[j]) for j in others):
+            occupancy[name] = "free"  # to itself: another has come to stand there
+    return Matching(
+        known=seen | found,
+        tentative=again,
+        occupancy={name: occupancy[name] for name in unseen},
+        odd={name for name in unseen if occupancy[name] == "occupied" and parts[name]},
+        new=sorted(left.difference(found.values(), again.values())),
+    )
+
+
+def assign(rows: Sequence[A], columns: Sequence[B], cost: Callable[[A, B], float]) -> list[tuple[int, int]]:
+    """Pairs (row, column), as many as may be and of the least cost together; infinite ones never.
+
+    The assignment problem, as SciPy solves it (Jonker-Volgenant).
+    """
+    costs = np.array([[cost(a, b) for b in columns] for a in rows]).reshape(len(rows), len(columns))
+    pairs = zip(*linear_sum_assignment(np.minimum(costs, _PROHIBITIVE)), strict=True)
+    return [(int(i), int(j)) for i, j in pairs if costs[i, j] < _PROHIBITIVE]
+
+
+def _occupancy(target: Target, occupancy_of: OccupancyOf) -> Occupancy:
+    """Of a thing of unknown size nobody can tell whether it is there."""
+    return "unknown" if target.box is None else occupancy_of(*target.box)
+
+
+def _is_of_several(seen: Observation, known: Iterable[Candidate]) -> bool:
+    """Whether a segment is made of several things: it covers their boxes, which fill it; it is like none."""
+    whole = OrientedBox(seen.pose, seen.size_m)
+    covered = [
+        (c.target, box) for c in known if (box := c.target.box) is not None and share(box, whole) > _COVERED
+    ]
+    volume_m3 = sum(box.volume_m3 for _, box in covered)
+    return (
+        len(covered) > 1
+        and volume_m3 > _FILLED * whole.volume_m3
+        and all(size_difference(target, seen) > _LIKE for target, _ in covered)
+    )
+
+
+def _may_be_of(target: Target, seen: Observation) -> bool:
+    return target.box is not None and are_of_one(target.box, OrientedBox(seen.pose, seen.size_m))

@@ -1,0 +1,169 @@
+"""What was seen, and what the map says: which is which, and what the map is to be told. Pure.
+
+A look is matched in steps. First things that stand where they stood, or nearly. Then, as segments of one look
+are not always those of the next, what is only a part of a thing that still fills its place, or several such
+in one, is passed over. Then things that have vanished from their places are found again in things of the same
+kind that appeared elsewhere, so that identity survives a move. What is left over is new.
+
+Whoever calls must let the map take what it was told before the next look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from msgspec import structs
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.tracking.assignment import Candidate, Matching, match
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from nodes.perception_node.tracking.costs import Target
+from nodes.perception_node.tracking.map_updates import additions, has_moved, is_sure, update_of
+from nodes.perception_node.tracking.occupancy import OccupancyOf
+from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
+from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
+from nodes.perception_node.tracking.votes import Votes
+from schemas.commands import Add, Command
+from schemas.entities import Entity, Size, distance_m, free_name
+from schemas.perception import Observation
+
+_ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
+_FORGOTTEN_AFTER = 3
+"""Looks in a row after which what is no entity yet, and no longer seen, is forgotten."""
+
+
+class Association(NamedTuple):
+    """The new memory, what to tell the map, and for each observation its entity ("" for none yet)."""
+
+    tracks: Tracks
+    commands: tuple[Command, ...]
+    entities: tuple[str, ...]
+
+
+def associate(
+    entities: Mapping[str, Entity],
+    tracks: Tracks,
+    observations: Sequence[Observation],
+    occupancy_of: OccupancyOf,
+    classes: ClassHierarchy,
+    config: TrackingConfig,
+) -> Association:
+    """One look. `entities` are the map's, `occupancy_of` tells what is seen of a box that none observed."""
+    candidates = {
+        name: _candidate(entity, tracks.known.get(name), classes, config)
+        for name, entity in entities.items()
+        if not entity.place and entity.pose is not None
+    }
+    others = [Candidate(track, _target(track, classes)) for track in tracks.tentative]
+    matching = match(candidates, others, observations, occupancy_of, classes, config)
+    known = {
+        name: _watched(
+            _after(name, candidate.track, matching, observations, config),
+            entities[name],
+            occupancy_of,
+            config,
+        )
+        for name, candidate in candidates.items()
+    }
+    tentative = _tentative(tracks.tentative, matching, observations, config)
+    told = [update_of(entities[name], track, classes, config) for name, track in known.items()]
+    proposed = _apart_from_one_another(track for track in tentative if is_sure(track, classes, config))
+    added = additions(proposed, {*tracks.names, *entities}, classes)
+    names = {j: name for name, j in matching.known.items()}
+    return Association(
+        Tracks(
+            known | dict(zip(added, proposed, strict=True)),
+            tuple(track for track in tentative if track not in proposed),
+            tracks.names.union(added),
+        ),
+        (*(command for command in told if command is not None), *added.values()),
+        tuple(names.get(j, "") for j in range(len(observations))),
+    )
+
+
+def renamed(tracks: Tracks, add: Add, entities: Iterable[str]) -> tuple[Tracks, Add]:
+    """Another name for a new thing, whose name turns out to have been given before this memory began."""
+    assert add.name is not None
+    name = free_name(add.class_, tracks.names.union(entities))
+    known = {name if old == add.name else old: track for old, track in tracks.known.items()}
+    tracks = replace(tracks, known=known, names=tracks.names | {name})
+    return tracks, structs.replace(add, name=name, reason=f"{name} was seen")
+
+
+def _candidate(
+    entity: Entity, track: Track | None, classes: ClassHierarchy, config: TrackingConfig
+) -> Candidate:
+    """An entity; if somebody else has told the map another pose of it since, that counts.
+
+    What the process before this one believed of perception's own is remembered by the map.
+    """
+    assert entity.pose is not None
+    usual_m = classes.usual_m.get(entity.class_)
+    own = entity.shape_provenance.source == "perception"
+    if track is None:
+        sureness = entity.shape_provenance.confidence if own else None
+        votes = Votes() if sureness is None else Votes.remembered(entity.class_, sureness)
+        track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
+    elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
+    if track.told != entity.pose and elsewhere:
+        track = replace(track, pose=entity.pose, looks=0)
+    track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
+    target = _target(track, classes)
+    return Candidate(
+        track,
+        target._replace(
+            size_m=track.size_m if track.sized else entity.size_m,
+            class_=entity.class_ if target.class_ == ANYTHING else target.class_,
+            whole=track.whole or not own,
+            usual_m=usual_m,
+        ),
+    )
+
+
+def _target(track: Track, classes: ClassHierarchy) -> Target:
+    return Target(track.pose, track.size_m, track.votes.belief(classes), track.whole)
+
+
+def _after(
+    name: str, track: Track, matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+) -> Track:
+    """What is remembered of an entity after this look."""
+    if name in matching.known:
+        return track.see(observations[matching.known[name]], config)
+    return track.miss(matching.occupancy[name], odd=name in matching.odd)
+
+
+def _watched(track: Track, entity: Entity, occupancy_of: OccupancyOf, config: TrackingConfig) -> Track:
+    """With a look at the place that the map has of it: is that left, or does it only seem so?"""
+    if entity.pose is None or track.unseen or not has_moved(entity, track, config):
+        return replace(track, left=False)
+    before, now = OrientedBox(entity.pose, track.size_m), OrientedBox(track.pose, track.size_m)
+    return replace(track, left=track.left or share(now, before) == 0.0 or occupancy_of(*before) == "free")
+
+
+def _tentative(
+    tracks: Sequence[Track], matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+) -> list[Track]:
+    """What is remembered of things that are no entities yet, new ones at the end."""
+    after = [
+        track.see(observations[matching.tentative[i]], config)
+        if i in matching.tentative
+        else track.miss("free", odd=False)
+        for i, track in enumerate(tracks)
+    ]
+    new = [observations[j] for j in matching.new]
+    return [
+        *(track for track in after if track.unseen < _FORGOTTEN_AFTER),
+        *(Track(o.pose, o.size_m).see(o, config) for o in new),
+    ]
+
+
+def _apart_from_one_another(tracks: Iterable[Track]) -> list[Track]:
+    apart: list[Track] = []
+    for track in tracks:
+        box = OrientedBox(track.pose, track.size_m)
+        if not any(are_of_one(box, OrientedBox(other.pose, other.size_m)) for other in apart):
+            apart.append(track)
+    return apart

@@ -1,0 +1,108 @@
+"""What it costs to take an observation for a known thing: how unlike they are in place, size and class."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from nodes.perception_node.tracking.overlap import OrientedBox
+from schemas.entities import Pose, Size
+from schemas.perception import Observation
+
+FORBIDDEN = math.inf
+_NEARBY_M = 0.05
+_SAME, _SAME_OF_ANOTHER_CLASS = 0.3, 0.15
+"""What stands in place is the thing if its size is no more unlike (`size_difference`)."""
+_OF_A_KIND, _OF_ANY_KIND = 0.35, 0.15
+"""The same for what is recognised somewhere else: by a class and size, or by its size alone."""
+_VAGUE = 0.1
+"""How unlike what is like nothing known is what has a class."""
+_BLUR_M = 0.01
+"""What an extent may be off by, however small it is."""
+_HIDDEN_PART = 0.3
+"""How much it counts that an extent is smaller of what is seen in part."""
+
+
+class Target(NamedTuple):
+    """A thing that may be seen: where it was last, how big it is if that is known, and its class.
+
+    `whole`: its size was not only seen in part. `usual_m`: what its class measures, for want of its own size.
+    """
+
+    pose: Pose
+    size_m: Size | None
+    class_: str
+    whole: bool = True
+    usual_m: Size | None = None
+
+    @property
+    def box(self) -> OrientedBox | None:
+        """The box that it fills, as far as one can tell."""
+        size_m = self.size_m or self.usual_m
+        return None if size_m is None else OrientedBox(self.pose, size_m)
+
+
+def cost_in_place(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
+    """How unlike an observation is a thing that hardly moved, if at all; FORBIDDEN if it cannot be it."""
+    size_m = target.size_m or seen.size_m
+    aside, above = _apart(target.pose, size_m, seen)
+    reach = (max(size_m[:2]) + max(seen.size_m[:2])) / 4.0 + _NEARBY_M
+    if aside > reach or above > (size_m[2] + seen.size_m[2]) / 4.0 + _NEARBY_M:
+        return FORBIDDEN
+    unlike, alien = size_difference(target, seen), class_difference(target.class_, seen, classes)
+    if unlike > (_SAME_OF_ANOTHER_CLASS if alien > 0.5 else _SAME):
+        return FORBIDDEN
+    return aside / reach + unlike + alien
+
+
+def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
+    """How unlike an observation is a thing that has vanished from its place; FORBIDDEN if of another kind.
+
+    Where it is hardly counts, but what has come back to its place may be less like it.
+    """
+    box = target.box
+    if box is None:
+        return FORBIDDEN
+    vague = ANYTHING in (seen.class_, target.class_)
+    unlike = size_difference(target._replace(size_m=box.size_m), seen)
+    alike = classes.related(target.class_, seen.class_) and unlike <= (_OF_ANY_KIND if vague else _OF_A_KIND)
+    if not alike and cost_in_place(target, seen, classes) == FORBIDDEN:
+        return FORBIDDEN
+    aside, above = _apart(box.pose, box.size_m, seen)
+    vaguely = vague and target.class_ != seen.class_
+    alien = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
+    return unlike + alien + 0.1 * math.hypot(aside, above)
+
+
+def size_difference(target: Target, seen: Observation) -> float:
+    """How unlike the extents are, however turned: the mean of |log ratio|, or half the worst if that is more.
+
+    What is seen in part may be smaller. A single extent that is twice too large is that of a thing with its
+    neighbour, however right the others are.
+    """
+    if target.size_m is None:
+        return 0.0
+    pairs = zip(_upright(target.size_m), _upright(seen.size_m), strict=True)
+    ratios = [math.log((now + _BLUR_M) / (before + _BLUR_M)) for before, now in pairs]
+    shrunk, grown = (1.0 if whole else _HIDDEN_PART for whole in (seen.whole, target.whole))
+    unlike = [ratio * grown if ratio > 0.0 else -ratio * shrunk for ratio in ratios]
+    return max(sum(unlike) / 3.0, max(unlike) / 2.0)
+
+
+def class_difference(class_name: str, seen: Observation, classes: ClassHierarchy) -> float:
+    """From 0 for one that is related to what was seen, to 1 for one that it can hardly be."""
+    if classes.related(class_name, seen.class_):
+        return 0.0
+    return max(0.0, 1.0 - sum(p for leaf, p in seen.candidates.items() if classes.is_a(leaf, class_name)))
+
+
+def _upright(size_m: Size) -> tuple[float, float, float]:
+    x, y, z = size_m
+    return (min(x, y), max(x, y), z)
+
+
+def _apart(pose: Pose, size_m: Size, seen: Observation) -> tuple[float, float]:
+    """Distance of the middles, horizontally and vertically [m]."""
+    (x, y, z), (u, v, w) = pose.position_m, seen.pose.position_m
+    return math.hypot(u - x, v - y), abs(w + seen.size_m[2] / 2.0 - z - size_m[2] / 2.0)

@@ -1,0 +1,164 @@
+"""What the map is to be told: what the tracks say, compared with what the map says. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Set
+from typing import Any
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.tracks import Track, slack_m, turn_between
+from schemas.commands import Add, Command, Remove, Update
+from schemas.entities import Entity, Size, distance_m, free_name, rounded
+
+AGENT = "perception_node"
+MISSING = "not seen where it should stand"
+DISPLACED = "something else is seen in its place"
+"""The conflicts of an entity that is gone."""
+
+_SURE, _UNSURE = 0.6, 0.25
+"""What one class has more and another has less of the votes than, if the one contradicts the other."""
+_LEAST_RESIZE_M = 0.015
+
+
+def subject_of(command: Command) -> str:
+    """What a command is about: an entity or, if it is to be a new one, the class."""
+    match command:
+        case Add():
+            return f"a new {command.class_}"
+        case Remove():
+            return " ".join(command.names)
+        case Update():
+            return command.name
+    raise TypeError(f"perception does not say {type(command).__name__}")
+
+
+def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
+    """Whether a thing was seen at rest often enough to become an entity."""
+    clear = track.whole and track.votes.share(track.votes.belief(classes), classes) >= config.clear
+    enough = config.clear_looks if clear else config.confirm_looks
+    return track.looks >= enough and not track.unseen
+
+
+def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:
+    """A new entity for each track, in order, by names that are not taken."""
+    added: dict[str, Add] = {}
+    for track in tracks:
+        class_name = track.votes.belief(classes)
+        name = free_name(class_name, {*taken, *added})
+        pose = rounded(track.pose)
+        added[name] = Add(
+            source="perception",
+            agent=AGENT,
+            reason=f"{name} was seen",
+            class_=class_name,
+            name=name,
+            at=pose.position_m,
+            orientation=pose.orientation_wxyz,
+            size=_to_millimetres(track.size_m),
+            ref=classes.label(class_name),
+            confidence=_confidence(track, class_name, classes),
+        )
+    return added
+
+
+def update_of(
+    entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig
+) -> Update | Remove | None:
+    """What the map must be told of an entity, if anything; what it is only of perception's own."""
+    own = {entity.shape_provenance.source, entity.reference_provenance.source} == {"perception"}
+    if track.is_gone(config):
+        return _gone(entity, track, own, config)
+    if not track.rests(config.rest_looks):
+        return None
+    changes: dict[str, Any] = {}
+    if has_moved(entity, track, config):
+        if not track.left and track.looks < config.nudge_looks:
+            return None
+        pose = rounded(track.pose)
+        changes |= {"at": pose.position_m, "orientation": pose.orientation_wxyz}
+    class_name = _other_class(entity, track, classes, config)
+    if own:
+        changes |= _described(entity, track, class_name, classes, config)
+    conflict = "" if own else _conflict(entity, track, class_name, classes)
+    if conflict != entity.conflict:
+        changes["conflict"] = conflict
+    if not changes:
+        return None
+    reason = f"{entity.name} has moved" if "at" in changes else f"a closer look at {entity.name}"
+    confidence = _confidence(track, class_name or track.votes.belief(classes), classes)
+    return Update(
+        source="perception", agent=AGENT, reason=reason, name=entity.name, confidence=confidence, **changes
+    )
+
+
+def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
+    if own and config.when_gone == "remove":
+        reason = f"{entity.name} is no longer where it was"
+        return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
+    conflict = DISPLACED if track.odd else MISSING
+    if entity.conflict == conflict:
+        return None
+    reason = f"{entity.name}: {conflict}"
+    return Update(source="perception", agent=AGENT, reason=reason, name=entity.name, conflict=conflict)
+
+
+def has_moved(entity: Entity, track: Track, config: TrackingConfig) -> bool:
+    """Whether a thing was last seen elsewhere than the map says, or turned."""
+    if entity.pose is None:
+        return True
+    slack = slack_m(track.size_m, config.moved_m)
+    return distance_m(entity.pose, track.pose) > slack or turn_between(track, entity.pose) > config.turned_rad
+
+
+def _other_class(entity: Entity, track: Track, classes: ClassHierarchy, config: TrackingConfig) -> str:
+    """The class that a thing turns out to be, if that is more special than the map's, or contradicts it."""
+    believed = track.votes.belief(classes)
+    if track.looks < config.confirm_looks or classes.is_a(entity.class_, believed):
+        return ""
+    if classes.is_a(believed, entity.class_):
+        return believed
+    contradicts = (
+        track.votes.share(believed, classes) > _SURE and track.votes.share(entity.class_, classes) < _UNSURE
+    )
+    return believed if contradicts else ""
+
+
+def _described(
+    entity: Entity, track: Track, class_name: str, classes: ClassHierarchy, config: TrackingConfig
+) -> dict[str, Any]:
+    """What is seen better than before: the class, with what it is called after it, and the size."""
+    changes: dict[str, Any] = {}
+    if class_name:
+        changes["class_"] = class_name
+        if entity.preferred_reference == classes.label(entity.class_):
+            changes["ref"] = classes.label(class_name)
+    if track.whole and track.looks >= config.nudge_looks and _is_resized(entity, track, config):
+        changes["size"] = _to_millimetres(track.size_m)
+    return changes
+
+
+def _is_resized(entity: Entity, track: Track, config: TrackingConfig) -> bool:
+    pairs = zip(sorted(entity.size_m or ()), sorted(track.size_m), strict=entity.size_m is not None)
+    return entity.size_m is None or any(
+        abs(now - before) > max(config.resized * before, _LEAST_RESIZE_M) for before, now in pairs
+    )
+
+
+def _conflict(entity: Entity, track: Track, class_name: str, classes: ClassHierarchy) -> str:
+    """What is seen against an operator's word; what was seen before stays until the word is borne out."""
+    if class_name and not classes.is_a(class_name, entity.class_):
+        return f"looks like a {class_name}"
+    borne_out = entity.conflict in (MISSING, DISPLACED) or classes.is_a(
+        track.votes.belief(classes), entity.class_
+    )
+    return "" if borne_out else entity.conflict
+
+
+def _confidence(track: Track, class_name: str, classes: ClassHierarchy) -> float:
+    return round(min(1.0, track.votes.share(class_name, classes)), 3)
+
+
+def _to_millimetres(size_m: Size) -> Size:
+    x, y, z = (max(0.001, round(extent, 3)) for extent in size_m)
+    return (x, y, z)

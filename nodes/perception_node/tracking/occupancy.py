@@ -1,0 +1,120 @@
+"""What depth pictures say of a box in the map: whether it is free, occupied, or out of their sight.
+
+Rays are cast through the box from each pixel that it covers, as in an occupancy grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.perception_node.input.cloud import Cloud, Transform
+from schemas.entities import Pose, Size
+
+Occupancy = Literal["free", "occupied", "unknown"]
+"""`free`: one looks through where the thing should be; `occupied`: there is something."""
+OccupancyOf = Callable[[Pose, Size], Occupancy]
+"""The occupancy of the box of a size that stands at a pose."""
+
+_SHRINK = 0.8
+"""Only the inner part of a box is looked at: its neighbours reach into what was measured too wide."""
+_MOST_RAYS = 2000
+_FEWEST_RAYS = 12
+_IN_FRONT_M = 0.02
+_NEAREST_M = 0.05
+_IN_VIEW, _UNHIDDEN, _FREE = 0.7, 0.5, 0.75
+_THROUGH = 0.7
+"""A ray that ends behind this share of its way through the box has met nothing in it."""
+
+
+def occupancy_in(clouds: Sequence[Cloud]) -> OccupancyOf:
+    """What these organised clouds of one moment say of the box that stands at a pose (map frame)."""
+    usable = [cloud for cloud in clouds if cloud.organised and cloud.intrinsics is not None]
+    return partial(_occupancy, usable)
+
+
+def _occupancy(clouds: Sequence[Cloud], pose: Pose, size_m: Size) -> Occupancy:
+    said = {_occupancy_by(cloud, pose, size_m) for cloud in clouds}
+    return "occupied" if "occupied" in said else "free" if "free" in said else "unknown"
+
+
+def _occupancy_by(cloud: Cloud, pose: Pose, size_m: Size) -> Occupancy:
+    assert cloud.intrinsics is not None
+    camera_from_box = np.linalg.inv(_pose_of(cloud)) @ _map_from_box(pose, size_m)
+    half = np.array([size_m[0] * _SHRINK, size_m[1] * _SHRINK, size_m[2]]) / 2.0
+    rows, columns = _pixels(cloud, camera_from_box, half)
+    if rows.size < _FEWEST_RAYS:
+        return "unknown"
+    depth = cloud.points_camera[rows, columns, 2].astype(float)
+    enter, leave = _crossing(_rays(rows, columns, cloud.intrinsics), camera_from_box, half)
+    way = leave - enter
+    crossing = way > 0.3 * max(float(way.max(initial=0.0)), 1e-9)
+    depth, enter, way = depth[crossing], enter[crossing], way[crossing]
+    unhidden = depth > enter - _IN_FRONT_M  # NaN is hidden
+    if depth.size < _FEWEST_RAYS or unhidden.mean() < _UNHIDDEN:
+        return "unknown"
+    through = (depth[unhidden] - enter[unhidden]) / way[unhidden]
+    return "free" if (through > _THROUGH).mean() >= _FREE else "occupied"
+
+
+def _pixels(
+    cloud: Cloud, camera_from_box: Transform, half: Transform
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns that the box covers, some of them if they are many; none if it is hardly in view."""
+    signs = np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
+    corners = signs * half @ camera_from_box[:3, :3].T + camera_from_box[:3, 3]
+    nothing = np.empty(0, np.intp)
+    if corners[:, 2].min() < _NEAREST_M:
+        return nothing, nothing
+    assert cloud.intrinsics is not None
+    pixels = corners @ cloud.intrinsics.T
+    pixels = pixels[:, :2] / pixels[:, 2:]
+    low, high = pixels.min(axis=0), pixels.max(axis=0)
+    height, width = cloud.points_camera.shape[:2]
+    first = np.maximum(np.floor(low), 0.0).astype(int)
+    last = np.minimum(np.ceil(high), [width, height]).astype(int)
+    seen = np.maximum(last - first, 0)
+    if seen.prod() < _IN_VIEW * np.prod(high - low):
+        return nothing, nothing
+    step = max(1, int(np.sqrt(seen.prod() / _MOST_RAYS)))
+    rows, columns = np.mgrid[first[1] : last[1] : step, first[0] : last[0] : step]
+    return rows.ravel(), columns.ravel()
+
+
+def _rays(rows: NDArray[np.intp], columns: NDArray[np.intp], intrinsics: Transform) -> Transform:
+    """(N, 3) what each pixel's middle sees at a depth of 1 m, camera frame."""
+    middles = np.stack([columns + 0.5, rows + 0.5, np.ones(rows.size)], axis=-1)
+    return np.asarray(middles @ np.linalg.inv(intrinsics).T)
+
+
+def _crossing(
+    rays: Transform, camera_from_box: Transform, half: Transform
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The depths [m] at which each ray enters and leaves the box, by slabs; it misses where out of order."""
+    rotation, middle = camera_from_box[:3, :3], camera_from_box[:3, 3]
+    eye = -middle @ rotation
+    directions = rays @ rotation
+    directions = np.where(np.abs(directions) < 1e-9, 1e-9, directions)
+    one, other = (-half - eye) / directions, (half - eye) / directions
+    return np.minimum(one, other).max(axis=1), np.maximum(one, other).min(axis=1)
+
+
+def _map_from_box(pose: Pose, size_m: Size) -> Transform:
+    """(4, 4) of the frame in the box's middle."""
+    w, x, y, z = pose.orientation_wxyz
+    transform = np.eye(4)
+    transform[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    transform[:3, 3] = np.array(pose.position_m) + transform[:3, 2] * size_m[2] / 2.0
+    return transform
+
+
+def _pose_of(cloud: Cloud) -> Transform:
+    return np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera

@@ -1,0 +1,151 @@
+"""What is remembered from look to look: where each thing rests, how big it is, what it seems to be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.tracking.occupancy import Occupancy
+from nodes.perception_node.tracking.votes import Votes
+from schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
+from schemas.perception import Observation
+
+_RELATIVE = 0.05
+"""The box of a big thing is known to this share of its size."""
+_MEMORY = 20
+"""How many looks a mean goes back."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """Observations tied to one thing: `pose` is their mean since it came to rest, `size_m` of `sized` looks.
+
+    `looks` is how often it was seen since it rests, `occupied` how often its place was so since then although
+    the thing was not told apart, `unseen` how often in a row it should have been seen since and was not,
+    `odd` how often in a row something of another size was in its place. `whole`: it was seen unhidden, uncut.
+    `told` is the map's pose at the last look; `left`: that place is seen empty.
+    """
+
+    pose: Pose
+    size_m: Size
+    votes: Votes = field(default_factory=Votes)
+    sized: int = 0
+    looks: int = 0
+    occupied: int = 0
+    unseen: int = 0
+    odd: int = 0
+    whole: bool = False
+    told: Pose | None = None
+    left: bool = False
+
+    def is_gone(self, config: TrackingConfig) -> bool:
+        """Whether it is sure that it is no longer where it was."""
+        return self.unseen >= config.gone_looks or self.odd >= config.odd_looks
+
+    def see(self, seen: Observation, config: TrackingConfig) -> Track:
+        """One more observation of it."""
+        votes = self.votes.cast(seen.class_, seen.probability)
+        if self.whole and not seen.whole and _within(seen, self, config.still_m):
+            return replace(self, votes=votes, looks=self.looks + 1, unseen=0, odd=0)  # a part, where it was
+        pose, size_m = turned_like(seen.pose, seen.size_m, self)
+        near = self.looks > 0 and distance_m(pose, self.pose) <= slack_m(self.size_m, config.still_m)
+        still = near and turn_between(self, pose) <= config.turned_rad
+        return replace(
+            self._sized(size_m, whole=seen.whole),
+            pose=self._mean(pose) if still else pose,
+            votes=votes,
+            looks=self.looks + 1 if still else 1,
+            occupied=self.occupied if still else self.occupied + 1 if near else 0,
+            unseen=0,
+            odd=0,
+        )
+
+    def miss(self, occupancy: Occupancy, *, odd: bool) -> Track:
+        """It was not seen, and this is what is seen where it should be; `odd`: a thing of another size."""
+        if occupancy == "unknown":
+            return self
+        if occupancy == "free":
+            return replace(self, unseen=self.unseen + 1, odd=0)
+        return replace(self, occupied=self.occupied + 1, unseen=0, odd=self.odd + 1 if odd else 0)
+
+    def rests(self, looks: int) -> bool:
+        """Whether it was seen where it is, and is there since so many looks."""
+        return self.looks > 0 and self.looks + self.occupied >= looks and not self.unseen and not self.odd
+
+    def _sized(self, size_m: Size, *, whole: bool) -> Track:
+        """With one more look at its size; one at the whole of it is worth more than any at a part."""
+        if self.whole and not whole:
+            return self
+        if self.sized and self.whole == whole:
+            sized = min(self.sized + 1, _MEMORY)
+            return replace(self, size_m=_between(self.size_m, size_m, 1.0 / sized), sized=sized)
+        return replace(self, size_m=size_m, sized=1, whole=whole)
+
+    def _mean(self, pose: Pose) -> Pose:
+        share = 1.0 / min(self.looks + 1, _MEMORY)
+        yaw = self.pose.yaw_rad + share * _wrapped(pose.yaw_rad - self.pose.yaw_rad)
+        position = _between(self.pose.position_m, pose.position_m, share)
+        return Pose(position_m=position, orientation_wxyz=orientation_from_yaw(yaw))
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """All that is remembered: `known` by the entity's name, `tentative` what is no entity yet.
+
+    `names` were given to entities by perception: none is given twice.
+    """
+
+    known: Mapping[str, Track] = field(default_factory=dict)
+    tentative: tuple[Track, ...] = ()
+    names: frozenset[str] = frozenset()
+
+
+def slack_m(size_m: Size, least_m: float) -> float:
+    """How far a box of this size may seem to move without having moved [m]."""
+    return max(least_m, _RELATIVE * max(size_m))
+
+
+def turned_like(pose: Pose, size_m: Size, track: Track) -> tuple[Pose, Size]:
+    """The same box described by the quarter turn that is most like the track's: a box has no front."""
+    x, y, z = size_m
+
+    def unlike(quarter: int) -> float:
+        turn = _wrapped(pose.yaw_rad + quarter * math.pi / 2.0 - track.pose.yaw_rad)
+        width = y if quarter % 2 else x
+        return abs(turn) / math.pi + abs(math.log(width / track.size_m[0]))
+
+    quarter = min(range(4), key=unlike)
+    orientation = orientation_from_yaw(pose.yaw_rad + quarter * math.pi / 2.0)
+    turned: Size = (y, x, z) if quarter % 2 else size_m
+    return Pose(position_m=pose.position_m, orientation_wxyz=orientation), turned
+
+
+def turn_between(track: Track, pose: Pose) -> float:
+    """The angle [rad] from a pose to the track's; 0 for what looks the same from all sides."""
+    x, y, _ = track.size_m
+    if max(x, y) < 1.3 * min(x, y):
+        return 0.0
+    turn = abs(_wrapped(track.pose.yaw_rad - pose.yaw_rad))
+    return min(turn, math.pi - turn)
+
+
+def _within(seen: Observation, track: Track, margin_m: float) -> bool:
+    reach = max(track.size_m[:2]) / 2.0 + margin_m
+    low, high = track.pose.position_m[2], track.pose.position_m[2] + track.size_m[2]
+    z = seen.pose.position_m[2]
+    return (
+        math.dist(seen.pose.position_m[:2], track.pose.position_m[:2]) + max(seen.size_m[:2]) / 2.0 <= reach
+        and low - margin_m <= z
+        and z + seen.size_m[2] <= high + margin_m
+    )
+
+
+def _between(start: Vector, end: Vector, share: float) -> Vector:
+    x, y, z = (a + share * (b - a) for a, b in zip(start, end, strict=True))
+    return (x, y, z)
+
+
+def _wrapped(angle_rad: float) -> float:
+    return math.remainder(angle_rad, 2.0 * math.pi)

@@ -1,0 +1,46 @@
+"""What several looks say of one thing's class together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+
+_SURE = 0.5
+"""A class that has this much of the votes is believed."""
+_FORGET = 0.9
+"""What a look's vote is worth one look later."""
+
+
+@dataclass(frozen=True)
+class Votes:
+    """What was said of one thing, look by look: class to probability, older looks counting less."""
+
+    weights: Mapping[str, float] = field(default_factory=dict)
+    looks: float = 0.0
+
+    @staticmethod
+    def remembered(class_name: str, probability: float) -> Votes:
+        """What is left of very many looks that said the same, with this mean probability."""
+        looks = 1.0 / (1.0 - _FORGET)
+        return Votes({class_name: probability * looks}, looks)
+
+    def cast(self, class_name: str, probability: float) -> Votes:
+        """One more look."""
+        weights = {name: weight * _FORGET for name, weight in self.weights.items()}
+        weights[class_name] = weights.get(class_name, 0.0) + probability
+        return Votes(weights, self.looks * _FORGET + 1.0)
+
+    def share(self, class_name: str, classes: ClassHierarchy) -> float:
+        """The mean probability that it is of this class."""
+        support = sum(w for voted, w in self.weights.items() if classes.is_a(voted, class_name))
+        return support / self.looks if self.looks else 0.0
+
+    def belief(self, classes: ClassHierarchy) -> str:
+        """The most special class that is sure enough."""
+        named = {*self.weights, *(a for voted in self.weights for a in classes.ancestors.get(voted, ()))}
+        sure = [name for name in named if self.share(name, classes) >= _SURE and classes.is_a(name, ANYTHING)]
+        return max(
+            sure, key=lambda name: (classes.depth(name), self.share(name, classes), name), default=ANYTHING
+        )

@@ -1,0 +1,99 @@
+"""Which segments of several views show the same thing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from nodes.perception_node.views.segmented_view import Sight
+
+_PROBES = 300
+_SAME_SHARE = 0.5
+_FEWEST_SEEN = 12
+_LARGE_SHARE = 0.2
+_DOUBT = 0.01
+
+Member = tuple[int, int]
+"""The number of a sight, and that of a segment in its `segments`."""
+
+
+def fuse(sights: Sequence[Sight]) -> list[list[Member]]:
+    """Group segments by the thing they show."""
+    members, same = shown_by_others(sights)
+    return _groups(same | same.T, members)
+
+
+def held_for_one(sights: Sequence[Sight], groups: Sequence[Sequence[Member]]) -> NDArray[np.float64]:
+    """(2, G, G) how likely cameras hold two groups for one: the one that does so least, and most.
+
+    Logits; 0 where no camera was asked.
+    """
+    group_of = [np.zeros(int(sight.labels.max(initial=0)) + 1, int) for sight in sights]
+    for number, members in enumerate(groups, 1):
+        for view, n in members:
+            group_of[view][sights[view].segments[n].label] = number
+    least, most = np.full((2, len(groups) + 1, len(groups) + 1), np.inf)
+    most = -most
+    for sight, group in zip(sights, group_of, strict=True):
+        a, b = np.nonzero(sight.same)
+        inside = np.maximum(a, b) + 1 < len(group)
+        a, b = a[inside], b[inside]
+        chance = np.clip(sight.same[a, b], _DOUBT, 1.0 - _DOUBT)
+        pair = group[a + 1], group[b + 1]
+        for end, ufunc in ((least, np.minimum), (most, np.maximum)):
+            ufunc.at(end, pair, np.log(chance / (1.0 - chance)))
+    both = np.stack([least, most])[:, 1:, 1:]
+    return np.where(np.isfinite(both), both, 0.0)
+
+
+def shown_by_others(sights: Sequence[Sight]) -> tuple[list[Member], NDArray[np.bool_]]:
+    """All segments, and (M, M) whether another camera takes one for another there.
+
+    Most of its points that the other sees are of that segment there, and either these are a large share of
+    all its points, or it is so the other way round too. Clouds without intrinsics or pose see nothing of what
+    others do.
+    """
+    members = [(view, n) for view, sight in enumerate(sights) for n in range(len(sight.segments))]
+    row = {(view, sights[view].segments[n].label): at for at, (view, n) in enumerate(members)}
+    most, many = np.zeros((2, len(members), len(members)), bool)
+    for at, (view, n) in enumerate(members):
+        points = sights[view].segments[n].points
+        probes = points[:: max(1, len(points) // _PROBES)]
+        for other, sight in enumerate(sights):
+            if other == view:
+                continue
+            hits = _labels_of(probes, sight)
+            for label, count in zip(*np.unique(hits[hits > 0], return_counts=True), strict=True):
+                there = row.get((other, int(label)))
+                if there is not None and count >= _FEWEST_SEEN:
+                    most[at, there] = count > _SAME_SHARE * len(hits)
+                    many[at, there] = count > _LARGE_SHARE * len(probes)
+    carrier = np.array([sights[view].segments[n].carrier for view, n in members], dtype=bool)
+    same = (most & many) | (most & most.T)  # few points may lie where two things touch
+    return members, same & (carrier == carrier[:, None])  # what is flat looks like its table to another
+
+
+def _labels_of(points: NDArray[np.float32], sight: Sight) -> NDArray[np.int32]:
+    """The labels of those map points (N, 3) that a camera sees, and not merely what is before them."""
+    cloud, pose = sight.cloud, sight.map_from_camera
+    if cloud.intrinsics is None or cloud.map_from_camera is None:
+        return np.empty(0, np.int32)
+    camera = (points - pose[:3, 3]) @ pose[:3, :3]
+    camera = camera[camera[:, 2] > 0.1]
+    pixel = camera @ cloud.intrinsics.T
+    column, row = (pixel[:, :2] // pixel[:, 2:]).astype(int).T
+    height, width = sight.labels.shape
+    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    column, row, depth = column[inside], row[inside], camera[inside, 2]
+    with np.errstate(invalid="ignore"):
+        visible = np.abs(cloud.points_camera[row, column, 2] - depth) < 0.01 + 0.008 * depth**2
+    return np.asarray(sight.labels[row[visible], column[visible]])
+
+
+def _groups(same: NDArray[np.bool_], members: Sequence[Member]) -> list[list[Member]]:
+    """The connected components of a symmetrical relation (N, N)."""
+    count, root = connected_components(same, directed=False)
+    return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in range(count)]

@@ -1,0 +1,122 @@
+"""What all views together show of one thing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from nodes.perception_node.input.cloud import Floats
+from nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around
+from nodes.perception_node.views.segments import Segment
+
+_CELLS_ALONG, _MOST_CELLS = 40, 150
+_CELL_M = (0.004, 0.02)
+_CROWDED = 4.0
+_GAP_CELLS = 3
+_STRAY = 0.06
+_AROUND = np.ones((3, 3, 3))
+_BELOW_M = 0.03
+_BODY_M = 0.15
+
+
+@dataclass(frozen=True)
+class Thing:
+    """One thing as it was seen, not yet completed by what is hidden.
+
+    `cells`: (N, 3) one point for each small cube that holds any, map frame [m], so that near and far, seen
+    once and seen twice weigh the same; `colors`: (N, 3) their mean colours in [0, 1], or None.
+    `box`: around the cells, down to the support. `eyes`: (V, 3) where the cameras were [m].
+    `lifted_m`: how far above the support the lowest point is.
+    """
+
+    segments: tuple[Segment, ...]
+    cells: Numbers
+    colors: Numbers | None
+    box: Box
+    eyes: NDArray[np.float64]
+    lifted_m: float
+
+    @property
+    def carrier(self) -> bool:
+        """Others may stand on it: a top of it was seen."""
+        return any(segment.carrier for segment in self.segments)
+
+    @property
+    def whole(self) -> bool:
+        """No picture's edge cuts it."""
+        return not any(segment.cut for segment in self.segments)
+
+    @property
+    def count(self) -> int:
+        """Points of all views."""
+        return sum(segment.count for segment in self.segments)
+
+
+def thing_of(segments: Sequence[Segment], supports_m: Sequence[float]) -> Thing:
+    """Put the segments of one thing together; it stands on the highest support that is not above it.
+
+    Of a table often the top alone is seen, which is no support of its own.
+    """
+    points = np.concatenate([segment.points for segment in segments])
+    shades = [segment.colors for segment in segments if segment.colors is not None]
+    colors = np.concatenate(shades) if len(shades) == len(segments) else None
+    cells, shade = _cells(points, colors)
+    lowest, highest = float(cells[:, 2].min()), float(cells[:, 2].max())
+    carrier = any(segment.carrier for segment in segments)
+    below = min(lowest, highest - _BODY_M) if carrier else lowest
+    floor = min(0.0, lowest) if carrier else lowest
+    support = max((height for height in supports_m if height < below + _BELOW_M), default=floor)
+    return Thing(
+        segments=tuple(segments),
+        cells=cells,
+        colors=shade,
+        box=box_around(cells, best_yaw(cells), support),
+        eyes=np.array(sorted({tuple(segment.eye.tolist()) for segment in segments})),
+        lifted_m=lowest - support,
+    )
+
+
+def _cells(points: Floats, colors: NDArray[np.uint8] | None) -> tuple[Numbers, Numbers | None]:
+    """The mean point and colour of each occupied cube; lonely points go where others crowd."""
+    cell, counts, far = _cubes(points)
+    if far.any():
+        keep = ~far[cell]
+        points, colors = points[keep], None if colors is None else colors[keep]
+        cell, counts, _ = _cubes(points)
+    crowded = counts > (1 if counts.mean() > _CROWDED else 0)
+
+    def means(values: NDArray[np.generic]) -> Numbers:
+        sums = np.array([np.bincount(cell, column)[crowded] for column in values.T])
+        return np.asarray((sums / counts[crowded]).T)
+
+    return means(points), None if colors is None else means(colors) / 255.0
+
+
+def _cubes(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    """(N,) the number of each point's cube, (C,) how many each holds, and which are far from all others.
+
+    A thing's outline holds some of what is behind it: these few points are far from the thing.
+    """
+    corners = np.ascontiguousarray(points.T)  # a minimum over long rows is faster
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    longest = (high - low).max()
+    edge = max(np.clip(longest / _CELLS_ALONG, *_CELL_M), longest / _MOST_CELLS)
+    place = ((corners - low[:, None]) / edge).astype(np.int64)
+    shape = place.max(axis=1) + 1
+    key = (place[0] * shape[1] + place[1]) * shape[2] + place[2]
+    any_point = np.full(int(shape.prod()), -1, np.int32)  # in each cube
+    any_point[key] = np.arange(len(key))
+    used = np.flatnonzero(any_point >= 0)
+    coarse = tuple(place.take(any_point[used], axis=1) // _GAP_CELLS)
+    any_point[used] = np.arange(len(used))  # from here on the cube's number
+    cell = any_point[key]
+    counts = np.bincount(cell)
+    full = np.zeros(shape // _GAP_CELLS + 1, bool)
+    full[coarse] = True
+    cluster = ndimage.label(full, _AROUND)[0][coarse]
+    sizes = np.bincount(cluster, counts)
+    return cell, counts, sizes[cluster] < min(_STRAY * len(points), sizes.max())

@@ -1,0 +1,167 @@
+"""Frames as they come: what belongs together is taken together, what is wrong is told in a sentence."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from nodes.perception_node.input.frames import Frames, Pair, Plane, read_cloud, thinning
+from schemas.errors import BadRequest
+from schemas.scenes import CameraFrame
+
+DEPTH = CameraFrame(
+    camera="left",
+    encoding="depth32f",
+    width=64,
+    height=48,
+    stamp_ns=1_000,
+    sim_time_s=0.0,
+    intrinsics=(60.0, 0.0, 32.0, 0.0, 60.0, 24.0, 0.0, 0.0, 1.0),
+    map_from_camera=(1.0, 0.0, 0.0, 3.0, 0.0, 1.0, 0.0, 4.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.0, 0.0, 1.0),
+)
+NAN = float("nan")
+
+
+def pair(depth_m=1.0, rgb=None, **changes):
+    depth = structs.replace(DEPTH, **changes)
+    colour = structs.replace(depth, encoding="rgb8", **(rgb or {}))
+    pixels = np.full((depth.height, depth.width), depth_m, "<f4").tobytes()
+    return Pair(Plane(colour, lambda: bytes(colour.width * colour.height * 3)), Plane(depth, lambda: pixels))
+
+
+def put(frames, camera, stamp_ns, *encodings):
+    for encoding in encodings or ("rgb8", "depth32f"):
+        frames.put(structs.replace(DEPTH, camera=camera, stamp_ns=stamp_ns, encoding=encoding), bytes)
+
+
+def taken(frames, timeout_s=0.0):
+    return [(p.depth.frame.camera, p.stamp_ns) for p in frames.take(timeout_s)]
+
+
+def test_the_planes_of_one_moment_are_a_pair():
+    frames = Frames()
+    put(frames, "left", 1, "rgb8")
+    assert taken(frames) == []
+    put(frames, "left", 2, "depth32f")
+    assert taken(frames) == []
+    put(frames, "left", 2, "rgb8")
+    assert taken(frames) == [("left", 2)]
+    assert taken(frames) == []
+
+
+def test_the_newest_is_taken_and_what_was_not_taken_in_time_is_gone():
+    frames = Frames()
+    for stamp_ns in range(1, 5):
+        put(frames, "left", stamp_ns)
+    assert taken(frames) == [("left", 4)]
+    assert taken(frames) == []
+
+
+def test_cameras_that_see_together_are_taken_together():
+    frames = Frames()
+    put(frames, "left", 1)
+    assert taken(frames) == [("left", 1)]
+    put(frames, "right", 1)
+    put(frames, "left", 2)
+    later = threading.Timer(0.05, lambda: put(frames, "right", 2))
+    later.start()
+    assert taken(frames) == [("left", 2), ("right", 2)]
+    later.join()
+
+
+def test_cameras_with_clocks_of_their_own_take_turns():
+    frames = Frames()
+    seen = []
+    for moment in range(10, 100, 10):  # the right one is always a little newer
+        put(frames, "left", moment)
+        put(frames, "right", moment + 1)
+        seen += taken(frames)
+    assert [camera for camera, _ in seen] == ["right", "left"] * 4 + ["right"]
+    assert [stamp_ns // 10 for _, stamp_ns in seen] == list(range(1, 10))
+
+
+def test_a_frame_that_is_late_is_not_taken_after_a_newer_one():
+    frames = Frames()
+    put(frames, "left", 1)
+    put(frames, "right", 1)
+    assert taken(frames) == [("left", 1), ("right", 1)]
+    put(frames, "right", 2)
+    put(frames, "left", 3)
+    put(frames, "right", 3)
+    assert taken(frames) == [("left", 3), ("right", 3)]
+    assert taken(frames) == []
+
+
+def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
+    frames = Frames()
+    put(frames, "left", 1)
+    put(frames, "right", 1)
+    assert taken(frames) == [("left", 1), ("right", 1)]
+    for stamp_ns in range(2, 12):  # ten waits would be too many
+        put(frames, "left", stamp_ns)
+        assert taken(frames) == [("left", stamp_ns)]
+
+
+def test_a_frame_of_the_past_is_refused():
+    frames = Frames()
+    put(frames, "left", 3_000_000_000)
+    with pytest.raises(BadRequest, match="camera left: a frame of the past is passed over"):
+        put(frames, "left", 1_000_000_000)
+    put(frames, "right", 1_000_000_000)
+
+
+def test_a_good_pair_is_a_cloud():
+    cloud = read_cloud(pair(2.0))
+    assert cloud.points_camera.shape == (48, 64, 3)
+    assert cloud.points_camera[0, 0] == pytest.approx(((0.5 - 32) / 60 * 2, (0.5 - 24) / 60 * 2, 2.0))
+    assert (cloud.camera, cloud.stamp_ns) == ("left", 1_000)
+    assert cloud.map_from_camera[:3, 3].tolist() == [3.0, 4.0, 5.0]
+
+
+def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
+    intrinsics = (3000.0, 0.0, 2000.0, 0.0, 3000.0, 1500.0, 0.0, 0.0, 1.0)
+    large = pair(2.0, width=4000, height=3000, intrinsics=intrinsics)
+    step = thinning(large.depth.frame)
+    cloud = read_cloud(large)
+    assert step == 6
+    assert cloud.points_camera.shape == (500, 667, 3)
+    for row, column in ((0, 0), (100, 200), (499, 666)):
+        x, y = (step * column + 0.5 - 2000) / 3000 * 2, (step * row + 0.5 - 1500) / 3000 * 2
+        assert cloud.points_camera[row, column] == pytest.approx((x, y, 2.0), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        (
+            {"rgb": {"width": 32}},
+            r"its picture has 32 x 48 pixels, its depth 64 x 48; they must be of one size",
+        ),
+        ({"intrinsics": (0.0,) * 9}, r"the intrinsics .* do not fit"),
+        ({"intrinsics": (NAN,) * 9}, r"the intrinsics .* do not fit"),
+        ({"intrinsics": (1.0, 2.0)}, r"the intrinsics .* do not fit"),
+        ({"intrinsics": (60.0, 0, 900.0, 0, 60.0, 24.0, 0, 0, 1)}, r"the intrinsics .* do not fit"),
+        ({"map_from_camera": (1.0,) * 16}, r"its map_from_camera is no pose"),
+        ({"map_from_camera": ()}, r"its map_from_camera is no pose"),
+        ({"width": 0}, r"do not fit a picture of 0 x 48 pixels"),
+    ],
+)
+def test_a_frame_that_makes_no_sense_is_told_in_one_sentence(changes, reason):
+    with pytest.raises(BadRequest, match=f"^camera left: .*{reason}"):
+        read_cloud(pair(**changes))
+
+
+def test_too_few_bytes_are_no_picture():
+    cut = pair()._replace(depth=Plane(DEPTH, lambda: b"1234"))
+    with pytest.raises(
+        BadRequest, match="4 bytes are no depth32f picture of 64 x 48 pixels, which has 12288"
+    ):
+        read_cloud(cut)
+
+
+@pytest.mark.parametrize("depth_m", [0.0, NAN, np.inf])
+def test_a_frame_that_shows_nothing_is_an_empty_cloud(depth_m):
+    assert np.isnan(read_cloud(pair(depth_m)).points_camera[..., 2]).all()

@@ -1,0 +1,398 @@
+"""The laws of association: identity survives, an operator's word stays, what does not move is no news."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec import structs
+
+from nodes.perception_node.tracking.association import renamed
+from nodes.perception_node.tracking.map_updates import DISPLACED, MISSING
+from nodes.perception_node.tracking.tracks import Tracks
+from schemas.commands import Add, Remove, Update
+from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
+
+
+def moved(thing, pose):
+    return structs.replace(thing, pose=pose)
+
+
+def test_a_new_thing_becomes_an_entity_after_enough_looks_and_only_once():
+    table = Table([seen("Cup", at(1, 1))])
+    assert table.looks(CONFIG.confirm_looks - 1) == []
+    (add,) = table.look()
+    assert isinstance(add, Add)
+    assert (add.name, add.class_, add.ref, add.size) == ("cup1", "Cup", "cup", SIZES["Cup"])
+    assert add.at == (1.0, 1.0, 0.7)
+    assert add.confidence == pytest.approx(0.9)
+    assert table.looks(20) == []
+    assert table.taken_for == ("cup1",)
+
+
+@pytest.mark.parametrize(
+    ("thing", "looks"),
+    [
+        (seen("Cup", at(1, 1), p=0.9), 2),
+        (seen("Cup", at(1, 1), p=0.7), 3),
+        (seen("Cup", at(1, 1), p=0.9, whole=False), 3),
+    ],
+    ids=["clear", "of doubtful class", "cut by the picture's edge"],
+)
+def test_what_is_clear_is_an_entity_sooner(thing, looks):
+    table = Table([thing], config=replace(CONFIG, clear_looks=2, clear=0.8))
+    assert table.looks(looks - 1) == []
+    assert len(table.look()) == 1
+
+
+def test_what_flashes_up_or_moves_about_is_no_entity():
+    table = Table()
+    for step in range(20):
+        table.things = [seen("Cup", at(1 + 0.05 * step, 1))]
+        assert table.look() == ()
+    table.things = []
+    table.looks(3)
+    assert table.tracks.tentative == ()
+
+
+@pytest.mark.parametrize("to", [at(1.06, 1), at(1.5, 1.2), at(4, -3), at(1, 1, 0.9)])
+def test_identity_survives_a_move(to):
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.5, 1.5)), seen("Book", at(0.5, 1))])
+    table.looks(5)
+    names = dict(zip(table.taken_for, table.things, strict=True))
+    table.things[0] = moved(table.things[0], to)
+    (update,) = table.looks(20)
+    assert isinstance(update, Update)
+    assert names[update.name].pose == at(1, 1)
+    assert update.at == pytest.approx(to.position_m)
+    assert len(table.entities) == 3
+
+
+def test_a_thing_whose_yaw_nobody_can_tell_has_moved_all_the_same():
+    table = Table([seen("Book", at(1, 1))])
+    table.looks(5)
+    told = []
+    for look in range(4):
+        table.things = [seen("Book", at(2, 1, yaw=0.8 * (look % 2)))]
+        told += table.look()
+    assert [command.name for command in told] == ["book1"]
+
+
+def test_a_thing_on_its_way_is_followed_and_told_when_it_rests():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    for step in range(1, 10):
+        table.things = [seen("Cup", at(1 + 0.1 * step, 1))]
+        assert table.look() == ()
+    (update,) = table.looks(5)
+    assert (update.name, update.at) == ("cup1", pytest.approx((1.9, 1.0, 0.7)))
+
+
+def test_a_thing_that_comes_to_stand_in_anothers_place_keeps_its_name_and_so_does_the_other():
+    table = Table([seen("Cup", at(1, 1)), seen("Bottle", at(2, 1))])
+    table.looks(5)
+    table.things = [seen("Bottle", at(1, 1))]  # and nobody sees the cup
+    table.looks(2)
+    assert table.taken_for == ("bottle1",)
+    assert table.entities["bottle1"].pose == at(1, 1)
+    table.things = [seen("Bottle", at(1, 1)), seen("Cup", at(3, 1))]
+    table.looks(3)
+    assert table.taken_for == ("bottle1", "cup1")
+    assert table.entities["cup1"].pose == at(3, 1)
+
+
+def test_a_thing_that_was_carried_out_of_sight_for_a_moment_keeps_its_name():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things = []
+    assert table.looks(CONFIG.gone_looks - 1) == []
+    table.things = [seen("Cup", at(2, 1))]
+    assert [command.name for command in table.looks(5)] == ["cup1"]
+
+
+def test_perceptions_own_leaves_the_map_when_its_place_is_seen_empty():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things = []
+    (remove,) = table.looks(20)
+    assert isinstance(remove, Remove)
+    assert remove.names == ("cup1",)
+
+
+def test_or_is_marked_by_option_and_the_mark_goes_when_it_is_back():
+    table = Table([seen("Cup", at(1, 1))], config=replace(CONFIG, when_gone="mark"))
+    table.looks(5)
+    table.things = []
+    assert [command.conflict for command in table.looks(20)] == [MISSING]
+    table.things = [seen("Cup", at(1, 1))]
+    assert [command.conflict for command in table.looks(20)] == [""]
+
+
+def test_an_operators_is_marked_missing_and_found_elsewhere():
+    table = Table().told([entity("my_cup", "Cup", at(1, 1))])
+    assert [command.conflict for command in table.looks(20)] == [MISSING]
+    table.things = [seen("Cup", at(3, 1))]
+    (update,) = table.looks(20)
+    assert (update.name, update.at, update.conflict) == ("my_cup", (3.0, 1.0, 0.7), "")
+
+
+def test_an_operators_thing_of_unknown_size_is_looked_for_at_its_classs_usual_size_if_there_is_one():
+    table = Table().told(
+        [structs.replace(entity(name, kind, at(x, 1)), size_m=None) for name, kind, x in
+         (("my_cup", "Cup", 1), ("my_thing", "Object", 2))]
+    )  # fmt: skip
+    assert [(command.name, command.conflict) for command in table.looks(20)] == [("my_cup", MISSING)]
+
+
+def test_what_is_hidden_stays():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things, table.hidden = [], True
+    assert table.looks(50) == []
+
+
+def test_a_name_is_not_given_twice():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things = []
+    table.looks(20)
+    table.things = [seen("Cup", at(1, 1))]
+    assert [command.name for command in table.looks(20)] == ["cup2"]
+
+
+def test_a_new_process_takes_perceptions_own_from_the_map_and_goes_on():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    table.looks(5)
+    names = table.taken_for
+    table.tracks = Tracks()
+    assert table.look() == ()
+    assert table.taken_for == names
+    table.things[0] = moved(table.things[0], at(1.5, 2))
+    assert [command.name for command in table.looks(20)] == [names[0]]
+    table.tracks = Tracks()
+    del table.things[1]
+    assert [command.names for command in table.looks(20)] == [(names[1],)]
+
+
+def test_a_new_process_does_not_forget_at_its_first_looks_what_a_thing_was_taken_for():
+    table = Table([seen("Tableware", at(1, 1), SIZES["Cup"])])
+    table.looks(20)
+    table.tracks = Tracks()
+    table.things = [seen("Cup", at(1, 1))]
+    assert table.looks(CONFIG.confirm_looks) == []
+
+
+def test_a_name_that_was_given_before_is_exchanged():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(2, 1)), seen("Book", at(3, 1))])
+    adds = table.looks(CONFIG.confirm_looks)
+    tracks, add = renamed(table.tracks, adds[0], table.entities)
+    assert (add.name, add.reason) == ("cup3", "cup3 was seen")
+    assert add.at == adds[0].at
+    assert tracks.known == {
+        "cup3": table.tracks.known["cup1"],
+        **{name: table.tracks.known[name] for name in ("cup2", "book1")},
+    }
+    assert tracks.names == {"cup1", "cup2", "cup3", "book1"}
+
+
+SIDE_BY_SIDE = (0.35, 0.08, 0.1)
+"""The box of two cups at a distance of 0.27 m."""
+
+
+def test_two_things_that_are_seen_as_one_stay_what_they_are_however_long():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.27, 1))])
+    table.looks(5)
+    apart = table.things
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    assert table.looks(3 * CONFIG.odd_looks) == []
+    table.things = apart
+    assert table.looks(20) == []
+
+
+def test_what_came_to_stand_beside_another_is_told_once_it_was_seen_apart_from_it():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(3, 1))])
+    table.looks(5)
+    table.things[1] = moved(table.things[1], at(1.27, 1))
+    assert table.look() == ()
+    table.things = [seen("Object", at(1.135, 1), SIDE_BY_SIDE)]
+    (update,) = table.looks(20)
+    assert (update.name, update.at) == ("cup2", pytest.approx((1.27, 1.0, 0.7)))
+
+
+def test_one_look_at_it_with_its_neighbour_does_not_change_its_size():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(20)
+    table.things = [seen("Cup", at(2, 1), (0.08, 0.1, 0.1))]
+    table.look()
+    assert table.tracks.known["cup1"].size_m == pytest.approx(SIZES["Cup"], abs=0.002)
+
+
+def test_what_comes_to_stand_where_another_has_left_is_the_one_that_it_is_most_like():
+    """The one that left that place is like it too, but less."""
+    table = Table([seen("Object", at(1, 1), (0.08, 0.09, 0.12)), seen("Cup", at(2, 1))])
+    table.looks(5)
+    object_, cup = table.things
+    table.things = [cup]
+    table.look()
+    table.things = [moved(cup, at(1, 1))]
+    assert [command.name for command in table.looks(2)] == ["cup1"]
+    table.things = [moved(cup, at(1, 1)), moved(object_, at(2, 1))]
+    assert [command.name for command in table.looks(2)] == ["object1"]
+
+
+def test_a_big_thing_whose_box_holds_small_ones_is_new():
+    table = Table([seen("Cup", at(1, 1)), seen("Cup", at(1.2, 1.1))])
+    table.looks(5)
+    table.things.append(seen("Object", at(1.1, 1, 0.0), (1.0, 0.8, 0.8)))
+    assert [command.name for command in table.looks(20)] == ["object1"]
+
+
+def test_something_else_in_its_place_is_something_else():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.things = [seen("Bottle", at(1, 1))]
+    commands = table.looks(20)
+    assert [type(command) for command in commands] == [Remove, Add]
+    assert {e.class_ for e in table.entities.values()} == {"Bottle"}
+
+
+def test_a_closer_look_makes_perceptions_own_class_more_special_and_an_unsure_one_changes_nothing():
+    table = Table([seen("Tableware", at(1, 1), SIZES["Cup"])])
+    table.looks(5)
+    table.things = [seen("Cup", at(1, 1))]
+    (update,) = table.looks(30)
+    assert (update.class_, update.ref) == ("Cup", "cup")
+    table.things = [seen("Tableware", at(1, 1), SIZES["Cup"])]
+    assert table.looks(30) == []
+
+
+def test_what_contradicts_an_operator_is_kept_beside_his_word():
+    table = Table([seen("Bottle", at(1, 1), SIZES["Cup"])]).told([entity("my_cup", "Cup", at(1, 1))])
+    (update,) = table.looks(30)
+    assert (update.name, update.conflict) == ("my_cup", "looks like a Bottle")
+    assert table.entities["my_cup"].class_ == "Cup"
+    table.things = [seen("Cup", at(1, 1))]
+    assert [command.conflict for command in table.looks(50)] == [""]
+
+
+def test_where_an_operator_said_no_size_a_thing_of_any_size_may_be_what_he_meant():
+    my_cup = structs.replace(entity("my_cup", "Cup", at(1, 1)), size_m=None)
+    table = Table([seen("Bottle", at(1, 1))]).told([my_cup])
+    assert [(command.name, command.conflict) for command in table.looks(30)] == [
+        ("my_cup", "looks like a Bottle")
+    ]
+
+
+def test_what_perception_took_for_something_else_is_put_right():
+    table = Table([seen("Bottle", at(1, 1), SIZES["Cup"])])
+    table.looks(5)
+    table.things = [seen("Cup", at(1, 1))]
+    (update,) = table.looks(50)
+    assert (update.name, update.class_) == ("bottle1", "Cup")
+
+
+def test_a_half_hidden_thing_has_not_moved_nor_shrunk():
+    table = Table([seen("Bottle", at(1, 1))])
+    table.looks(5)
+    table.things = [seen("Bottle", at(1.01, 1, 0.8), (0.03, 0.07, 0.12), whole=False)]
+    assert table.looks(20) == []
+
+
+def test_more_of_it_seen_makes_it_bigger():
+    table = Table([seen("Book", at(1, 1), (0.16, 0.2, 0.03), whole=False)])
+    table.looks(5)
+    table.things = [seen("Book", at(1, 1), (0.16, 0.3, 0.03))]
+    updates = table.looks(30)
+    assert updates
+    assert table.entities["book1"].size_m == pytest.approx((0.16, 0.3, 0.03), abs=0.05)
+    assert table.looks(30) == []
+
+
+def test_a_box_turned_by_a_quarter_with_its_sides_exchanged_is_the_same_box():
+    table = Table([seen("Book", at(1, 1, yaw=0.1))])
+    table.looks(5)
+    x, y, z = SIZES["Book"]
+    table.things = [seen("Book", at(1, 1, yaw=0.1 + 1.5708), (y, x, z))]
+    assert table.looks(10) == []
+    table.things = [seen("Book", at(1, 1, yaw=0.9))]
+    (update,) = table.looks(10)
+    assert update.at == pytest.approx((1.0, 1.0, 0.7))
+
+
+def test_an_operators_new_pose_counts_until_something_else_is_seen():
+    table = Table([seen("Cup", at(1, 1))])
+    table.looks(5)
+    table.entities["cup1"] = structs.replace(table.entities["cup1"], pose=at(5, 5))
+    (update,) = table.looks(20)
+    assert (update.name, update.at) == ("cup1", pytest.approx((1.0, 1.0, 0.7)))
+
+
+def test_places_and_things_without_a_position_are_none_of_perceptions_business():
+    table = Table().told([entity("kitchen1", "Cup", at(1, 1), place=True), entity("my_cup", "Cup", None)])
+    assert table.looks(20) == []
+
+
+cells = st.tuples(st.integers(-4, 4), st.integers(-4, 4))
+kinds = st.sampled_from(sorted(SIZES))
+layouts = st.dictionaries(cells, kinds, max_size=8)
+
+
+def things_of(layout):
+    return [seen(kind, at(0.6 * x, 0.6 * y)) for (x, y), kind in layout.items()]
+
+
+def entities_of(layout, source):
+    return [entity(f"{source}_{x}_{y}".replace("-", "m"), kind, at(0.6 * x, 0.6 * y), source=source)
+            for (x, y), kind in layout.items()]  # fmt: skip
+
+
+@settings(deadline=None, max_examples=40)
+@given(layouts, layouts, layouts)
+def test_whatever_is_seen_and_said_the_map_comes_to_rest_and_holds_what_is_there(there, said, believed):
+    """The table asserts that no name is taken and that nothing of an operator's is removed or renamed."""
+    operators = {cell: kind for cell, kind in said.items() if cell not in believed}
+    table = Table(things_of(there)).told(
+        [*entities_of(operators, "operator"), *entities_of(believed, "perception")]
+    )
+    table.looks(40)
+    assert table.looks(5) == []
+    assert all(table.taken_for)
+    assert len(set(table.taken_for)) == len(there)
+    standing = {thing.pose for thing in table.things}
+    unseen = [e for name, e in table.entities.items() if name not in table.taken_for]
+    assert all(e.shape_provenance.source == "operator" for e in unseen)
+    assert all(e.conflict == MISSING for e in unseen if e.pose not in standing)
+    assert all(e.conflict in (MISSING, DISPLACED) for e in unseen if e.pose in standing)
+
+
+@settings(deadline=None, max_examples=40)
+@given(layouts, st.lists(st.tuples(st.integers(0, 7), cells), max_size=6))
+def test_every_thing_keeps_its_name_through_any_moves_to_free_places(layout, moves):
+    table = Table(things_of(layout))
+    table.looks(5)
+    names = table.taken_for
+    for which, (x, y) in moves if layout else []:
+        free = {thing.pose.position_m[:2] for thing in table.things}
+        to = at(0.6 * x, 0.6 * y)
+        if to.position_m[:2] not in free:
+            index = which % len(table.things)
+            table.things[index] = moved(table.things[index], to)
+            table.looks(4)
+    assert table.taken_for == names
+
+
+@settings(deadline=None, max_examples=40)
+@given(layouts, st.lists(st.floats(-0.007, 0.007), min_size=60, max_size=60))
+def test_noise_is_no_news(layout, noise):
+    table = Table(things_of(layout))
+    still = list(table.things)
+    wobble = iter(noise * 20)
+    for look in range(15):
+        table.things = [
+            moved(thing, at(thing.pose.position_m[0] + next(wobble), thing.pose.position_m[1] + next(wobble)))
+            for thing in still
+        ]
+        commands = table.look()
+        assert not commands or look == CONFIG.confirm_looks - 1

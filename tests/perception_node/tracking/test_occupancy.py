@@ -1,0 +1,97 @@
+"""What a depth picture says of a place: a box that stands there, is gone, or is hidden."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nodes.perception_node.input.cloud import Cloud
+from nodes.perception_node.input.projection import cloud_of
+from nodes.perception_node.tracking.occupancy import occupancy_in
+from schemas.entities import Pose, orientation_from_yaw
+
+WIDTH, HEIGHT, FOCAL = 320, 240, 300.0
+INTRINSICS = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0]])
+TABLE_Z = 0.7
+CUP = (0.08, 0.08, 0.1)
+
+
+def looking_down(angle_rad=0.7, distance_m=1.2) -> np.ndarray:
+    """A camera south of the table's middle and above it, occupancy_in at it."""
+    forward = np.array([0.0, np.cos(angle_rad), -np.sin(angle_rad)])
+    right = np.array([1.0, 0.0, 0.0])
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
+    pose[:3, 3] = np.array([0.0, 0.0, TABLE_Z]) - distance_m * forward
+    return pose
+
+
+def picture(boxes=(), pose=None, noise_m=0.0) -> Cloud:
+    """The depth of an endless table with upright boxes (middle of the bottom, size) that are not turned."""
+    pose = looking_down() if pose is None else pose
+    u, v = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
+    rays = np.stack([(u - WIDTH / 2) / FOCAL, (v - HEIGHT / 2) / FOCAL, np.ones_like(u)], -1) @ pose[:3, :3].T
+    eye = pose[:3, 3]
+    depth = np.where(rays[..., 2] < -1e-6, (TABLE_Z - eye[2]) / np.minimum(rays[..., 2], -1e-6), np.inf)
+    for bottom, size in boxes:
+        low = np.array(bottom) - [size[0] / 2, size[1] / 2, 0.0]
+        one, other = (low - eye) / rays, (low + size - eye) / rays
+        enter, leave = np.minimum(one, other).max(-1), np.maximum(one, other).min(-1)
+        depth = np.where((enter < leave) & (enter > 0), np.minimum(depth, enter), depth)
+    depth = depth + np.random.default_rng(0).normal(0.0, noise_m, depth.shape)
+    return cloud_of(depth.astype(np.float32), None, INTRINSICS, pose)
+
+
+def stands(x, y, z=TABLE_Z, yaw=0.0) -> Pose:
+    return Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(yaw))
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.003])
+@pytest.mark.parametrize("size", [CUP, (0.07, 0.07, 0.28), (0.2, 0.15, 0.03), (0.18, 0.03, 0.015)])
+def test_a_thing_is_there_or_is_gone(size, noise_m):
+    there = picture([((0.1, 0.05, TABLE_Z), size)], noise_m=noise_m)
+    assert occupancy_in([there])(stands(0.1, 0.05), size) == "occupied"
+    assert occupancy_in([picture(noise_m=noise_m)])(stands(0.1, 0.05), size) == "free"
+
+
+def test_what_stands_behind_something_is_hidden():
+    screen = ((0.0, -0.15, TABLE_Z), (0.4, 0.02, 0.4))
+    assert occupancy_in([picture([screen])])(stands(0.0, 0.1), CUP) == "unknown"
+
+
+def test_a_neighbour_does_not_fill_a_place():
+    neighbour = ((0.09, 0.0, TABLE_Z), CUP)
+    assert occupancy_in([picture([neighbour])])(stands(0.0, 0.0), CUP) == "free"
+
+
+@pytest.mark.parametrize(
+    "place", [stands(5.0, 0.0), stands(0.0, -3.0), stands(0.66, 0.0), stands(0.0, 0.0, 5.0)]
+)
+def test_what_is_out_of_view_nobody_can_tell(place):
+    assert occupancy_in([picture()])(place, CUP) == "unknown"
+
+
+def test_where_nothing_is_measured_nobody_can_tell():
+    nothing = cloud_of(np.zeros((HEIGHT, WIDTH), np.float32), None, INTRINSICS, looking_down())
+    assert occupancy_in([nothing])(stands(0.0, 0.0), CUP) == "unknown"
+    assert occupancy_in([])(stands(0.0, 0.0), CUP) == "unknown"
+
+
+def test_of_two_views_the_one_that_sees_something_counts():
+    screen = ((0.0, -0.15, TABLE_Z), (0.4, 0.02, 0.4))
+    above = looking_down(1.4)
+    assert occupancy_in([picture([screen]), picture([screen], above)])(stands(0.0, 0.1), CUP) == "free"
+    cup = ((0.0, 0.1, TABLE_Z), CUP)
+    assert (
+        occupancy_in([picture([screen, cup]), picture([screen, cup], above)])(stands(0.0, 0.1), CUP)
+        == "occupied"
+    )
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.floats(-0.3, 0.3), st.floats(-0.2, 0.2), st.floats(-3.1, 3.1), st.floats(0.4, 1.4))
+def test_an_empty_table_is_free_everywhere_in_view(x, y, yaw, angle_rad):
+    view = occupancy_in([picture(pose=looking_down(angle_rad))])
+    assert view(stands(x, y, yaw=yaw), (0.1, 0.06, 0.12)) == "free"

@@ -1,0 +1,44 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nodes.perception_node.tracking.class_hierarchy import ANYTHING
+from nodes.perception_node.tracking.votes import Votes
+from tests.perception_node.things import CLASSES
+
+looks = st.lists(st.tuples(st.sampled_from(["Cup", "Tableware", "Bottle", "Object"]), st.floats(0.1, 1.0)))
+
+
+def cast(*said):
+    votes = Votes()
+    for class_name, probability in said:
+        votes = votes.cast(class_name, probability)
+    return votes
+
+
+def test_what_all_looks_say_is_believed():
+    assert cast(("Cup", 0.9), ("Cup", 0.8)).belief(CLASSES) == "Cup"
+
+
+def test_where_looks_differ_what_they_have_in_common_is_believed():
+    assert cast(*[("Cup", 0.9), ("Tableware", 0.9), ("Tableware", 0.9)]).belief(CLASSES) == "Tableware"
+    assert cast(*[("Cup", 0.9), ("Bottle", 0.9), ("Book", 0.9)]).belief(CLASSES) == "Object"
+
+
+def test_nothing_said_or_nothing_sure_is_any_object():
+    assert Votes().belief(CLASSES) == ANYTHING
+    assert cast(("Cup", 0.3)).belief(CLASSES) == ANYTHING
+
+
+def test_new_looks_outweigh_old_ones():
+    votes = cast(*[("Cup", 0.9)] * 10)
+    for _ in range(20):
+        votes = votes.cast("Bottle", 0.9)
+    assert votes.belief(CLASSES) == "Bottle"
+
+
+@given(looks)
+def test_a_class_has_no_more_of_the_votes_than_one_above_it(said):
+    votes = cast(*said)
+    shares = [votes.share(name, CLASSES) for name in ("Cup", "Tableware", "Object")]
+    assert shares == sorted(shares)
+    assert 0.0 <= shares[0] <= shares[-1] <= 1.0 + 1e-9
