@@ -25,7 +25,7 @@ from nodes.perception_node.tracking.association import associate
 from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.vision.view import look_at
 from nodes.training.scenes import Item, Stage
 from schemas.commands import Add, Command, Remove, Update

@@ -12,7 +12,7 @@ from benchmarks.perception.simulated import Judge, looked, score, shots
 from benchmarks.perception.table import Row
 from nodes.perception_node.pipeline import look
 from nodes.perception_node.recognition.shipped_votes import UNKNOWN
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.training.gathering import gather, read
 from nodes.training.recognition import learn
 from nodes.training.taxonomy import class_of_models

@@ -6,10 +6,10 @@ from collections.abc import Callable, Collection, Iterable
 
 import numpy as np
 
-from nodes.sim_node import build
 from nodes.sim_node.bodies import BodyRecord
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.parts import Vec3
+from nodes.sim_node.physics import build
 from schemas.entities import Pose
 from schemas.scenes import BodyOrder, Placement
 

@@ -10,13 +10,14 @@ from collections.abc import Callable, Iterable, Sequence
 import mujoco
 import numpy as np
 
-from nodes.sim_node import build, groundwork, orders
+from nodes.sim_node import orders
 from nodes.sim_node.bodies import Floats, Ints, pose_of
-from nodes.sim_node.engine import Engine
 from nodes.sim_node.models.facets import surface_of
 from nodes.sim_node.models.library import build as library_model
 from nodes.sim_node.orders import ModelSource
-from nodes.sim_node.settling import Settling
+from nodes.sim_node.physics import base_scene, build
+from nodes.sim_node.physics.engine import Engine
+from nodes.sim_node.placement.settling import Settling
 from nodes.sim_node.vision.view import bulk, overview
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Placement, Poses, Scene, Spawned, Surfaces
 
@@ -40,7 +41,7 @@ class World:
         `meanwhile` is called again and again while models are read and compiled. It may let time pass
         (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there.
         """
-        self._engine = Engine(ground or groundwork.bare_floor(), meanwhile)
+        self._engine = Engine(ground or base_scene.bare_floor(), meanwhile)
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
         self.name = name
@@ -107,8 +108,8 @@ class World:
 
     def look_over(self) -> None:
         """Let the bare floor's camera see all bodies from as near as can be."""
-        view = overview(*self.extent(), 4, 3, fovy_rad=groundwork.OVERVIEW_FOVY_RAD)
-        self._engine.aim(groundwork.OVERVIEW, view)
+        view = overview(*self.extent(), 4, 3, fovy_rad=base_scene.OVERVIEW_FOVY_RAD)
+        self._engine.aim(base_scene.OVERVIEW, view)
 
     # what is told
 

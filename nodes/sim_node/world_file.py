@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from nodes.sim_node import groundwork
 from nodes.sim_node.models.parts import rotation_matrix
 from nodes.sim_node.orders import ModelSource
+from nodes.sim_node.physics import base_scene
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
 from schemas import codec, scene_files
@@ -32,12 +32,12 @@ def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], N
         return World(models=models, meanwhile=meanwhile)
     content = _read(path)
     if path.suffix != ".json" and not codec.looks_like_json(content):
-        return World(groundwork.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
+        return World(base_scene.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
     scene = scene_files.read(content, path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )
-    world = World(groundwork.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
+    world = World(base_scene.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
     spawned = world.spawn(_orders(scene.entities))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be made: {reason}")

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Colour, Vec3
-from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.view import View, look_at
 from nodes.training.placements import Rectangle, spread
 from nodes.training.scenes import Item

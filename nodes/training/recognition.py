@@ -16,7 +16,7 @@ from nodes.perception_node.recognition.perceptron import Perceptron
 from nodes.perception_node.recognition.shipped_votes import CLUTTER, SHIPPED, UNKNOWN, VOTERS, Learnt, save
 from nodes.perception_node.recognition.sides import SIZE_FEATURES
 from nodes.perception_node.recognition.vote import ballots, expected_sizes, pool, shown_to_voters, vote
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.training.fitting import Numbers, classifier, regressor
 from nodes.training.gathering import Gathered, gather, read, write
 from nodes.training.joining import learn_joining

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.projection import cloud_of
 from nodes.sim_node.models.library import Model, assemble
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Colour, Vec3
-from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.camera import Eye
 from nodes.sim_node.vision.noise import kinect_noise
 from nodes.sim_node.vision.view import View

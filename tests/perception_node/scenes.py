@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.vision.view import look_at
 from nodes.training.scenes import Item, Shot, Stage
 

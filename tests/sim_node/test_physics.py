@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.world import World
 from schemas.entities import Pose, angle_rad, distance_m
 from tests.sim_node.orders import hand, order, pose

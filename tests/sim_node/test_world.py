@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from nodes.sim_node import build
-from nodes.sim_node.groundwork import read_mjcf
+from nodes.sim_node.physics import build
+from nodes.sim_node.physics.base_scene import read_mjcf
 from nodes.sim_node.vision.view import camera_names
 from nodes.sim_node.world import World
 from schemas.entities import angle_rad, distance_m

@@ -1,4 +1,4 @@
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
 from nodes.training.taxonomy import class_of_models, hierarchy
 
 

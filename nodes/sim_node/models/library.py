@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from nodes.sim_node.models.forms import shifted
+from nodes.sim_node.models.model_table import MODELS, ModelKind
 from nodes.sim_node.models.parts import Inertial, Part, Vec3, bounds, box, inertial, quarter_turned
-from nodes.sim_node.models.table import MODELS, ModelKind
 
 FALLBACK_M: Vec3 = (0.3, 0.3, 0.3)
 """The size of a box for a class without a model and an entity without a size."""

@@ -10,9 +10,9 @@ import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from nodes.sim_node.build import add_part
 from nodes.sim_node.models.library import Model, build
-from nodes.sim_node.models.table import MODELS
+from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.physics.build import add_part
 from nodes.sim_node.vision.raycast import raycast
 from nodes.sim_node.vision.view import FROM_THE_FRONT, overview
 

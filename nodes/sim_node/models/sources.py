@@ -6,9 +6,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from nodes.sim_node.models.files import SUFFIXES, read_model
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as built_in
+from nodes.sim_node.models.model_files import SUFFIXES, read_model
 from nodes.sim_node.models.parts import Vec3
 from schemas.errors import did_you_mean
 

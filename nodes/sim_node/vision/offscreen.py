@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node.build import FELT_GROUP
+from nodes.sim_node.physics.build import FELT_GROUP
 from nodes.sim_node.vision.view import View
 
 _NEAR_M, _FAR_M = 0.05, 200.0

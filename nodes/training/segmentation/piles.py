@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.projection import cloud_of
 from nodes.sim_node.models.library import Model, assemble
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import ALONG_X, Colour, Vec3, box, rod
-from nodes.sim_node.models.table import MODELS
 from nodes.sim_node.vision.camera import Eye
 from nodes.sim_node.vision.noise import kinect_noise
 from nodes.sim_node.vision.view import View, look_at

@@ -5,8 +5,8 @@ import pytest
 
 from nodes.sim_node.models.facets import facets, surface_of
 from nodes.sim_node.models.library import build
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Mesh, Part, Shape, about, ball, box, pill, rod
-from nodes.sim_node.models.table import MODELS
 
 RED = (1.0, 0.0, 0.0)
 TILTED = about("x", 0.7)

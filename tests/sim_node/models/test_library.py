@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from nodes.sim_node.models.library import ModelError, build
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.parts import Role, bounds
-from nodes.sim_node.models.table import MODELS
 
 HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.sim_node.bodies import BodyRecord, Floats, pose_of
-from nodes.sim_node.build import FELT_GROUP, IMPEDANCE
+from nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
 from nodes.sim_node.vision.view import OPTICAL, View, look_at
 from schemas.entities import NAME_PATTERN
 from schemas.errors import BadFile

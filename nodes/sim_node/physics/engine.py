@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nodes.sim_node import berths, build, groundwork, sleep
-from nodes.sim_node.berths import Berth
 from nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
 from nodes.sim_node.models.library import Model
-from nodes.sim_node.rest import RestWatch
-from nodes.sim_node.stage import Stage
+from nodes.sim_node.physics import base_scene, body_slots, build, sleep
+from nodes.sim_node.physics.body_slots import Berth
+from nodes.sim_node.physics.rest import RestWatch
+from nodes.sim_node.placement.obstacles import Stage
 from nodes.sim_node.vision.view import View
 from schemas.entities import Pose
 
@@ -29,13 +29,13 @@ class Engine:
 
     def __init__(self, ground: mujoco.MjSpec, meanwhile: Callable[[], None]) -> None:
         """A world of nothing but its ground yet; `meanwhile` is called while it compiles, and may `step`."""
-        groundwork.prepare(ground)
+        base_scene.prepare(ground)
         self._meanwhile = meanwhile
         self._ground = ground
         self._shapes: dict[str, Model] = {}
         self._berths: dict[str, Berth] = {}
         self._vacant: list[Berth] = []
-        self.records = groundwork.bodies_of(ground)
+        self.records = base_scene.bodies_of(ground)
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
@@ -117,13 +117,13 @@ class Engine:
     def _leave(self, name: str) -> None:
         berth = self._berths.pop(name, None)
         if berth is not None:
-            berths.clear(self.model, self.data, berth)
+            body_slots.clear(self.model, self.data, berth)
             self._vacant.append(berth)
 
     def _moor(self, name: str, pose: Pose) -> bool:
         """Give the body the smallest berth that will do; False if there is none."""
         record, shape = self.records[name], self._shapes.get(name)
-        alone = berths.compiled_alone(shape) if shape is not None else None
+        alone = body_slots.compiled_alone(shape) if shape is not None else None
         if alone is None:
             return False
         fitting = [berth for berth in self._vacant if berth.takes(alone, static=record.static)]
@@ -132,7 +132,7 @@ class Engine:
         berth = min(fitting, key=lambda berth: berth.geoms)
         self._vacant.remove(berth)
         self._berths[name] = berth
-        berths.moor(self.model, self.data, berth, (record, alone), pose)
+        body_slots.moor(self.model, self.data, berth, (record, alone), pose)
         return True
 
     def _recompile(self, poses: Mapping[str, Pose]) -> None:
@@ -156,7 +156,7 @@ class Engine:
         self._follow(before)
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
-        """A new model of all bodies, each at its pose, and of some vacant berths."""
+        """A new model of all bodies, each at its pose, and of some vacant body_slots."""
         self.compiling = True
         try:
             self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
@@ -166,17 +166,17 @@ class Engine:
         self._berths = {name: Berth.of(self.model, name) for name in self._shapes}
         self._vacant = [Berth.of(self.model, name) for name in spares]
         for berth in self._vacant:
-            berths.clear(self.model, self.data, berth)
+            body_slots.clear(self.model, self.data, berth)
         mujoco.mj_kinematics(self.model, self.data)
         self.index = self._indexed()
         self.revision += 1
 
     def _compiled(self, poses: Mapping[str, Pose]) -> tuple[mujoco.MjModel, list[str]]:
-        """That model, and the names of the vacant berths."""
+        """That model, and the names of the vacant body_slots."""
         spec = self._ground.copy()
         made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
         build.add_bodies(spec, made)
-        spares = build.add_spares(spec, berths.spare_parts(len(made)))
+        spares = build.add_spares(spec, body_slots.spare_parts(len(made)))
         for name, record in self.records.items():
             if record.static and name not in self._shapes:
                 build.set_standing(spec, record, poses[name])
@@ -209,7 +209,7 @@ class Engine:
 
     def aim(self, camera: str, view: View) -> None:
         """Put a camera of the ground where the view is seen from."""
-        groundwork.aim(self._ground.camera(camera), view)
+        base_scene.aim(self._ground.camera(camera), view)
         self._recompile({})
 
     # time goes on

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from nodes.sim_node.models import (
+from nodes.sim_node.models.catalogue import (
     appliances,
     belongings,
     computers,

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from nodes.sim_node.berths import Berth
+from nodes.sim_node.physics.body_slots import Berth
 from nodes.sim_node.world import World
 from tests.sim_node.orders import hand, order, pose
 

@@ -10,10 +10,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from nodes.sim_node import build
 from nodes.sim_node.bodies import Floats
 from nodes.sim_node.models.library import DENSITY, Model, ModelError, assemble, check_size
 from nodes.sim_node.models.parts import Colour, Mesh, Part, Role, Shape, Vec3, bounds, rotation_matrix
+from nodes.sim_node.physics import build
 
 MESHES = (".obj", ".stl", ".glb")
 SUFFIXES = (".xml", *MESHES)

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from nodes.sim_node.bodies import pose_of
-from nodes.sim_node.engine import Engine
 from nodes.sim_node.orders import Newcomer
-from nodes.sim_node.placing import place
+from nodes.sim_node.physics.engine import Engine
+from nodes.sim_node.placement.clearance import place
 from schemas.entities import Pose
 
 _NEAR_M = 0.02
