@@ -11,7 +11,7 @@ from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
-from nodes.coordinator.keeping import Keeping
+from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
 from schemas import commands as c
 from schemas import errors

@@ -16,11 +16,11 @@ from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
-from nodes.coordinator.keeping import Keeping
-from nodes.coordinator.running import Running
-from nodes.coordinator.talking import hold_later
+from nodes.coordinator.scene.reconciler import Keeping
+from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node

@@ -6,8 +6,8 @@ from concurrent.futures import Future
 
 import pytest
 
+from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
-from nodes.coordinator.talking import hold_later
 from nodes.coordinator.turns import Turns
 from nodes.runtime.futures import settle
 from ontology import vocabulary as v

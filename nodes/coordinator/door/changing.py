@@ -6,11 +6,11 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
+from nodes.coordinator.dialogues import Talk
 from nodes.coordinator.door.committing import commit, commit_built, new_id, once, seq, stars
-from nodes.coordinator.door.map_view import MapView
-from nodes.coordinator.hands import Hand
+from nodes.coordinator.door.known_map import MapView
 from nodes.coordinator.naming import free_position
-from nodes.coordinator.talking import Talk
+from nodes.coordinator.scene.hands import Hand
 from schemas import errors
 from schemas.commands import Add, Clear, Command, Remove, Update
 from schemas.commits import Commit, Transaction

@@ -10,8 +10,8 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.coordinator.class_names import ClassNames
-from nodes.coordinator.door.map_view import MapView
-from nodes.coordinator.talking import Question, Talk
+from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.door.known_map import MapView
 from schemas import errors
 from schemas.bridge import StarQuery
 from schemas.commands import Classes, Command

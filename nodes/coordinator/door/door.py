@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from nodes.coordinator.dialogues import Ask, Talk, hold, in_step
 from nodes.coordinator.door import changing, loading, undoing
-from nodes.coordinator.door.map_view import MapView
-from nodes.coordinator.hands import Hands
-from nodes.coordinator.talking import Ask, Talk, hold, in_step
+from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.scene.hands import Hands
 from nodes.coordinator.turns import Change
 from schemas import errors
 from schemas.commands import Add, Clear, Command, Load, Remove, Undo, Update

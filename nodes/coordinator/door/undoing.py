@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.committing import once, taken_with_classes
-from nodes.coordinator.door.map_view import MapView
-from nodes.coordinator.talking import Question, Talk
+from nodes.coordinator.door.known_map import MapView
 from schemas.commands import Undo
 from schemas.commits import Commit
 from schemas.replies import Changed

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes.coordinator.running import Running
+from nodes.coordinator.scene.scene_commands import Running
 from schemas import commands as c
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.coordinator.config import Thresholds
-from nodes.coordinator.keeper import Actions, latest, reconcile
+from nodes.coordinator.scene.reconcile import Actions, latest, reconcile
 from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 from schemas.scenes import Body
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
-from nodes.coordinator.keeping import GHOSTLY, Keeping
+from nodes.coordinator.scene.reconciler import GHOSTLY, Keeping
 from nodes.runtime.futures import then
 from schemas import commands as c
 from schemas import errors, wording

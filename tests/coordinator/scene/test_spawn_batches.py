@@ -1,4 +1,4 @@
-from nodes.coordinator.batches import BATCH, batches
+from nodes.coordinator.scene.spawn_batches import BATCH, batches
 from schemas.entities import Pose
 from schemas.scenes import BodyOrder
 

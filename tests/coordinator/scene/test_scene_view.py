@@ -1,4 +1,4 @@
-from nodes.coordinator.scene_view import SceneView
+from nodes.coordinator.scene.scene_view import SceneView
 from schemas.entities import Pose
 from schemas.scenes import Body, Poses, Scene
 

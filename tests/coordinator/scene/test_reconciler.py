@@ -5,9 +5,9 @@ from itertools import count
 
 import pytest
 
-from nodes.coordinator.batches import BATCH
 from nodes.coordinator.config import CoordinatorConfig
-from nodes.coordinator.keeping import Keeping
+from nodes.coordinator.scene.reconciler import Keeping
+from nodes.coordinator.scene.spawn_batches import BATCH
 from schemas import commands as c
 from schemas import errors
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned

@@ -12,11 +12,11 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any, TypeVar
 
-from nodes.coordinator.batches import batches
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
-from nodes.coordinator.keeper import Actions, latest, order, reconcile
-from nodes.coordinator.scene_view import SceneView
+from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
+from nodes.coordinator.scene.scene_view import SceneView
+from nodes.coordinator.scene.spawn_batches import batches
 from schemas import errors
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded

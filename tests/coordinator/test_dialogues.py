@@ -6,7 +6,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.talking import Question, hold, hold_later, in_step
+from nodes.coordinator.dialogues import Question, hold, hold_later, in_step
 from schemas import errors
 from schemas.bridge import Outcome, StarQuery, Transactions
 from schemas.commits import Commit, Star, Transaction
