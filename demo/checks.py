@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
-from nodes.recorder.reading import read_commits
+from nodes.recorder.recorded_commits import read_commits
 
 if TYPE_CHECKING:
     from demo.tour import Tour

@@ -20,7 +20,7 @@ from nodes.perception_node.recognition.shipped_votes import shipped
 from nodes.perception_node.segmentation import segment
 from nodes.perception_node.segmentation.merging import Judge
 from nodes.perception_node.segmentation.shipped_trees import MergeModel
-from nodes.training.segmentation.recorded import Scene, read_scenes
+from nodes.training.segmentation.recorded_scenes import Scene, read_scenes
 from nodes.training.segmentation.teach import learn, lessons, made_up
 
 Picture = NDArray[np.uint8]

@@ -19,7 +19,7 @@ from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.segmentation import segment
 from nodes.perception_node.segmentation.merging import Judge
 from nodes.perception_node.segmentation.shipped_trees import MergeModel, shipped
-from nodes.training.segmentation.recorded import Scene, read_scenes
+from nodes.training.segmentation.recorded_scenes import Scene, read_scenes
 from nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
 
 IOU, LEAST_POINTS = 0.5, 400

@@ -19,7 +19,7 @@ from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.pipeline import Look, look
 from nodes.perception_node.recognition.shipped_votes import Learnt
 from nodes.sim_node.models.model_table import MODELS
-from nodes.training.scenes import Item, Shot, Stage
+from nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 from nodes.training.taxonomy import class_of_models
 from schemas.entities import Pose, Size
 from schemas.perception import Observation

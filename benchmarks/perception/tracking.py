@@ -27,7 +27,7 @@ from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
 from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.vision.view import look_at
-from nodes.training.scenes import Item, Stage
+from nodes.training.scenes.simulated_scenes import Item, Stage
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance
 

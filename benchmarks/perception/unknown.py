@@ -13,8 +13,8 @@ from benchmarks.perception.table import Row
 from nodes.perception_node.pipeline import look
 from nodes.perception_node.recognition.shipped_votes import UNKNOWN
 from nodes.sim_node.models.model_table import MODELS
-from nodes.training.gathering import gather, read
-from nodes.training.recognition import learn
+from nodes.training.recognition.__main__ import learn
+from nodes.training.recognition.gathering import gather, read
 from nodes.training.taxonomy import class_of_models
 
 LEFT_OUT = 10

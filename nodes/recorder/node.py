@@ -7,13 +7,13 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes.recorder.config import RecorderConfig
-from nodes.recorder.graph import graph_of
-from nodes.recorder.map_state import MapState, missed
+from nodes.recorder.drawing.graph import graph_of
+from nodes.recorder.drawing.stage import Stage
+from nodes.recorder.drawing.surfaces import Kind
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
-from nodes.recorder.scene_state import SceneState
-from nodes.recorder.stage import Stage
-from nodes.recorder.surfaces import Kind
+from nodes.recorder.state.map_state import MapState, missed
+from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.loop import Node, open_node
 from schemas import keys, wording
 from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable
 
 from nodes import bus
-from nodes.recorder import perception_archetypes as archetypes
+from nodes.recorder.drawing import perception_archetypes as archetypes
 from nodes.recorder.recording import Recording
 from nodes.runtime.loop import Node
 from schemas import keys

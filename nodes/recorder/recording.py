@@ -14,10 +14,10 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from nodes.recorder import commit_text
-from nodes.recorder.blueprint import bounds_of, layout
-from nodes.recorder.figures import Figure
-from nodes.recorder.geometry import shape_of
-from nodes.recorder.graph import Graph, nodes_and_edges
+from nodes.recorder.drawing.blueprint import bounds_of, layout
+from nodes.recorder.drawing.figures import Figure
+from nodes.recorder.drawing.geometry import shape_of
+from nodes.recorder.drawing.graph import Graph, nodes_and_edges
 from schemas import errors
 from schemas.commits import Commit
 from schemas.entities import Pose

@@ -7,7 +7,7 @@ import subprocess
 import sysconfig
 from pathlib import Path
 
-from nodes.recorder.reading import require_recording
+from nodes.recorder.recorded_commits import require_recording
 from schemas import errors
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from nodes import bus
 from nodes.recorder.node import Recorder
-from nodes.recorder.reading import read_commits
+from nodes.recorder.recorded_commits import read_commits
 from nodes.recorder.recording import open_recording
 from nodes.runtime.loop import Node
 from schemas import codec, errors, keys

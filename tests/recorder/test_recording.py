@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from nodes.recorder.figures import Figure
-from nodes.recorder.reading import read_commits
+from nodes.recorder.drawing.figures import Figure
+from nodes.recorder.recorded_commits import read_commits
 from nodes.recorder.recording import free_to_serve, open_recording
 from nodes.recorder.replay import replay
 from ontology import vocabulary as v

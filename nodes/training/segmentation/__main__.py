@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from nodes.perception_node.segmentation.shipped_trees import SHIPPED, MergeModel, save
-from nodes.training.segmentation.recorded import read_scenes
+from nodes.training.segmentation.recorded_scenes import read_scenes
 from nodes.training.segmentation.teach import learn, lessons, made_up
 
 

@@ -12,7 +12,7 @@ from nodes.sim_node.vision.camera import Eye
 from nodes.training.segmentation.examples import Example, Rows, example, joined, own_way, right_way
 from nodes.training.segmentation.fit import fit
 from nodes.training.segmentation.piles import pile
-from nodes.training.segmentation.recorded import Scene, mirrored
+from nodes.training.segmentation.recorded_scenes import Scene, mirrored
 
 _MADE_ROWS = 40_000
 _RECORDED_WEIGHT = 2.0

@@ -10,7 +10,7 @@ INTERRUPTED = """
 import sys, importlib.abc
 class Interrupted(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == "nodes.extern.cli.verbs":
+        if name == "nodes.extern.cli.all_verbs":
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Interrupted())
 from nodes.extern.cli.app import main
@@ -24,7 +24,7 @@ def test_ctrl_c_while_it_starts_is_quiet():
 
 
 def test_it_starts_without_numpy():
-    code = "import sys, nodes.extern.cli.verbs; sys.exit('numpy' in sys.modules)"
+    code = "import sys, nodes.extern.cli.all_verbs; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 
 

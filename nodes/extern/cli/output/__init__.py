@@ -1,0 +1,1 @@
+"""Replies as a person reads them in a terminal."""

@@ -1,0 +1,175 @@
+"""Replies as a person reads them in a terminal."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+from rich.tree import Tree
+
+from nodes.extern.cli.output.tables import (
+    author,
+    card,
+    pose_cells,
+    pose_text,
+    printable,
+    provenance_text,
+    table,
+)
+from schemas import wording
+from schemas.commits import Commit
+from schemas.entities import ClassInfo, Entity
+from schemas.explanations import Explanation
+from schemas.replies import Changed, Inferred, SystemStatus
+
+_WIDE = 100_000
+_WORDY = ("class", "size [m]", "reference")
+
+
+def console() -> Console:
+    """A console that does not squeeze tables when its output goes to a file or a pipe."""
+    out = Console(highlight=False, soft_wrap=True, markup=False)
+    return out if out.is_terminal else Console(highlight=False, soft_wrap=True, markup=False, width=_WIDE)
+
+
+def entity_table(entities: Iterable[Entity]) -> Table:
+    """One row an entity."""
+    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "reference", "body", fold=_WORDY)
+    for column in rows.columns[2:6]:
+        column.justify = "right"
+    for e in entities:
+        rows.add(e.name, e.class_, *pose_cells(e.pose), _size(e), e.preferred_reference or "", _body(e))
+    return rows
+
+
+def entity_line(entities: Sequence[Entity]) -> str:
+    """How many they are, and where it is said why some bodies could not be made."""
+    failed = sum(e.body is not None and e.body.status == "failed" for e in entities)
+    why = f"; {wording.bodies(failed)} could not be made: semmap status says why" if failed else ""
+    return wording.entities(len(entities)) + why
+
+
+def entity_card(e: Entity) -> Table:
+    """All about one entity."""
+    body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
+    rows = {
+        "name": e.name,
+        "iri": e.iri,
+        "class": e.class_,
+        "types": ", ".join(e.types),
+        "pose": pose_text(e.pose),
+        "size": _size(e) or "the model's own",
+        "reference": e.preferred_reference or "none",
+        "also called": ", ".join(e.alternative_references) or "-",
+        "body": body,
+        **({"perception": e.conflict} if e.conflict else {}),
+        "model": "-" if e.place else _model(e),
+        "last change": provenance_text(e.provenance),
+        "posed": provenance_text(e.pose_provenance),
+        "class and size": provenance_text(e.shape_provenance),
+        "called so": provenance_text(e.reference_provenance),
+    }
+    return card(rows)
+
+
+def class_tree(classes: Iterable[ClassInfo]) -> Tree:
+    """The class tree with the number of entities of each class, by inference."""
+    by_name = {c.name: c for c in classes}
+    children: dict[str, list[str]] = {}
+    for c in by_name.values():
+        for parent in c.parents or ("",):
+            children.setdefault(parent, []).append(c.name)
+    root = Tree(
+        Text.assemble(("classes", "bold"), (" (entities by inference; those that say so themselves)", "dim"))
+    )
+    _grow(root, "", children, by_name)
+    return root
+
+
+def status_table(status: SystemStatus) -> Table:
+    """One row a node."""
+    worries = ("last error",) if any(n.last_error for n in status.nodes) else ()
+    columns = ("node", "state", "pid", "uptime", "heartbeat", "detail", *worries)
+    rows = table(*columns, fold=("detail", *worries))
+    for n in status.nodes:
+        colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
+        rows.add(
+            n.node,
+            Text(n.state, style=colour),
+            str(n.pid),
+            _duration(n.uptime_s),
+            f"{n.heartbeat_age_s:.1f} s ago",
+            n.detail,
+            *((n.last_error,) if worries else ()),
+        )
+    return rows
+
+
+def status_line(status: SystemStatus) -> str:
+    """The map and the scene in one line."""
+    verdicts = {
+        True: "map and scene agree" + (", but for:" if status.problems else ""),
+        False: "map and scene do not agree (yet)",
+        None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
+    }
+    agree = verdicts[status.in_agreement]
+    counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"
+    return f"{counts}; truth: {status.truth}; {agree}"
+
+
+def changed(reply: Changed) -> Iterable[str]:
+    """A change in words, with what was left out and how it was read."""
+    yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
+    yield from (f"  left out: {skipped}" for skipped in reply.skipped)
+    yield from (f"  note: {note}" for note in reply.notes)
+
+
+def inferred(reply: Inferred) -> Iterable[str]:
+    """What follows, one line a triple."""
+    return reply.text or ("nothing follows that was not said",)
+
+
+def explanation(e: Explanation) -> Iterable[str]:
+    """The sentence, and the asserted triples that it rests on."""
+    yield e.text
+
+
+def commit_line(commit: Commit) -> str:
+    """A commit in one line."""
+    stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
+    counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
+    names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
+    shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+    line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
+    return printable(line).plain
+
+
+def _size(e: Entity) -> str:
+    extents = e.size_m or ()
+    return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
+
+
+def _body(e: Entity) -> str:
+    return "" if e.body is None else e.body.status
+
+
+def _duration(seconds: float) -> str:
+    minutes, s = divmod(int(seconds), 60)
+    hours, m = divmod(minutes, 60)
+    return f"{hours} h {m} min" if hours else f"{m} min {s} s" if m else f"{s} s"
+
+
+def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict[str, ClassInfo]) -> None:
+    for name in sorted(children.get(parent, [])):
+        c = by_name[name]
+        count = f"  {c.inferred}" if c.inferred else ""
+        own = f" ({c.asserted})" if c.asserted and c.asserted != c.inferred else ""
+        label = Text.assemble(name, (count, "bold green"), (own, "dim"))
+        _grow(tree.add(label), name, children, by_name)
+
+
+def _model(e: Entity) -> str:
+    return (e.body.model if e.body is not None else "") or e.model or "a box"

@@ -1,0 +1,113 @@
+"""Answers of SPARQL as text: a table, the W3C's JSON and CSV, or Turtle."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any, Literal, get_args
+
+import pyoxigraph as ox
+from rich.table import Table
+
+from nodes.extern.cli.output import tables
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.explanations import Term
+from schemas.sparql import Row, RowsChanged, SparqlResult
+
+Format = Literal["table", "json", "csv", "turtle"]
+FORMATS: tuple[Format, ...] = get_args(Format)
+_PREFIXES = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
+
+
+def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
+    """One line a row, with prefixed names."""
+    shown = tables.table(*variables, fold=variables)
+    for row in rows:
+        shown.add(*map(spoken, row))
+    return shown
+
+
+def text(result: SparqlResult, format: Format) -> str:
+    """An answer as a document. Raises BadRequest for a format that it has no form in."""
+    if format == "turtle":
+        return _turtle(result)
+    if result.kind == "ask":
+        return _json({"head": {}, "boolean": result.verdict}) if format == "json" else _truth(result)
+    if format == "csv":
+        return "".join(f"{line}\r\n" for line in _csv(result))
+    bindings = [
+        {name: _binding(term) for name, term in zip(result.variables, row, strict=True) if term is not None}
+        for row in result.rows
+    ]
+    return _json({"head": {"vars": list(result.variables)}, "results": {"bindings": bindings}})
+
+
+def news(variables: tuple[str, ...], changed: RowsChanged) -> Iterator[str]:
+    """A line for each row that came (+) or went (-), with the commit that caused it."""
+    by = f"commit {changed.seq}"
+    if changed.since < changed.seq - 1:
+        by = f"commits {changed.since + 1} to {changed.seq}"
+    for sign, rows in (("-", changed.disappeared), ("+", changed.appeared)):
+        for row in rows:
+            named = zip(variables, row, strict=True)
+            yield f"{sign} {'  '.join(f'?{name} {spoken(term)}' for name, term in named)}  ({by})"
+
+
+def spoken(term: Term | None) -> str:
+    """A term as Turtle would write it for a reader: `:chair1`, `dm:Chair`, `1.5`, `"text"`."""
+    if term is None:
+        return ""
+    if term.startswith("<"):
+        for prefix, namespace in _PREFIXES.items():
+            if term.startswith(f"<{namespace}"):
+                return f"{prefix}:{term[len(namespace) + 1 : -1]}"
+        return term
+    if term.startswith('"') and v.datatype_of(term) not in (v.XSD_STRING, v.RDF_LANG_STRING):
+        return v.lexical(term)
+    return term
+
+
+def _truth(result: SparqlResult) -> str:
+    return "true\n" if result.verdict else "false\n"
+
+
+def _csv(result: SparqlResult) -> Iterator[str]:
+    yield ",".join(result.variables)
+    for row in result.rows:
+        yield ",".join(map(_cell, row))
+
+
+def _cell(term: Term | None) -> str:
+    """As the W3C's CSV has it: the bare IRI or text, in quotes where it holds what CSV lives on."""
+    if term is None or term.startswith("_:"):
+        return term or ""
+    bare = v.bare(term) if term.startswith("<") else v.lexical(term)
+    return '"' + bare.replace('"', '""') + '"' if any(c in bare for c in '",\r\n') else bare
+
+
+def _binding(term: Term) -> dict[str, str]:
+    """A term as the W3C's JSON has it."""
+    if term.startswith("<"):
+        return {"type": "uri", "value": v.bare(term)}
+    if term.startswith("_:"):
+        return {"type": "bnode", "value": term[2:]}
+    binding = {"type": "literal", "value": v.lexical(term)}
+    if (language := v.language_of(term)) is not None:
+        return {**binding, "xml:lang": language}
+    datatype = v.datatype_of(term)
+    return binding if datatype == v.XSD_STRING else {**binding, "datatype": v.bare(datatype)}
+
+
+def _turtle(result: SparqlResult) -> str:
+    if result.kind != "graph":
+        raise errors.BadRequest("turtle is for graphs (CONSTRUCT, DESCRIBE); rows come as table, json or csv")
+    lines = "".join(f"{' '.join(map(str, row))} .\n" for row in result.rows).encode()
+    triples = ox.parse(lines, ox.RdfFormat.N_TRIPLES)
+    document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_PREFIXES)
+    assert document is not None
+    return document.decode()
+
+
+def _json(document: Any) -> str:
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"

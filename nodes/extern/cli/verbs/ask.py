@@ -1,0 +1,184 @@
+"""The verbs that ask, from `list` to `sparql`, and `watch`."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from nodes import bus
+from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
+from nodes.extern.cli.output import show, sparql_formats
+from nodes.extern.cli.verbs import sparql as sparql_answers
+from nodes.extern.client import Client
+from nodes.extern.files import write_atomically
+from schemas import commands, errors, keys
+from schemas.entities import Entity
+
+_format = functools.partial(click.option, "--format", "format")
+_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"As it was after a commit, or a time. {TIME}")
+_STATUS_S = 20.0
+"""Seconds: whoever asks how things stand is told of a system that is too busy to say."""
+
+
+@click.command("list")
+@click.option("--class", "class_", metavar="CLASS", help="Only those of this class, also by inference.")
+@_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
+@_as_of
+@talks
+def list_(client: Client, class_: str | None, format: str, as_of: str | None) -> None:
+    """List the entities."""
+    if format in ("lu4r", "legacy"):
+        print_json(client.list_as(format, class_, as_of=as_of))  # type: ignore[arg-type]
+        return
+    entities = client.list(class_, as_of=as_of)
+    if format == "json":
+        print_json(entities)
+        return
+    _print_entities(entities)
+
+
+@click.command()
+@click.argument("name")
+@_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@_as_of
+@talks
+def get(client: Client, name: str, format: str, as_of: str | None) -> None:
+    """Show one entity."""
+    entity = client.get(name, as_of=as_of)
+    if format == "json":
+        print_json(entity)
+    else:
+        show.console().print(show.entity_card(entity))
+
+
+@click.command()
+@click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
+@talks
+def check(client: Client, engine: Any) -> None:
+    """Is the map consistent, and if not, why?"""
+    checked = client.check(engine)
+    print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
+    if not checked.consistent:
+        sys.exit(errors.Inconsistent.exit_status)
+
+
+@click.command()
+@click.argument("name", required=False)
+@talks
+def infer(client: Client, name: str | None) -> None:
+    """What follows that was not said, about one entity or all."""
+    print_lines(show.inferred(client.infer(name)))
+
+
+@click.command()
+@click.argument("name")
+@click.argument("predicate")
+@click.argument("value")
+@talks
+def explain(client: Client, name: str, predicate: str, value: str) -> None:
+    """Why something holds: semmap explain fridge1 type Device."""
+    print_lines(show.explanation(client.explain(name, predicate, value)))
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's ending, else rdfxml.")
+@click.option("--inferred", is_flag=True, help="With what follows.")
+@talks
+def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
+    """Write the map to FILE, checked first and all at once."""
+    document = client.export(format or _format_of(file), inferred=inferred)
+    write_atomically(file, document.content)
+    print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
+
+
+@click.command()
+@_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
+@talks
+def classes(client: Client, format: str) -> None:
+    """The class tree, with the number of entities of each class."""
+    if format == "json":
+        print_json(client.classes())
+    else:
+        show.console().print(show.class_tree(client.classes()))
+
+
+@click.command()
+@_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@talks
+def status(client: Client, format: str) -> None:
+    """The nodes and the map."""
+    status = client.status(timeout_s=_STATUS_S)
+    if format == "json":
+        print_json(status)
+        return
+    show.console().print(show.status_table(status))
+    print(show.status_line(status))
+    print_lines(f"  {problem}" for problem in status.problems)
+
+
+@click.command()
+@click.argument("query")
+@click.option("--inferred", is_flag=True, help="Over what follows, too.")
+@_format(
+    type=click.Choice(sparql_formats.FORMATS),
+    help="Default: table for rows, else turtle.",
+)
+@click.option("--timeout", type=float, default=5.0, show_default=True, metavar="S", help="Cancelled after.")
+@click.option("--limit", type=int, default=10_000, show_default=True, metavar="N", help="Refused beyond.")
+@talks
+def sparql(client: Client, query: str, **options: Any) -> None:
+    """Answer a SPARQL 1.1 query that reads: SELECT, ASK, CONSTRUCT, DESCRIBE.
+
+    QUERY is the query, @FILE or - for stdin. Known prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
+    """
+    sparql_answers.ask(client, query, **options)
+
+
+@click.command()
+@click.argument("keyexpr", default=keys.COMMIT.key)
+@click.option("--sparql", "query", metavar="QUERY", help="The rows of a SELECT instead, as they come and go.")
+@click.option("--inferred", is_flag=True, help="With --sparql: over what follows, too.")
+@talks
+def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
+    """Print what is published on a key expression, as it happens; without one, the commits."""
+    if query is not None:
+        if keyexpr != keys.COMMIT.key:
+            raise errors.BadRequest("watch takes a key expression or --sparql, not both")
+        sparql_answers.watch(client, query, inferred=inferred)
+    if sys.stderr.isatty():
+        print(f"watching {keyexpr}; Ctrl-C ends it", file=sys.stderr)
+    if keyexpr == keys.COMMIT.key:
+        with client.commits() as commits:
+            for commit in commits:
+                print(show.commit_line(commit), flush=True)
+    for key, payload in bus.listen(client.session, keyexpr):
+        print(f"{key}  {payload}", flush=True)
+
+
+def _print_entities(entities: Sequence[Entity]) -> None:
+    if entities:
+        show.console().print(show.entity_table(entities))
+    print(show.entity_line(entities))
+
+
+def _format_of(file: Path) -> commands.RdfFormat:
+    endings: dict[str, commands.RdfFormat] = {
+        ".ttl": "turtle",
+        ".nt": "ntriples",
+        ".jsonld": "jsonld",
+        ".json": "jsonld",
+        ".owl": "rdfxml",
+        ".rdf": "rdfxml",
+        ".xml": "rdfxml",
+    }
+    if (known := endings.get(file.suffix.lower())) is None:
+        raise errors.BadRequest(
+            f"what format is {file.name}? End it with {', '.join(endings)}, or say --format"
+        )
+    return known

@@ -1,0 +1,229 @@
+"""The verbs that start, stop and mend a system: `up`, `down`, `node`, `repair`."""
+
+from __future__ import annotations
+
+import functools
+import logging
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+from msgspec import structs
+
+from nodes import bus
+from nodes.extern.cli.calling import complain
+from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
+from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
+from schemas import codec, errors
+from schemas.keys import NODES
+
+_path = click.Path(path_type=Path)
+
+_PERCEPTION_HZ = 5.0
+"""How often the simulator's cameras see when somebody looks and nothing else is said."""
+
+
+def settings_options(function: Callable[..., None]) -> Callable[..., None]:
+    """The options of `up` and `node`; the function gets them as Settings."""
+
+    @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
+    @click.option(
+        "--abox", help="ABox file, or none for an empty map. Default: the shipped flat; none if perceived."
+    )
+    @click.option(
+        "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
+    )
+    @click.option("--data", type=_path, default=None, help="Folder of the journal, the logs, the recordings.")
+    @click.option("--fresh", is_flag=True, help="Begin anew; the old data is kept aside.")
+    @click.option(
+        "--truth",
+        type=click.Choice(["map", "scene", "perceived"]),
+        default=None,
+        help="Who owns existence. Default: as before, else map.",
+    )
+    @click.option(
+        "--threshold",
+        type=float,
+        default=0.05,
+        show_default=True,
+        metavar="M",
+        help="A body that is off by more has moved.",
+    )
+    @click.option("--angle-threshold", type=float, default=5.0, show_default=True, metavar="DEG")
+    @click.option(
+        "--listen",
+        default=bus.DEFAULT_ENDPOINT,
+        show_default=True,
+        metavar="EP",
+        help="Zenoh endpoint that the system listens on.",
+    )
+    @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option("--window", is_flag=True, help="With a window on the scene, where there is a display.")
+    @click.option(
+        "--models", type=_path, default=None, help="Folder of your own models: chair.glb for chair."
+    )
+    @click.option(
+        "--camera-hz",
+        type=float,
+        default=None,
+        metavar="HZ",
+        help="Publish the cameras' pictures. Default: not at all, 5 with --perception.",
+    )
+    @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
+    @click.option("--camera-noise", is_flag=True, help="With the noise of a Kinect's depth.")
+    @click.option("--perception", is_flag=True, help="Keep the map by what the cameras see.")
+    @click.option(
+        "--when-gone",
+        type=click.Choice(["remove", "mark"]),
+        default="remove",
+        show_default=True,
+        help="What perception brought in and no longer sees is removed, or marked.",
+    )
+    @click.option("--no-sim", is_flag=True, help="Without the simulator.")
+    @click.option("--no-record", is_flag=True, help="Without the recorder.")
+    @functools.wraps(function)
+    def with_settings(name: str | None = None, **options: Any) -> None:
+        own = {} if name is None else {"name": name}
+        function(settings=_settings(**options), **own)
+
+    return with_settings
+
+
+@click.command()
+@settings_options
+def up(settings: Settings) -> None:
+    """Start the whole system in the foreground; Ctrl-C ends it."""
+    from nodes.supervisor.up import up as run_up
+
+    if settings.truth == "perceived" and not settings.perception:
+        complain("the map will know only what a perception of yours tells it; ours comes with --perception")
+    run_up(settings, say=lambda line: click.echo(line))
+
+
+@click.command()
+@click.option("--data", type=_path, default=None, help="Folder that the system was started on.")
+@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
+def down(data: Path | None, connect: str | None) -> None:
+    """Stop a running system of this machine."""
+    from nodes.supervisor.control import Supervisor, running
+
+    if data is None and connect is not None:
+        data = next((s.data for s, said in running() if connect in (said.listen, said.reachable)), None)
+        if data is None:
+            raise errors.NoAnswer(f"no system of this machine listens on {connect}")
+    Supervisor((data or default_data()).resolve()).shut_down()
+    click.echo("stopped")
+
+
+@click.command()
+@click.option("--data", type=_path, default=None, help="Folder of the map; no system may run on it.")
+@click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
+def repair(data: Path | None, tbox: Path | None) -> None:
+    """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    from nodes.kb_node.storage.repair import repair as repair_journal
+
+    click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
+
+
+@click.command()
+@click.argument("name", type=click.Choice(NODES))
+@settings_options
+def node(name: str, settings: Settings) -> None:
+    """Run one node by itself, in the foreground.
+
+    The coordinator listens on --listen; the others connect to it there.
+    """
+    from nodes.supervisor.launch import run_node, seed
+
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    if name == "kb_node":
+        seed(settings)
+    run_node(name, settings)
+
+
+def _settings(
+    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
+    threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
+    window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
+    camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
+) -> Settings:  # fmt: skip
+    """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
+    folder = (data or default_data()).resolve()
+    before = None if fresh else _settings_before(folder)
+    if abox is not None and (folder / JOURNAL).exists() and not fresh:
+        complain(f"--abox is for a new map, and the one in {folder} goes on; --fresh begins a new one")
+    if world is None:
+        world = before.world if before is not None else str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+    if truth is None:
+        truth = before.truth if before is not None else "map"
+    world = str(EMPTY_WORLD) if world in ("empty", "none") else world
+    if abox is None:
+        abox = "none" if truth == "perceived" else str(FLAT_TTL)
+    values = {
+        "data": str(folder),
+        "tbox": _existing(tbox),
+        "abox": None if abox == "none" else _existing(Path(abox)),
+        "world": _existing(Path(world)),
+        "truth": truth,
+        "threshold_m": threshold,
+        "angle_threshold_deg": angle_threshold,
+        "listen": listen,
+        "connect": connect,
+        "window": window,
+        "models": None if models is None else _folder(models),
+        "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
+        "camera_size": camera_size,
+        "camera_noise": camera_noise,
+        "perception": perception,
+        "when_gone": when_gone,
+        "sim": not no_sim,
+        "record": not no_record,
+        "fresh": fresh,
+    }
+    try:
+        return codec.convert(values, Settings)
+    except errors.BadRequest as error:
+        field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
+        raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _option_of(field: str) -> str:
+    """The word of the command line that a setting comes from, if it begins a complaint: `threshold_m`."""
+    name = field.removesuffix(":")
+    if name not in Settings.__struct_fields__:
+        return field
+    option = name.removesuffix("_m").removesuffix("_deg").replace("_", "-")
+    return f"--{option}{field[len(name) :]}"
+
+
+def _settings_before(data: Path) -> Settings | None:
+    """What the map in `data` was last run with, if there is such a map; what of it is lost is told."""
+    if not (data / JOURNAL).exists():
+        return None
+    try:
+        settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
+    except OSError:
+        return None
+    except errors.BadRequest:
+        complain(f"{data / SETTINGS} cannot be understood, so --truth and --world are not as before")
+        return None
+    if not Path(settings.world).exists():
+        complain(f"the world {settings.world} is no longer there; the flat's is taken")
+        return structs.replace(settings, world=str(FLAT_WORLD))
+    return settings
+
+
+def _folder(path: Path) -> str:
+    if not path.is_dir():
+        raise errors.BadFile(f"{path} is no folder")
+    return str(path.resolve())
+
+
+def _existing(path: Path) -> str:
+    if path.is_dir():
+        raise errors.BadFile(f"{path} is a directory, not a file")
+    if not path.exists():
+        raise errors.BadFile(f"there is no file {path}")
+    return str(path.resolve())

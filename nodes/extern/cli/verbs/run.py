@@ -1,0 +1,87 @@
+"""`semmap run`: a file of requests, one a line."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+import click
+
+from nodes import bus
+from nodes.extern.cli.calling import complain, print_lines, run_words
+from nodes.extern.cli.output import show
+from nodes.extern.client import Client, connect
+from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.extern.files import read_file
+from schemas import codec, commands, errors, replies
+
+_BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch"))
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--keep-going", is_flag=True, help="Go on after a request that fails.")
+@click.option(
+    "--connect",
+    "where",
+    envvar=CONNECT_VARIABLE,
+    default=bus.DEFAULT_ENDPOINT,
+    metavar="EP",
+    show_default=True,
+)
+def run(file: Path, keep_going: bool, where: str) -> None:
+    """Send a file of requests, one a line: words of this command line, or a JSON message with its verb."""
+    lines = _decode_lines(file)
+    failed = 0
+    with connect(where, agent=f"run/{file.name}") as client:
+        for number, line in lines:
+            click.echo(f"{number}: {line}")
+            status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")
+            failed += status != 0
+            if status and not keep_going:
+                raise SystemExit(status)
+    if failed:
+        raise errors.Refused(f"{failed} of {len(lines)} requests failed")
+
+
+def _run_line(client: Client, line: str, where: str) -> int:
+    if line.startswith("{"):
+        return _execute_message(client, line.encode(), where)
+    try:
+        words = shlex.split(line)
+    except ValueError as error:
+        complain(f"{where}cannot read the line: {error}")
+        return errors.BadRequest.exit_status
+    if words and words[0] in _BY_THEMSELVES:
+        complain(f"{where}'{words[0]}' is no request to a running system")
+        return errors.BadRequest.exit_status
+    return run_words(click.get_current_context().find_root().command, words, client, where)
+
+
+def _execute_message(client: Client, message: bytes, where: str) -> int:
+    """Send one JSON message that names its verb, print the reply, and return the exit status."""
+    try:
+        said: dict[str, Any] = codec.decode(message, dict[str, Any])
+        verb = str(said.get("verb", ""))
+        if verb not in commands.COMMANDS:
+            raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
+        reply = client.send(codec.decode(message, commands.COMMANDS[verb]))
+    except errors.SemmapError as error:
+        complain(f"{where}{error.text.removeprefix('malformed message: ')}")
+        return error.exit_status
+    if isinstance(reply, replies.Changed):
+        print_lines(show.changed(reply))
+    else:
+        print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
+    return 0
+
+
+def _decode_lines(file: Path) -> list[tuple[int, str]]:
+    """The requests of a file with their line numbers; empty lines and # comments are none."""
+    try:
+        lines = read_file(file).decode().splitlines()
+    except UnicodeDecodeError:
+        raise errors.BadFile(f"{file} is no text file") from None
+    stripped = ((number, line.strip()) for number, line in enumerate(lines, start=1))
+    return [(number, line) for number, line in stripped if line and not line.startswith("#")]

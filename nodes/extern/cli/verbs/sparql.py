@@ -1,0 +1,60 @@
+"""The verb `sparql`, and `watch --sparql`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from nodes.extern.cli.output import show, sparql_formats
+from nodes.extern.client import Client
+from nodes.extern.files import read_file
+from schemas import errors
+
+
+def read_query(word: str) -> str:
+    """The query that a word of the command line means: itself, `@FILE`, or `-` for what comes on stdin."""
+    if word == "-":
+        content = sys.stdin.buffer.read()
+    elif word.startswith("@"):
+        content = read_file(Path(word[1:]))
+    else:
+        return word
+    try:
+        return content.decode()
+    except UnicodeDecodeError:
+        raise errors.BadFile(f"{word} is no text file") from None
+
+
+def ask(
+    client: Client,
+    query: str,
+    *,
+    inferred: bool,
+    format: sparql_formats.Format | None,
+    timeout: float,
+    limit: int,
+) -> None:
+    """Print the answer; without a format, a table of rows, the verdict, or Turtle for a graph."""
+    result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit)
+    format = format or ("turtle" if result.kind == "graph" else "table")
+    if format != "table" or result.kind == "ask":
+        sys.stdout.write(sparql_formats.text(result, format))
+        return
+    if result.rows:
+        show.console().print(sparql_formats.table(result.variables, result.rows))
+    print(f"{_rows(len(result.rows))} (commit {result.seq})")
+
+
+def watch(client: Client, query: str, *, inferred: bool) -> None:
+    """Print the rows, and then what appears and disappears."""
+    with client.watch(read_query(query), inferred=inferred) as standing:
+        if standing.rows:
+            show.console().print(sparql_formats.table(standing.variables, standing.rows))
+        print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
+        for changed in standing.changes():
+            for line in sparql_formats.news(standing.variables, changed):
+                print(line, flush=True)
+
+
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"

@@ -1,0 +1,83 @@
+"""The shape of a figure in Rerun's terms. A figure's origin is its bottom centre, z up."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from nodes.recorder.drawing.figures import Figure
+from nodes.recorder.drawing.palette import GREY, colour_of
+from schemas.scenes import Surface
+
+_GHOST_ALPHA = 90
+_SHEET_ALPHA = 36
+_SHEET_M = 0.002
+_LABEL_M = 0.02
+_THIN_M = 0.001
+
+
+def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
+    """A box of the figure's size with its name, and what it looks like if that is known.
+
+    A place is a translucent sheet on the floor.
+    """
+    if figure.look == "place":
+        return _sheet(figure)
+    if figure.surface is None or figure.look == "ghost":
+        return (_box(figure),)
+    return _box(figure), _mesh(figure.surface)
+
+
+def _mesh(surface: Surface) -> rr.Mesh3D:
+    return rr.Mesh3D(
+        vertex_positions=np.frombuffer(surface.points, "<f4").reshape(-1, 3),
+        vertex_normals=np.frombuffer(surface.normals, "<f4").reshape(-1, 3),
+        vertex_colors=np.frombuffer(surface.colours, "u1").reshape(-1, 3),
+        triangle_indices=np.frombuffer(surface.triangles, "<u4").reshape(-1, 3),
+    )
+
+
+def _box(figure: Figure) -> rr.Boxes3D:
+    x, y, z = figure.size_m
+    colour = GREY if figure.look == "furniture" else colour_of(figure.class_)
+    return rr.Boxes3D(
+        half_sizes=[(x / 2.0, y / 2.0, z / 2.0)],
+        centers=[(0.0, 0.0, z / 2.0)],
+        colors=[(*colour, _GHOST_ALPHA if figure.look == "ghost" else 255)],
+        radii=None if figure.surface is None else [_THIN_M],
+        fill_mode=_fill_mode(figure),
+        labels=[figure.label],
+        show_labels=False,
+    )
+
+
+def _fill_mode(figure: Figure) -> rr.components.FillMode:
+    """The edges only, where there is more to be seen within."""
+    usual = rr.components.FillMode.Solid if figure.surface is None else rr.components.FillMode.MajorWireframe
+    return _FILL_MODE.get(figure.look, usual)
+
+
+_FILL_MODE = {
+    "ghost": rr.components.FillMode.TransparentFillMajorWireframe,
+    "believed": rr.components.FillMode.MajorWireframe,
+}
+
+
+def _sheet(figure: Figure) -> tuple[rr.Boxes3D, rr.Points3D]:
+    """Places lie in one another, so the larger a sheet, the lower it lies."""
+    x, y, _ = figure.size_m
+    below = -_SHEET_M * (x + y)
+    sheet = rr.Boxes3D(
+        half_sizes=[(x / 2.0, y / 2.0, _SHEET_M / 2.0)],
+        centers=[(0.0, 0.0, below)],
+        colors=[(*colour_of(figure.class_), _SHEET_ALPHA)],
+        fill_mode=rr.components.FillMode.Solid,
+    )
+    name = rr.Points3D(
+        [(0.0, 0.0, below)],
+        radii=[_LABEL_M],
+        colors=[colour_of(figure.class_)],
+        labels=[figure.label],
+        show_labels=True,
+    )
+    return sheet, name

@@ -1,0 +1,1 @@
+"""What a recording has to show: the map and the scene."""

@@ -1,0 +1,1 @@
+"""The trainers of recognition: `python -m nodes.training.recognition`."""

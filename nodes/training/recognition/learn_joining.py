@@ -1,0 +1,24 @@
+"""Learn which neighbours are pieces of one thing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nodes.perception_node.recognition.joining import signs, worth_trying
+from nodes.perception_node.recognition.shipped_votes import Learnt
+from nodes.perception_node.recognition.vote import leaves
+from nodes.perception_node.segmentation.trees import Trees
+from nodes.training.recognition.neighbour_pairs import Pairs
+from nodes.training.segmentation.examples import Rows
+from nodes.training.segmentation.fit import fit
+
+_TREES = 100
+
+
+def learn_joining(learnt: Learnt, pairs: Pairs) -> Trees:
+    """Trees that tell which pairs are one thing, from pairs in scenes that `learnt` has not learnt from."""
+    features = [values.reshape(-1, values.shape[2]) for values in (pairs.geometry, pairs.shape, pairs.colour)]
+    chances = leaves(learnt, features).reshape(len(pairs.one), 3, -1)
+    worth = worth_trying(chances[:, :2], learnt)
+    told = signs(chances[worth, :2], chances[worth, 2], pairs.known[worth], learnt)
+    return fit(Rows(told, pairs.one[worth], np.ones(len(told))), _TREES)

@@ -1,0 +1,117 @@
+"""Tables in a terminal: however narrow it is, nothing of a cell is lost."""
+
+import io
+import time
+from collections import Counter
+
+import pytest
+from msgspec import structs
+from rich.console import Console
+
+from nodes.extern.cli.output import show, show_past, tables
+from schemas.entities import BodyState, Entity, Pose, Provenance
+from schemas.replies import LoggedCommit, NodeStatus, SystemStatus
+
+
+def entity(name, size_m=(0.0802, 0.125, 0.095)):
+    provenance = Provenance(source="operator", agent="cli/ann", commit=7, stamp_ns=1, reason="add it")
+    return Entity(
+        name=name, class_="Alternative_Armchair", iri=f"http://www.example.org/semantic_mapping/2016#{name}",
+        types=("Armchair",), pose=Pose(position_m=(12.345, -6.789, 0.761)), size_m=size_m,
+        preferred_reference="the old coffee cup of my grandmother", provenance=provenance,
+        pose_provenance=provenance, shape_provenance=provenance, reference_provenance=provenance,
+    )  # fmt: skip
+
+
+def commit(seq):
+    return LoggedCommit(
+        seq=seq, stamp_ns=seq * 10**9, source="operator", agent="cli/ann", verb="add", reason="add Cup cup1",
+        confidence=None, undoes=(), tbox=False, inserted=1524, retracted=3, changed=("cup1", "cup2"),
+        removed=("abat_jour1",),
+    )  # fmt: skip
+
+
+def node(name, last_error=""):
+    return NodeStatus(
+        node=name, state="ready", pid=12345, uptime_s=70, heartbeat_age_s=0.1, last_error=last_error,
+        detail="commit 10, into 2026-11-21T08-58-41.rrd, live at 127.0.0.1:9876",
+    )  # fmt: skip
+
+
+def system(*nodes):
+    return SystemStatus(
+        truth="map", commit=3, entities=2, bodies=1, in_agreement=True, nodes=nodes, problems=()
+    )
+
+
+TABLES = {
+    "entities": lambda: show.entity_table([entity("chair1"), entity("chair_in_the_corner_12")]),
+    "card": lambda: show.entity_card(entity("chair1")),
+    "history": lambda: show_past.history_table([commit(8), commit(1234)]),
+    "status": lambda: show.status_table(system(node("kb_node"), node("perception_node", "09:12:01 no disk"))),
+}
+
+
+def drawn(table, width):
+    out = io.StringIO()
+    Console(file=out, width=width, highlight=False, soft_wrap=True, markup=False).print(table)
+    return out.getvalue()
+
+
+def signs(text):
+    return Counter(c for c in text if not c.isspace() and c != "─")
+
+
+@pytest.mark.parametrize("width", [40, 80, 100])
+@pytest.mark.parametrize("name", TABLES)
+def test_nothing_is_cut_off(name, width):
+    text = drawn(TABLES[name](), width)
+    assert "…" not in text
+    assert signs(text) == signs(drawn(TABLES[name](), 1000))
+
+
+def test_very_many_rows_are_the_same_without_being_laid_out():
+    few = [entity(f"chair{i}") for i in range(500)] + [entity("a\nb"), entity("椅子")]
+    text, longer = drawn(show.entity_table(few), 1000), drawn(show.entity_table(few * 3), 1000)
+    assert "a\\nb" in longer
+    assert longer.count(" chair7 ") == 3
+    lines = [line.rstrip() for line in text.splitlines() if line.strip()]
+    assert [line.split() for line in longer.splitlines()[2 : len(lines)]] == [x.split() for x in lines[2:]]
+    columns = {line.index("Alternative") for line in longer.splitlines()[2:] if line.isascii()}
+    assert columns == {longer.splitlines()[0].index("class")}
+
+
+def test_a_list_of_very_many_rows_takes_no_time():
+    chairs = [entity(f"chair{i}") for i in range(10_000)]
+    begun = time.process_time()
+    drawn(show.entity_table(chairs), 100)
+    assert time.process_time() - begun < 5.0  # laid out it takes half a minute
+
+
+def test_what_a_row_is_known_by_stays_on_one_line():
+    text = drawn(show.entity_table([entity("chair_in_the_corner_12")]), 60)
+    assert all(word in text for word in ("chair_in_the_corner_12", " 12.345 ", " -6.789 ", " 0.761 "))
+    assert " 1234 " in drawn(show_past.history_table([commit(1234)]), 60)
+
+
+def test_a_common_list_and_history_fit_80_columns():
+    common = tables.table("name", "class", "size [m]", "reference", fold=("class", "size [m]", "reference"))
+    common.add("cup1", "Cup", "0.08 x 0.11 x 0.095", "the old coffee cup of my grandmother, a blue one")
+    for table in (common, show_past.history_table([commit(8)]), TABLES["status"]()):
+        assert all(len(line) <= 80 for line in drawn(table, 80).splitlines())
+
+
+def test_errors_have_a_column_only_if_there_are_any():
+    assert "last error" not in drawn(show.status_table(system(node("kb_node"))), 120)
+    assert "no disk" in drawn(show.status_table(system(node("kb_node", "no disk"))), 120)
+
+
+def test_large_sizes_are_written_out():
+    assert "1000 x 99.5 x 0.0802" in drawn(show.entity_table([entity("hall", (1000.0, 99.5, 0.0802))]), 200)
+
+
+def test_bodies_that_could_not_be_made_are_told_below_the_list():
+    failed = BodyState(status="failed", detail="too long")
+    chairs = [entity("chair1"), structs.replace(entity("chair2"), body=failed)]
+    assert show.entity_line(chairs) == "2 entities; 1 body could not be made: semmap status says why"
+    assert show.entity_line(chairs[:1]) == "1 entity"

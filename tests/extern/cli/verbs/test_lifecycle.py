@@ -1,0 +1,54 @@
+"""What a map was last run with."""
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from nodes.extern.cli.verbs.lifecycle import _settings_before, settings_options
+from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
+from ontology import EMPTY_WORLD, FLAT_WORLD
+from schemas import codec
+
+
+@pytest.fixture
+def data(tmp_path):
+    """A folder with a map that was last run as a perceived one, in the empty world."""
+    settings = Settings(data=str(tmp_path), tbox="/t", abox=None, world=str(EMPTY_WORLD), truth="perceived")
+    (tmp_path / SETTINGS).write_bytes(codec.encode_json(settings))
+    (tmp_path / JOURNAL).touch()
+    return tmp_path
+
+
+def test_a_map_goes_on_as_it_was_run(data, capsys):
+    before = _settings_before(data)
+    assert (before.truth, before.world) == ("perceived", str(EMPTY_WORLD))
+    (data / JOURNAL).unlink()
+    assert _settings_before(data) is None
+    assert capsys.readouterr().err == ""
+
+
+def test_settings_that_are_lost_are_told(data, capsys):
+    (data / SETTINGS).write_text("{")
+    assert _settings_before(data) is None
+    assert "so --truth and --world are not as before" in capsys.readouterr().err
+
+
+def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
+    text = (data / SETTINGS).read_text()
+    (data / SETTINGS).write_text(text.replace(str(EMPTY_WORLD), "/nowhere/world.xml"))
+    before = _settings_before(data)
+    assert (before.truth, before.world) == ("perceived", str(FLAT_WORLD))
+    assert "the world /nowhere/world.xml is no longer there" in capsys.readouterr().err
+
+
+def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
+    @click.command()
+    @settings_options
+    def tell(settings: Settings):
+        click.echo(f"{settings.truth} {settings.world}")
+
+    goes_on = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none"])
+    assert goes_on.stdout == f"perceived {EMPTY_WORLD}\n"
+    assert "--abox is for a new map" in goes_on.stderr
+    anew = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
+    assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")

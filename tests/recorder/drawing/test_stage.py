@@ -1,0 +1,83 @@
+import pytest
+from msgspec import structs
+
+from nodes.recorder.drawing.graph import Graph
+from nodes.recorder.drawing.stage import Stage
+from tests.recorder.messages import body, entity, pose
+
+
+class Told:
+    """A recording that only lists what it is told."""
+
+    def __init__(self):
+        self.calls = []
+
+    def __getattr__(self, verb):
+        return lambda name, *_: self.calls.append((verb, name))
+
+    def take(self):
+        calls, self.calls = self.calls, []
+        return calls
+
+
+@pytest.fixture
+def told():
+    return Told()
+
+
+@pytest.fixture
+def stage(told):
+    return Stage(told)
+
+
+def test_what_appears_is_drawn_once(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    assert told.take() == [("draw", "c")]
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    assert told.take() == []
+
+
+def test_a_body_gives_its_entity_another_shape(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=True)
+    told.take()
+    stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
+    assert told.take() == [("draw", "c")]
+
+
+def test_what_leaves_is_erased_and_may_come_back(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    told.take()
+    stage.show(["c"], {}, {}, simulated=False)
+    assert told.take() == [("erase", "c")]
+    stage.show(["c"], {"c": entity("c")}, {}, simulated=False)
+    assert told.take() == [("draw", "c")]
+
+
+def test_what_changes_its_branch_leaves_nothing_behind(stage, told):
+    stage.show_all({}, {"c": body("c", entity=False)}, simulated=True)
+    told.take()
+    stage.show_all({"c": entity("c")}, {"c": body("c")}, simulated=True)
+    assert told.take() == [("erase", "c"), ("draw", "c")]
+
+
+def test_an_entity_that_is_nowhere_is_not_drawn(stage, told):
+    stage.show_all({"c": entity("c")}, {}, simulated=False)
+    told.take()
+    stage.show(["c"], {"c": structs.replace(entity("c"), pose=None)}, {}, simulated=False)
+    assert told.take() == [("erase", "c")]
+
+
+def test_moves_are_told_when_they_are_moves(stage, told):
+    stage.show_all({}, {"c": body("c")}, simulated=True)
+    told.take()
+    stage.move("c", pose(0.0001))
+    stage.move("unknown", pose(1.0))
+    assert told.take() == []
+    stage.move("c", pose(0.5))
+    assert told.take() == [("move", "c")]
+
+
+def test_a_graph_is_drawn_when_it_changes(stage, told):
+    stage.show_graph(Graph({"cup1": "Cup"}, ()))
+    stage.show_graph(Graph({"cup1": "Cup"}, ()))
+    assert [verb for verb, _ in told.take()] == ["graph"]
