@@ -114,7 +114,7 @@ class KnowledgeBase:
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
 
-        Raises BadRequest, with nothing done, when there is one that is not of RDF term_syntax.
+        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
         """
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)

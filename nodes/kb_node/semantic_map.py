@@ -77,7 +77,7 @@ class SemanticMap:
         return self._entities.get(name)
 
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
-        """The entity_reading, or those of a class by inference, in the order of their names."""
+        """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
         found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
@@ -88,7 +88,7 @@ class SemanticMap:
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
     def stars(self, names: Iterable[str], *, together: bool = True) -> tuple[Star, ...]:
-        """The triples about some entity_reading, taken together or each alone.
+        """The triples about some entities, taken together or each alone.
 
         Raises UnknownName, Refused for the TBox's.
         """

@@ -27,7 +27,7 @@ from nodes.perception_node.tracking.map_updates import subject_of
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
 from nodes.runtime.loop import Node, open_node
-from nodes.runtime.map_replica import MapView
+from nodes.runtime.map_replica import MapReplica
 from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Add, Classes, Command, LastSeen
@@ -62,7 +62,7 @@ class Perception:
         self._node = node
         self._config = config
         self._usual_m = usual_m
-        self._map = MapView()
+        self._map = MapReplica()
         self._classes = ClassHierarchy()
         self._tracks = Tracks()
         self._fetching = False

@@ -6,7 +6,7 @@ from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity
 
 
-class MapView:
+class MapReplica:
     """The entities by name, as of commit `seq`; -1 before a first snapshot."""
 
     def __init__(self) -> None:

@@ -4,7 +4,7 @@ import math
 
 from nodes.coordinator.naming import DEFAULT_POSITION, free_position
 from schemas.entities import Pose, orientation_from_yaw
-from tests.coordinator.test_keeper import entity
+from tests.coordinator.scene.test_reconcile import entity
 
 
 def standing(x, y, size, yaw=0.0):

@@ -14,7 +14,7 @@ from schemas.commits import Commit, Snapshot
 from schemas.entities import Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
-from tests.kb_node.test_journal import BULKY, full_by_page_count
+from tests.kb_node.storage.test_journal import BULKY, full_by_page_count
 
 CHAIR1, CHAIR2 = v.entity_iri("chair1"), v.entity_iri("chair2")
 

@@ -23,7 +23,7 @@ from schemas.entities import ClassInfo, Provenance
 from schemas.perception import Observations
 from schemas.replies import Changed, Sighting
 from tests.conftest import free_endpoint, handling, until
-from tests.perception_node.test_frames import DEPTH
+from tests.perception_node.input.test_frames import DEPTH
 from tests.perception_node.things import at, entity, seen
 
 SAID = Provenance(commit=1, stamp_ns=1, source="perception")

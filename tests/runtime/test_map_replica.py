@@ -1,16 +1,16 @@
-from nodes.runtime.map_replica import MapView
+from nodes.runtime.map_replica import MapReplica
 from schemas.commits import Snapshot
 from tests.recorder.messages import commit, entity
 
 
 def begun():
-    view = MapView()
+    view = MapReplica()
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"), entity("table1", "Table"))))
     return view
 
 
 def test_before_a_snapshot_nothing_is_known():
-    view = MapView()
+    view = MapReplica()
     assert not view.take(commit(7, entity("cup1", "Cup")))
     assert (view.seq, view.entities) == (-1, {})
 
@@ -41,7 +41,7 @@ def test_another_snapshot_counts():
 
 
 def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
-    view = MapView()
+    view = MapReplica()
     view.take(commit(2, entity("sink1", "Sink")))
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
     assert view.is_behind

@@ -8,7 +8,7 @@ from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk
 from nodes.coordinator.door.committing import commit, commit_built, new_id, once, seq, stars
-from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.scene.hands import Hand
 from schemas import errors
@@ -20,7 +20,7 @@ from schemas.scene_files import pose_of
 
 
 @once
-def add(view: MapView, command: Add) -> Talk[Changed]:
+def add(view: KnownMap, command: Add) -> Talk[Changed]:
     """Put an entity into the map."""
     found = view.classes.spatial(command.class_)
     name = command.name or free_name(found.name, view.entities)
@@ -44,7 +44,7 @@ def add(view: MapView, command: Add) -> Talk[Changed]:
 
 
 @once
-def update(view: MapView, command: Update) -> Talk[Changed]:
+def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change what is named; what is not named stays."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
@@ -69,7 +69,7 @@ def update(view: MapView, command: Update) -> Talk[Changed]:
 
 
 @once
-def remove(view: MapView, command: Remove) -> Talk[Changed]:
+def remove(view: KnownMap, command: Remove) -> Talk[Changed]:
     """Take entities out: all of them, or, if one is unknown, none."""
     if not command.names:
         raise errors.BadRequest("name at least one entity to remove")
@@ -79,13 +79,13 @@ def remove(view: MapView, command: Remove) -> Talk[Changed]:
 
 
 @once
-def clear(view: MapView, command: Clear) -> Talk[Changed]:
+def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     """Take every entity out."""
     require_authority(command, view.entities.values())
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: MapView, name: str, pose: Pose, hand: Hand) -> Talk[Commit | None]:
+def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Commit | None]:
     """The map takes over where a body came to rest."""
     command = Update(
         id=new_id(),
@@ -99,7 +99,7 @@ def follow(view: MapView, name: str, pose: Pose, hand: Hand) -> Talk[Commit | No
     return (yield from commit(view, structs.replace(transactions.place(command), verb=hand.verb)))
 
 
-def _take_out(view: MapView, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
+def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
     names = tuple(entity.name for entity in leaving)
     if not names:
         return Changed(commit=None, text="the map is empty already")

@@ -11,7 +11,7 @@ from msgspec import structs
 
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.dialogues import Question, Talk
-from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.door.known_map import KnownMap
 from schemas import errors
 from schemas.bridge import StarQuery
 from schemas.commands import Classes, Command
@@ -20,14 +20,14 @@ from schemas.replies import Changed
 
 _ATTEMPTS = 5
 C = TypeVar("C", bound=Command)
-Change = Callable[[MapView, C], Talk[Changed]]
+Change = Callable[[KnownMap, C], Talk[Changed]]
 
 
 def once(change: Change[C]) -> Change[C]:
     """A command that is sent again under the same id is answered with its first result."""
 
     @functools.wraps(change)
-    def execute(view: MapView, command: C) -> Talk[Changed]:
+    def execute(view: KnownMap, command: C) -> Talk[Changed]:
         if not command.id:
             return (yield from change(view, structs.replace(command, id=new_id())))
         done = yield from _done_before(command)
@@ -46,13 +46,13 @@ def _done_before(command: Command) -> Talk[Changed | None]:
     return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
 
-def commit(view: MapView, transaction: Transaction) -> Talk[Commit | None]:
+def commit(view: KnownMap, transaction: Transaction) -> Talk[Commit | None]:
     """Commit it; None if it changes nothing."""
     made: Commit | None = yield Question("commit", transaction)
     return taken(view, made)
 
 
-def commit_built(view: MapView, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
+def commit_built(view: KnownMap, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
     """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
     suffix = ""
     for attempt in range(_ATTEMPTS):
@@ -69,14 +69,14 @@ def commit_built(view: MapView, build: Callable[[str], Talk[Transaction]]) -> Ta
     raise AssertionError("the last attempt returns or raises")
 
 
-def taken(view: MapView, commit: Commit | None) -> Commit | None:
+def taken(view: KnownMap, commit: Commit | None) -> Commit | None:
     """The commit, shown in the view so that the next command sees it."""
     if commit is not None:
         view.take(commit)
     return commit
 
 
-def taken_with_classes(view: MapView, commit: Commit) -> Talk[None]:
+def taken_with_classes(view: KnownMap, commit: Commit) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
     taken(view, commit)
     if commit.tbox:

@@ -7,7 +7,7 @@ from typing import Any
 
 from nodes.coordinator.dialogues import Ask, Talk, hold, in_step
 from nodes.coordinator.door import changing, loading, undoing
-from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hands
 from nodes.coordinator.turns import Change
 from schemas import errors
@@ -15,7 +15,7 @@ from schemas.commands import Add, Clear, Command, Load, Remove, Undo, Update
 from schemas.entities import Pose
 from schemas.replies import Changed
 
-_CHANGING: Mapping[type[Command], Callable[[MapView, Any], Talk[Changed]]] = {
+_CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Add: changing.add,
     Update: changing.update,
     Remove: changing.remove,
@@ -25,7 +25,7 @@ _CHANGING: Mapping[type[Command], Callable[[MapView, Any], Talk[Changed]]] = {
 }
 
 
-class Door(MapView):
+class Door(KnownMap):
     """Executes the commands that change the map, and sees it as they leave it.
 
     Owned by the coordinator's thread. Errors are those that the command deserves, and those of the knowledge

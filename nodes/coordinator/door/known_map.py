@@ -9,7 +9,7 @@ from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity
 
 
-class MapView(map_replica.MapView):
+class KnownMap(map_replica.MapReplica):
     """Besides the entities the classes, and whether another knowledge base may know less."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
-from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from schemas import errors, scene_files, wording
@@ -30,7 +30,7 @@ READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
 
 
 @once
-def load(view: MapView, command: Load) -> Talk[Changed]:
+def load(view: KnownMap, command: Load) -> Talk[Changed]:
     """Add what a file describes."""
     if command.source == "operator":
         command = structs.replace(command, source="file")
@@ -44,7 +44,7 @@ def load(view: MapView, command: Load) -> Talk[Changed]:
     return (yield from _load_described(view, command, READERS[kind](command.content, command.filename)))
 
 
-def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> Talk[Changed]:
+def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:
     known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
     taken_names = set() if command.replace else set(view.entities)
     insert: dict[Triple, None] = {}
@@ -73,7 +73,7 @@ def _load_described(view: MapView, command: Load, described: Iterable[Described]
     return _loaded(command, commit, tuple(names), skipped, notes)
 
 
-def _load_document(view: MapView, command: Load) -> Talk[Changed]:
+def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
     document = LoadDocument(
         id=command.id,
         source=command.source,
@@ -89,7 +89,7 @@ def _load_document(view: MapView, command: Load) -> Talk[Changed]:
     return _loaded(command, taken(view, loaded.commit), names, loaded.skipped, loaded.notes)
 
 
-def _load_tbox(view: MapView, command: Load) -> Talk[Changed]:
+def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
     if command.replace or command.skip_unknown:
         raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
     require_operator(command, "replace the TBox")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.committing import once, taken_with_classes
-from nodes.coordinator.door.known_map import MapView
+from nodes.coordinator.door.known_map import KnownMap
 from schemas.commands import Undo
 from schemas.commits import Commit
 from schemas.replies import Changed
 
 
 @once
-def undo(view: MapView, command: Undo) -> Talk[Changed]:
+def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
     """Take back a commit."""
     commit: Commit = yield Question("undo", command)
     yield from taken_with_classes(view, commit)

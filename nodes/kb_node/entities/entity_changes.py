@@ -1,4 +1,4 @@
-"""What a change of the triples does to the entity_reading."""
+"""What a change of the triples does to the entities."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.runtime.map_replica import MapView
+from nodes.runtime.map_replica import MapReplica
 from ontology import vocabulary as v
 from schemas.commits import Commit, Star
 from schemas.explanations import Term, Triple
@@ -32,7 +32,7 @@ def missed(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
 
 
-class MapState(MapView):
+class MapState(MapReplica):
     """Besides the entities the relations asserted between individuals."""
 
     def __init__(self) -> None:

@@ -156,7 +156,7 @@ class Engine:
         self._follow(before)
 
     def _compile(self, poses: Mapping[str, Pose]) -> None:
-        """A new model of all bodies, each at its pose, and of some vacant body_slots."""
+        """A new model of all bodies, each at its pose, and of some vacant slots."""
         self.compiling = True
         try:
             self.model, spares = build.aside(lambda: self._compiled(poses), self._meanwhile)
@@ -172,7 +172,7 @@ class Engine:
         self.revision += 1
 
     def _compiled(self, poses: Mapping[str, Pose]) -> tuple[mujoco.MjModel, list[str]]:
-        """That model, and the names of the vacant body_slots."""
+        """That model, and the names of the vacant slots."""
         spec = self._ground.copy()
         made = [(self.records[name], shape, poses[name]) for name, shape in self._shapes.items()]
         build.add_bodies(spec, made)

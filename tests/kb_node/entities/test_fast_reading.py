@@ -103,7 +103,7 @@ def _each_by_itself(semantic_map):
 
 
 def _said(read):
-    """The entity_reading, or what is wrong with them."""
+    """The entities, or what is wrong with them."""
     try:
         return list(read())
     except errors.BadRequest as error:

@@ -215,7 +215,7 @@ WRITER = """
 import sys
 from pathlib import Path
 from nodes.kb_node.storage.journal import Journal
-from tests.kb_node.test_journal import commit
+from tests.kb_node.storage.test_journal import commit
 journal = Journal(Path(sys.argv[1]))
 for seq in range(1, 100_000):
     journal.append(commit(seq))

@@ -13,9 +13,9 @@ from nodes.kb_node.storage.repair import repair
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from schemas import errors
 from tests.kb_node import home
+from tests.kb_node.documents.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction
-from tests.kb_node.test_journal import edit, flip
-from tests.kb_node.test_tboxes import NEW_CLASSES, replace
+from tests.kb_node.storage.test_journal import edit, flip
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from nodes.perception_node.recognition.pieces import put_together
 from nodes.perception_node.recognition.shipped_votes import shipped
 from nodes.perception_node.views.merged_thing import thing_of
 from tests.perception_node.scenes import shot
-from tests.perception_node.test_fusion import truly_cut
+from tests.perception_node.views.test_fusion import truly_cut
 
 SUPPORTS_M = [0.0, 0.7]
 UNASKED = np.zeros((2, 2, 2))
