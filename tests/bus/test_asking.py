@@ -11,7 +11,7 @@ import pytest
 from nodes import bus
 from schemas import commands, errors, keys, replies
 from tests.conftest import until
-from tests.nodes.bus.conftest import PREFIX, answer
+from tests.bus.conftest import PREFIX, answer
 
 
 def test_a_question_is_answered(pair):

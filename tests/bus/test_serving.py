@@ -10,7 +10,7 @@ import pytest
 
 from nodes import bus
 from schemas import codec, commands, errors, keys, replies
-from tests.nodes.bus.conftest import PREFIX, answer
+from tests.bus.conftest import PREFIX, answer
 
 
 def test_parameters_of_a_selector_are_fields_and_format_json_answers_in_json(pair):
