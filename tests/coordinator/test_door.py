@@ -304,3 +304,16 @@ def test_the_entities_of_a_class_are_those_of_the_map(door, semantic_map):
     for name, iri in semantic_map.classes.iris.items():
         assert door.entities_of(name) == tuple(semantic_map.entities(iri))
     assert door.entities_of(None) == tuple(semantic_map.entities())
+
+
+def test_a_change_too_large_to_be_passed_on_is_known_to_the_next_command(door, monkeypatch):
+    monkeypatch.setattr("schemas.commits.MANY_ENTITIES", 2)
+    monkeypatch.setattr("nodes.runtime.map_replica.PAGE", 2)
+    entities = b",".join(b'{"class": "Chair", "name": "seat%d"}' % i for i in range(5))
+    loaded = door.change(c.Load(content=b'{"entities": [' + entities + b"]}", filename="five.json"))
+    assert len(loaded.names) == 5
+    assert door.seq == loaded.commit
+    assert not door.is_behind
+    assert {f"seat{i}" for i in range(5)} <= set(door.entities)
+    door.change(c.Remove(names=("seat3",)))
+    assert "seat3" not in door.entities
