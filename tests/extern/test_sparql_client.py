@@ -18,7 +18,7 @@ def test_the_rows_of_another_map_are_told_though_its_numbers_are_lower(monkeypat
             request.refuse(errors.UnknownName("no such standing query"))
         else:
             seq, rows = maps.pop(0)
-            request.reply(Watching(watch="w", seq=seq, variables=("s",), rows=rows))
+            request.reply(Watching(watch="w", seq=seq, variables=("s",), rows=rows, lease_s=30.0))
 
     network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
     with bus.open_session(network) as session, connect(endpoint) as client:
