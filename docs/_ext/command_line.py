@@ -1,4 +1,4 @@
-"""Writes docs/command-line.md from the command line's own help: `make docs`; a test checks that it is up to date."""
+"""Writes docs/command-line.md from the command line's own help (`make docs`); a test checks that it is current."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Mermaid diagrams as committed SVG files, so that the manual builds and reads without a network.
 
-A ```` ```mermaid ```` block stays text, which GitHub draws by itself. `make diagrams` draws what has changed into
-docs/diagrams/<digest>.svg (by Mermaid's own command line, with node and Chromium); the build fails where one is missing.
+A ```` ```mermaid ```` block stays text, which GitHub draws by itself. `make diagrams` draws what has changed
+into docs/diagrams/<digest>.svg by Mermaid's own command line, with node and Chromium; the build fails where one
+is missing.
 """
 
 from __future__ import annotations
@@ -38,7 +39,11 @@ class Mermaid(Directive):
         path = drawn("\n".join(self.content))
         if not path.exists():
             return [self.state.document.reporter.warning(f"{path.name} is missing: make diagrams")]
-        return [nodes.raw("", f'<div class="diagram">{path.read_text()}</div>', format="html")]
+        return [
+            nodes.raw(
+                "", f'<div style="background: white; padding: 0.5em">{path.read_text()}</div>', format="html"
+            )
+        ]
 
 
 def setup(app: object) -> dict[str, bool]:
