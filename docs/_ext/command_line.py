@@ -1,4 +1,4 @@
-"""Writes docs/command-line.md from the command line's own help (`make docs`); a test checks that it is current."""
+"""Writes docs/command-line.md from the help of the command line (`make docs`); a test checks it."""
 
 from __future__ import annotations
 

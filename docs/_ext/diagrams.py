@@ -1,7 +1,7 @@
 """Mermaid diagrams as committed SVG files, so that the manual builds and reads without a network.
 
 A ```` ```mermaid ```` block stays text, which GitHub draws by itself. `make diagrams` draws what has changed
-into docs/diagrams/<digest>.svg by Mermaid's own command line, with node and Chromium; the build fails where one
+into docs/diagrams/<digest>.svg by Mermaid's command line, with node and Chromium; the build fails where one
 is missing.
 """
 
