@@ -14,7 +14,6 @@ from nodes import bus
 from nodes.coordinator import authority
 from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
-from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
@@ -22,6 +21,7 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
+from nodes.runtime.class_names import ClassNames
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import commands as c

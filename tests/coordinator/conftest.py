@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.door import Door
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.undo import undo
+from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.bridge import Outcome
 

@@ -9,9 +9,9 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.known_map import KnownMap
+from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.bridge import StarQuery
 from schemas.commands import Classes, Command

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from nodes.coordinator.class_names import ClassNames
 from nodes.runtime import map_replica
+from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.commits import Commit, Snapshot
 from schemas.entities import Entity

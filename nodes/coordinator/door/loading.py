@@ -8,12 +8,12 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.class_names import ClassNames
 from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
+from nodes.runtime.class_names import ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
 from schemas.commands import Load

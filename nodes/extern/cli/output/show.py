@@ -55,13 +55,14 @@ def entity_line(entities: Sequence[Entity]) -> str:
 def entity_card(e: Entity) -> Table:
     """All about one entity."""
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
+    own_size = " (the model's own)" if e.body is not None and e.body.own_size else ""
     rows = {
         "name": e.name,
         "iri": e.iri,
         "class": e.class_,
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
-        "size": _size(e) or "the model's own",
+        "size": (_size(e) or "unknown") + own_size,
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
