@@ -114,7 +114,7 @@ def classes(client: Client, format: str) -> None:
 @talks
 def status(client: Client, format: str) -> None:
     """The nodes and the map."""
-    status = client.status(timeout_s=_STATUS_S)
+    status = client.send(commands.Status(), timeout_s=_STATUS_S)
     if format == "json":
         print_json(status)
         return
