@@ -233,6 +233,23 @@ def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
     assert door.entity("chair1").pose_provenance.source == "operator"
 
 
+def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first(door, monkeypatch):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0))
+    door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
+    rests = Pose(position_m=(3.0, 1.0, 0.0))
+    with monkeypatch.context() as away:
+        away.setattr(door, "_ask", lambda verb, message: raise_(errors.NoAnswer("it is being restarted")))
+        with pytest.raises(errors.NoAnswer):
+            door.follow("chair1", rests)
+    door.follow("chair1", rests)
+    assert door.entity("chair1").pose_provenance.agent == "ann"
+    assert door.change(c.Undo()).text == "took back commit 2"
+
+
+def raise_(error):
+    raise error
+
+
 def test_an_undo_sent_again_is_answered_with_its_result(door):
     add(door, name="chair1")
     add(door, name="chair2")
