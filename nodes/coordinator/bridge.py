@@ -12,12 +12,13 @@ from schemas import errors, keys
 from schemas.bridge import BRIDGE
 from schemas.commands import Command
 
-_LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
+_LONG = frozenset({"load", "load-tbox", "undo"})
 """What keeps the knowledge base busy; the heart goes on beating meanwhile."""
-_BESIDE_S = {"check": 660.0, "sparql": 180.0, "watch": 180.0}
-"""What is worked out beside its other work."""
-_USUALLY_S = 10.0
+_BUSY_S = 6 * 3600.0
+"""However long the knowledge base works: it is watched, and its end ends the question."""
 _AT_ONCE_S = 3.0
+_OVER_A_START_S = 900.0
+"""A large map takes its time to start."""
 
 
 class Bridge:
@@ -28,7 +29,7 @@ class Bridge:
 
     def ask(self, verb: str, message: Any) -> Any:
         """The answer; nothing else is done until it comes. Raises its error."""
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_USUALLY_S)
+        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_BUSY_S, beating=True)
 
     def ask_later(self, verb: str, message: Any, *, patience_s: float = 0.0) -> Future[Any]:
         """The answer when it comes; NoAnswer when nobody serves the key for `patience_s`."""
@@ -36,7 +37,8 @@ class Bridge:
 
     def change(self, verb: str, message: Any) -> Future[Any]:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        timeout_s, beating = _LONG_S.get(verb, _AT_ONCE_S), verb in _LONG_S
+        beating = verb in _LONG
+        timeout_s = _BUSY_S if beating else _AT_ONCE_S
         future: Future[Any] = Future()
         settle(
             future,
@@ -57,16 +59,15 @@ class Bridge:
 
         What is asked has the id of its command, so that it is done once.
         """
-        kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
+        patience_s = _OVER_A_START_S if verb in _LONG else bus.RESTART_S
         return self._node.ask_later(
-            keys.BRIDGE, verb, message, kind, timeout_s=timeout_s, patience_s=bus.RESTART_S
+            keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_BUSY_S, patience_s=patience_s
         )
 
     def relay(self, command: Command) -> Relay:
         """Let the knowledge base answer a command itself."""
         verb = str(command.__struct_config__.tag)
-        timeout_s = _BESIDE_S.get(verb, bus.TIMEOUT_S)
-        return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], timeout_s)
+        return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], _BUSY_S)
 
 
 def _is_unanswered(asked: Future[Any]) -> bool:
