@@ -34,11 +34,15 @@ class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The stars of these entities; UnknownName if one is not there."""
+    """The stars of these entities, taken together; UnknownName if one is not there."""
 
     names: tuple[str, ...]
-    together: bool = True
-    """What only they use counts as their own; if not, only what one of them uses alone is its own."""
+
+
+class MadeBy(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commits that these commands have made already; None for a command that has made none."""
+
+    ids: tuple[CommandId, ...]
 
 
 class Recall(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -99,6 +103,7 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "snapshot": (SnapshotQuery, Snapshot),
     "recall": (Recall, tuple[Commit, ...]),
     "star": (StarQuery, tuple[Star, ...]),
+    "made-by": (MadeBy, tuple[Commit | None, ...]),
     "classes": (Classes, tuple[ClassInfo, ...]),
     "list": (List, tuple[Entity, ...]),
     "get": (Get, Entity),

@@ -12,8 +12,8 @@ from concurrent.futures import Future
 from typing import Any, NamedTuple, TypeVar
 
 from schemas import errors
-from schemas.bridge import Outcome, StarQuery, Transactions
-from schemas.commits import Star
+from schemas.bridge import MadeBy, Outcome, Transactions
+from schemas.commits import Commit
 
 T = TypeVar("T")
 
@@ -114,16 +114,11 @@ def _each(verb: str, messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
     return answers
 
 
-def _stars(messages: Mapping[int, StarQuery]) -> Talk[dict[int, Answer]]:
-    names = tuple(dict.fromkeys(name for query in messages.values() for name in query.names))
-    if any(query.together and len(query.names) > 1 for query in messages.values()):
-        return (yield from _each("star", messages))
-    try:
-        found: tuple[Star, ...] = yield Question("star", StarQuery(names=names, together=False))
-    except errors.Refused:  # one of them
-        return (yield from _each("star", messages))
-    stars = {star.name: star for star in found}
-    return {i: tuple(stars[name] for name in query.names) for i, query in messages.items()}
+def _made_by(messages: Mapping[int, MadeBy]) -> Talk[dict[int, Answer]]:
+    ids = tuple(dict.fromkeys(id_ for query in messages.values() for id_ in query.ids))
+    commits: tuple[Commit | None, ...] = yield Question("made-by", MadeBy(ids=ids))
+    made = dict(zip(ids, commits, strict=True))
+    return {i: tuple(made[id_] for id_ in query.ids) for i, query in messages.items()}
 
 
 def _commits(messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
@@ -140,7 +135,7 @@ def _said(outcome: Outcome) -> Answer:
 
 
 _TOGETHER: Mapping[str, Callable[[Mapping[int, Any]], Talk[dict[int, Answer]]]] = {
-    "star": _stars,
+    "made-by": _made_by,
     "commit": _commits,
 }
 """The questions that can be asked together."""

@@ -26,6 +26,7 @@ from schemas.bridge import (
     LoadDocument,
     Loaded,
     LoadTBox,
+    MadeBy,
     Outcome,
     Recall,
     SnapshotQuery,
@@ -167,7 +168,11 @@ class KnowledgeBase:
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
-        return self.map.stars(query.names, together=query.together)
+        return self.map.stars(query.names)
+
+    def on_made_by(self, query: MadeBy) -> tuple[Commit | None, ...]:
+        """The commits that some commands have made."""
+        return tuple(map(self._journal.commit_of, query.ids))
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""

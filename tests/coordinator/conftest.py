@@ -51,7 +51,7 @@ def door(semantic_map):
             else Outcome(commit=result)
             for result in semantic_map.commit_together(several.transactions)
         ),
-        "star": lambda query: semantic_map.stars(query.names, together=query.together),
+        "made-by": lambda query: tuple(map(semantic_map._journal.commit_of, query.ids)),
         "undo": lambda command: undo(semantic_map, semantic_map._journal, command),
     }
     door = Door(lambda verb, message: answers[verb](message))
