@@ -30,9 +30,9 @@ class Bridge:
         """The answer; nothing else is done until it comes. Raises its error."""
         return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_USUALLY_S)
 
-    def ask_later(self, verb: str, message: Any) -> Future[Any]:
-        """The answer when it comes; while nobody serves the key an error, at once."""
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+    def ask_later(self, verb: str, message: Any, *, patience_s: float = 0.0) -> Future[Any]:
+        """The answer when it comes; NoAnswer when nobody serves the key for `patience_s`."""
+        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], patience_s=patience_s)
 
     def change(self, verb: str, message: Any) -> Future[Any]:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import time
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 from nodes import bus
+from nodes.runtime.class_names import ClassNames
 from nodes.runtime.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import open_world
+from nodes.sim_node.world_file import is_scene, open_world
 from schemas import codec, errors, keys, wording
-from schemas.commands import Pause, Reset, StepOnce
+from schemas.commands import Classes, Pause, Reset, StepOnce
+from schemas.entities import ClassInfo
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
@@ -54,7 +57,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = open_world(config.world, Models(config.models), node.tick)
+        self._world = open_world(config.world, Models(config.models), node.tick, self._classes(config.world))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -82,6 +85,27 @@ class Simulator:
         if config.cameras.rate_hz > 0.0:
             node.every(1.0 / config.cameras.rate_hz, self._film)
         node.ready(self._summary())
+
+    def _classes(self, world: Path | None) -> ClassNames:
+        """What the TBox says of classes, if the world is a file that names bodies by class."""
+        if not is_scene(world):
+            return ClassNames()
+        try:
+            found = self._node.ask(
+                keys.BRIDGE,
+                "classes",
+                Classes(),
+                tuple[ClassInfo, ...],
+                timeout_s=bus.TIMEOUT_S,
+                patience_s=bus.RESTART_S,
+                beating=True,
+            )
+        except errors.NoAnswer:
+            self._node.report(
+                "the knowledge base does not answer: bodies get the models named like their classes"
+            )
+            return ClassNames()
+        return ClassNames(found)
 
     def close(self) -> None:
         """Let go of the studio's thread and of the window."""

@@ -137,9 +137,10 @@ class Reasoner:
     ) -> Iterator[Triple]:
         """The triples about individuals that follow and were not asserted, of a pattern.
 
-        Left out are classes without a name, that everything is the same as itself, and other spellings of
-        a literal; `holds` knows them. What follows of classes and properties is given when the pattern's
-        predicate asks for it.
+        Left out are classes without a name, and that everything is the same as itself; `holds` knows both.
+        A value is given once, in its canonical spelling (`datatypes.canonical`), unless it was asserted in
+        any spelling. What follows of classes and properties is given when the pattern's predicate asks
+        for it.
         """
         return self._engine.inferred(s, p, o)
 

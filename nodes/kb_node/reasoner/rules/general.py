@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
 
+from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.explain.proof import Prover
 from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.terms import TYPE, is_named
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 
 
@@ -43,8 +45,28 @@ class GeneralEngine:
         return {term for s, _, o in self.asserted(None, None, None) for term in (s, o) if term in terms}
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The triples of a pattern that follow and were not asserted."""
-        return (triple for triple in self._closure.match(s, p, o) if triple not in self._asserted)
+        """The triples of a pattern that follow and were not asserted; which, `Reasoner.inferred` says."""
+        wants_schema = p is not None and (p != TYPE or (o is not None and is_schema((o, p, o))))
+        given: set[Triple] = set()
+        for triple in self._closure.match(s, p, None if o is not None and is_literal(o) else o):
+            subject, predicate, object_ = triple
+            if triple in self._asserted or is_literal(subject) or not is_named(predicate):
+                continue
+            if is_schema(triple):
+                if wants_schema:
+                    yield triple
+            elif is_literal(object_):
+                spelled = (subject, predicate, datatypes.canonical(object_))
+                if spelled not in given and o in (None, spelled[2]) and not self._is_said(spelled):
+                    given.add(spelled)
+                    yield spelled
+            elif predicate != TYPE or is_named(object_):
+                yield triple
+
+    def _is_said(self, triple: Triple) -> bool:
+        """Whether a value, in its canonical spelling, is asserted in any."""
+        s, p, value = triple
+        return any(datatypes.canonical(o) == value for _, _, o in self.asserted(s, p, None))
 
     def holds(self, triple: Triple) -> bool:
         """Whether a triple is asserted or follows."""

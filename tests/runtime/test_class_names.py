@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.coordinator.class_names import ClassNames
+from nodes.runtime.class_names import ClassNames
 from schemas.entities import ClassInfo
 from schemas.errors import UnknownClass
 
