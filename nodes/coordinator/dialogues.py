@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, Transactions
-from schemas.commits import Commit
+from schemas.commits import Effects
 
 T = TypeVar("T")
 
@@ -116,7 +116,7 @@ def _each(verb: str, messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
 
 def _made_by(messages: Mapping[int, MadeBy]) -> Talk[dict[int, Answer]]:
     ids = tuple(dict.fromkeys(id_ for query in messages.values() for id_ in query.ids))
-    commits: tuple[Commit | None, ...] = yield Question("made-by", MadeBy(ids=ids))
+    commits: tuple[Effects | None, ...] = yield Question("made-by", MadeBy(ids=ids))
     made = dict(zip(ids, commits, strict=True))
     return {i: tuple(made[id_] for id_ in query.ids) for i, query in messages.items()}
 

@@ -14,7 +14,7 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
 from schemas.bridge import MadeBy
 from schemas.commands import Classes, Command
-from schemas.commits import Commit, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.replies import Changed
 
 C = TypeVar("C", bound=Command)
@@ -43,22 +43,25 @@ def _done_before(command: Command) -> Talk[Changed | None]:
     return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
 
-def commit(view: KnownMap, transaction: Transaction) -> Talk[Commit | None]:
+def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
     """Commit it; None if it changes nothing."""
-    made: Commit | None = yield Question("commit", transaction)
-    return taken(view, made)
+    made: Effects | None = yield Question("commit", transaction)
+    return (yield from taken(view, made))
 
 
-def taken(view: KnownMap, commit: Commit | None) -> Commit | None:
-    """The commit, shown in the view so that the next command sees it."""
-    if commit is not None:
-        view.take(commit)
+def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
+    """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
+    if commit is not None and not view.take(commit) and commit.abridged is not None:
+        pages = view.begin_pages()
+        while not pages.are_complete:
+            pages.take((yield Question("snapshot", pages.query)))
+        view.begin(pages.snapshot)
     return commit
 
 
-def taken_with_classes(view: KnownMap, commit: Commit) -> Talk[None]:
+def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
-    taken(view, commit)
+    yield from taken(view, commit)
     if commit.tbox:
         view.classes = ClassNames((yield Question("classes", Classes())))
 
@@ -68,6 +71,6 @@ def new_id() -> str:
     return uuid.uuid4().hex
 
 
-def seq(commit: Commit | None) -> int | None:
+def seq(commit: Effects | None) -> int | None:
     """Its number."""
     return None if commit is None else commit.seq
