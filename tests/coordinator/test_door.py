@@ -243,9 +243,9 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
-    def ask_later(verb, message):
+    def ask_later(call):
         future: Future = Future()
-        settle(future, lambda: door._ask(verb, message))
+        settle(future, lambda: door._ask(call))
         return future
 
     turns = Turns(lambda group: hold_later(door.together(group), ask_later))
