@@ -20,7 +20,7 @@ from schemas.commands import (
     Sparql,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.moments import When
@@ -29,22 +29,29 @@ from schemas.moments import When
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What became of one of several changes: an error, or else the commit (None when it changed nothing)."""
 
-    commit: Commit | None = None
+    commit: Effects | None = None
     error: ErrorMessage | None = None
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, and what was left out and why."""
+    """The commit, the names of the entities that it changed, and what was left out and why."""
 
-    commit: Commit | None
+    commit: Effects | None
+    names: tuple[str, ...] = ()
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
 
 class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All entities, with the number of the commit that they are true after."""
+    """The entities, with the number of the commit that they are true after.
+
+    With a `limit`, a page of that many at most: those whose names come after `after`, in their order. Other
+    commits may come between two pages; who follows those and takes them all in has the map in the end.
+    """
 
     VERB: ClassVar[str] = "snapshot"
+    after: str = ""
+    limit: Annotated[int, Meta(ge=1)] | None = None
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -88,7 +95,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     skip_unknown: bool
 
 
-class LoadTBox(Call[Commit | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
 
     VERB: ClassVar[str] = "load-tbox"
@@ -109,7 +116,7 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     as_of: When | None = None
 
 
-class TakeBack(Call[Commit], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"

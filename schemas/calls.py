@@ -58,7 +58,7 @@ def reply_type(kind: type[Call[R]]) -> Any:
     for ancestor in kind.__mro__:
         for base in vars(ancestor).get("__orig_bases__", ()):
             said = get_args(base)
-            if said and said != (R,) and isinstance(get_origin(base), type):
+            if said and not isinstance(said[0], TypeVar) and isinstance(get_origin(base), type):
                 return said[0]
     raise TypeError(f"{kind.__name__} does not say what it is answered with")
 
