@@ -21,7 +21,7 @@ from schemas.commands import (
     Undo,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation
@@ -30,7 +30,14 @@ from schemas.sparql import SparqlResult, Watching
 
 
 class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All entities, with the number of the commit that they are true after."""
+    """The entities, with the number of the commit that they are true after.
+
+    With a `limit`, a page of that many at most: those whose names come after `after`, in their order. Other
+    commits may come between two pages; who follows those and takes them all in has the map in the end.
+    """
+
+    after: str = ""
+    limit: Annotated[int, Meta(ge=1)] | None = None
 
 
 class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -56,7 +63,7 @@ class Transactions(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What became of one of several changes: an error, or else the commit (None when it changed nothing)."""
 
-    commit: Commit | None = None
+    commit: Effects | None = None
     error: ErrorMessage | None = None
 
 
@@ -85,15 +92,16 @@ class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, and what was left out and why."""
+    """The commit, the names of the entities that it changed, and what was left out and why."""
 
-    commit: Commit | None
+    commit: Effects | None
+    names: tuple[str, ...] = ()
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
 
 BRIDGE: dict[str, tuple[type[Struct], Any]] = {
-    "commit": (Transaction, Commit | None),
+    "commit": (Transaction, Effects | None),
     "commits": (Transactions, tuple[Outcome, ...]),
     "load": (LoadDocument, Loaded),
     "snapshot": (SnapshotQuery, Snapshot),
@@ -108,8 +116,8 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "export": (Export, Document),
     "history": (History, tuple[LoggedCommit, ...]),
     "last-seen": (LastSeen, Sighting),
-    "undo": (Undo, Commit),
-    "load-tbox": (LoadTBox, Commit | None),
+    "undo": (Undo, Effects),
+    "load-tbox": (LoadTBox, Effects | None),
     "sparql": (Sparql, SparqlResult),
     "watch": (Watch, Watching),
     "renew": (Renew, Done),

@@ -26,8 +26,7 @@ from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import commands as c
 from schemas import errors, keys, wording
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Effects, Snapshot
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
@@ -90,7 +89,7 @@ class Coordinator:
             verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
             for verb, kind in c.COMMANDS.items()
         }
-        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.EFFECTS, self._on_commit)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map)
@@ -103,7 +102,7 @@ class Coordinator:
 
     # Following
 
-    def _on_commit(self, commit: Commit) -> None:
+    def _on_commit(self, commit: Effects) -> None:
         if not self._door.take(commit) or commit.tbox:
             self._fetch_map()
         self._changed.update(commit.names)
@@ -150,18 +149,24 @@ class Coordinator:
             return
         self._fetching = True
         fetched: list[Any] = []
+        pages = self._door.begin_pages()
 
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
                 fetched.append(future.result())
-            self._bridge.ask_later("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+            self._bridge.ask_later("snapshot", pages.query).add_done_callback(on_page)
 
-        def on_snapshot(future: Future[Snapshot]) -> None:
-            self._fetching = False
+        def on_page(future: Future[Snapshot]) -> None:
             if future.exception() is not None or not fetched:
+                self._fetching = False
                 return
+            pages.take(future.result())
+            if not pages.are_complete:
+                self._bridge.ask_later("snapshot", pages.query).add_done_callback(on_page)
+                return
+            self._fetching = False
             self._door.classes = ClassNames(fetched[0])
-            self._door.begin(future.result())
+            self._door.begin(pages.snapshot)
             self._has_map = True
             gc.freeze()  # most of the map stays as it is: the collector need not look through it again
             self._node.ready(wording.entities(len(self._door.entities)))

@@ -13,6 +13,7 @@ from nodes.kb_node import answers, gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
+from nodes.kb_node.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
@@ -47,7 +48,7 @@ from schemas.commands import (
     Undo,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
@@ -67,6 +68,7 @@ class KnowledgeBase:
         self._past = history.Past(journal)
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
+        self._pages = Pages(self.map)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
@@ -81,10 +83,10 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.ready(self._summary())
 
-    def on_commit(self, transaction: Transaction) -> Commit | None:
+    def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return self._commit(transaction)
+        return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
@@ -141,7 +143,13 @@ class KnowledgeBase:
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
             commit = self._commit(transaction)
-            return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+            names = () if commit is None else tuple(entity.name for entity in commit.changed)
+            return Loaded(
+                commit=_effects(commit),
+                names=names,
+                skipped=tuple(sorted_out.skipped),
+                notes=tuple(sorted_out.notes),
+            )
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -157,9 +165,9 @@ class KnowledgeBase:
         finally:
             self._node.describe(self._summary())
 
-    def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
-        """Every entity, as of the last commit."""
-        return self.map.snapshot()
+    def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
+        """The entities as of the last commit, or a page of them."""
+        return self._pages.snapshot(query)
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
         """Commits of the history, whole."""
@@ -209,19 +217,19 @@ class KnowledgeBase:
             return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
-    def on_undo(self, command: Undo) -> Commit:
+    def on_undo(self, command: Undo) -> Effects:
         """A commit that takes back another one."""
-        return self._published_if_new(lambda: undo.undo(self.map, self._journal, command))
+        return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
 
-    def on_load_tbox(self, load: LoadTBox) -> Commit | None:
+    def on_load_tbox(self, load: LoadTBox) -> Effects | None:
         """Another TBox, in one commit; none for the one that holds."""
         read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
-            return self._journal.commit_of(load.id)
+            return _effects(self._journal.commit_of(load.id))
         try:
-            return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+            return Effects.of(self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox)))
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
@@ -264,7 +272,11 @@ class KnowledgeBase:
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
     if isinstance(result, errors.SemmapError):
         return Outcome(error=errors.to_message(result))
-    return Outcome(commit=result)
+    return Outcome(commit=_effects(result))
+
+
+def _effects(commit: Commit | None) -> Effects | None:
+    return None if commit is None else Effects.of(commit)
 
 
 def run(config: KbConfig) -> None:

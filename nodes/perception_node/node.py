@@ -31,7 +31,7 @@ from nodes.runtime.map_replica import MapReplica
 from schemas import codec, keys, wording
 from schemas.bridge import BRIDGE, SnapshotQuery
 from schemas.commands import Add, Classes, Command, LastSeen
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Effects, Snapshot
 from schemas.entities import Size
 from schemas.errors import UnknownName
 from schemas.health import Health
@@ -62,7 +62,7 @@ class Perception:
         self._node = node
         self._config = config
         self._usual_m = usual_m
-        self._map = MapReplica()
+        self._map = MapReplica[Effects]()
         self._classes = ClassHierarchy()
         self._tracks = Tracks()
         self._fetching = False
@@ -76,7 +76,7 @@ class Perception:
         self._looked_at = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
-        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.EFFECTS, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
@@ -173,7 +173,7 @@ class Perception:
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
         self._on_complaint(f"the map did not take what was seen: {error}")
 
-    def _on_commit(self, commit: Commit) -> None:
+    def _on_commit(self, commit: Effects) -> None:
         if not self._map.take(commit) or commit.tbox:
             self._fetch_map()
 

@@ -10,7 +10,7 @@ from nodes import bus
 from nodes.coordinator.bridge import Bridge
 from nodes.runtime.loop import Node
 from schemas import errors, keys
-from schemas.commits import Commit, Transaction
+from schemas.commits import Commit, Effects, Transaction
 from tests.conftest import free_endpoint, handling
 
 TRANSACTION = Transaction(id="42", source="operator")
@@ -48,7 +48,7 @@ def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhil
     time.sleep(0.3)
     assert not answer.done()
     serve(kb)
-    assert answer.result(timeout=20) == COMMIT
+    assert answer.result(timeout=20) == Effects.of(COMMIT)
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])

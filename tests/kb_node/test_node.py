@@ -13,8 +13,9 @@ from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, LoadTBox, SnapshotQuery, StarQuery
+from schemas.bridge import BRIDGE, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
 from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
+from schemas.commits import Effects
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -106,7 +107,7 @@ def test_a_commit_is_replied_and_published(session):
     assert ask(session, "commit", transaction("a", chair("x"))) == first
     assert ask(session, "commit", transaction("c", chair("b"))) is None
     third = ask(session, "commit", transaction("d", retract=chair("b")))
-    assert [message for _, message in until(commits, 3)] == [first, second, third]
+    assert [Effects.of(message) for _, message in until(commits, 3)] == [first, second, third]
     assert third.seq == second.seq + 1 == first.seq + 2
     subscriber.undeclare()
 
@@ -141,7 +142,8 @@ def test_the_tbox_that_holds_is_no_change(session):
     assert commit.tbox
     assert load(2, text) is None
     assert load(1, text) == commit
-    more = load(4, text + "dm:Chair rdfs:comment 'to sit on' .")
+    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").seq
+    (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
     assert load(3, TBOX_TURTLE).seq == commit.seq + 2
 
