@@ -60,6 +60,13 @@ _STRINGS: Final = {
     "NCName": re.compile(f"[{_NAME_START.replace(':', '', 1)}][{_NAME_CHAR.replace(':', '', 1)}]*"),
 }
 """The values of the string types."""
+_WIDER: Final = {
+    "normalizedString": ("string",),
+    "token": ("string", "normalizedString"),
+    **dict.fromkeys(("language", "NMTOKEN", "Name"), ("string", "normalizedString", "token")),
+    "NCName": ("string", "normalizedString", "token", "NMTOKEN", "Name"),
+}
+"""The string types that hold all values of another."""
 
 _FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
 _DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
@@ -192,6 +199,28 @@ def contains(datatype: Term, term: Term) -> bool:
     if kind == "dateTime":
         return name == "dateTime" or (name == "dateTimeStamp" and key[0] == "zoned")
     return kind == name
+
+
+def known() -> frozenset[Term]:
+    """The datatypes whose values are known here."""
+    return _KNOWN
+
+
+def includes(wide: Term, narrow: Term) -> bool:
+    """Whether every value of one known datatype is a value of another; False if that is not known."""
+    if wide in (narrow, LITERAL):
+        return True
+    one, other = (term[1:-1].removeprefix(_XSD) for term in (wide, narrow))
+    if one == "decimal":
+        return other in _INTEGERS
+    if one in _INTEGERS and other in _INTEGERS:
+        (low, high), (lowest, highest) = _INTEGERS[one], _INTEGERS[other]
+        return (low is None or (lowest is not None and lowest >= low)) and (
+            high is None or (highest is not None and highest <= high)
+        )
+    if one == _RDF + "PlainLiteral":
+        return other in _STRINGS or narrow == iri("rdf:langString")
+    return one in _WIDER.get(other, ()) or (one, other) == ("dateTime", "dateTimeStamp")
 
 
 def excludes(datatype: Term, term: Term) -> bool:
