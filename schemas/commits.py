@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from msgspec import Struct, structs
 
+from schemas.calls import Call
 from schemas.entities import (
     Angle,
     CommandId,
@@ -55,36 +58,6 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
     def places(self) -> bool:
         """Does it say where the entity is?"""
         return not (self.at is None and self.yaw is None and self.orientation is None)
-
-
-class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """One atomic change with its preconditions.
-
-    What is wanted of entities travels as intents: `remove` (names), `edit` and `add`, carried out in this
-    order. The knowledge base turns them into triples, because it knows the ones that are there; it raises
-    `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
-
-    `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
-    triple of `require` is asserted. `id` is the command's: the same id a second time changes nothing and is
-    answered with the first commit.
-
-    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
-    settling). `undoes` are the commits that it takes back.
-    """
-
-    id: CommandId
-    source: Source
-    agent: str = ""
-    verb: str = ""
-    reason: str = ""
-    confidence: Probability | None = None
-    undoes: tuple[int, ...] = ()
-    remove: tuple[str, ...] = ()
-    edit: tuple[Edit, ...] = ()
-    add: tuple[NewEntity, ...] = ()
-    require: tuple[Triple, ...] = ()
-    retract: tuple[Triple, ...] = ()
-    insert: tuple[Triple, ...] = ()
 
 
 class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -189,6 +162,39 @@ class Effects(Struct, frozen=True, kw_only=True):
     def names(self) -> tuple[str, ...]:
         """The names of the entities that it touched."""
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
+
+
+class Transaction(
+    Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """One atomic change with its preconditions.
+
+    What is wanted of entities travels as intents: `remove` (names), `edit` and `add`, carried out in this
+    order. The knowledge base turns them into triples, because it knows the ones that are there; it raises
+    `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
+
+    `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
+    triple of `require` is asserted. `id` is the command's: the same id a second time changes nothing and is
+    answered with the first commit.
+
+    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
+    settling). `undoes` are the commits that it takes back.
+    """
+
+    VERB: ClassVar[str] = "commit"
+    id: CommandId
+    source: Source
+    agent: str = ""
+    verb: str = ""
+    reason: str = ""
+    confidence: Probability | None = None
+    undoes: tuple[int, ...] = ()
+    remove: tuple[str, ...] = ()
+    edit: tuple[Edit, ...] = ()
+    add: tuple[NewEntity, ...] = ()
+    require: tuple[Triple, ...] = ()
+    retract: tuple[Triple, ...] = ()
+    insert: tuple[Triple, ...] = ()
 
 
 MANY_ENTITIES = 10_000

@@ -57,7 +57,7 @@ def door(semantic_map):
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
     }
-    door = Door(lambda verb, message: answers[verb](message))
+    door = Door(lambda call: answers[call.VERB](call))
     door.classes = ClassNames(semantic_map.class_table())
     door.begin(semantic_map.snapshot())
     return door

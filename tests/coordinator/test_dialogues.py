@@ -6,7 +6,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.dialogues import Question, hold, hold_later, in_step
+from nodes.coordinator.dialogues import hold, hold_later, in_step
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, Transactions
 from schemas.commits import Commit, Transaction
@@ -22,8 +22,8 @@ def commit(name):
 
 def change(name):
     """A talk as of a command with an id: was it done before? If not, the commit."""
-    (made,) = yield Question("made-by", MadeBy(ids=(name,)))
-    made = made or (yield Question("commit", transaction(name)))
+    (made,) = yield MadeBy(ids=(name,))
+    made = made or (yield transaction(name))
     return made.id
 
 
@@ -33,11 +33,11 @@ class KnowledgeBase:
     def __init__(self):
         self.asked = []
 
-    def __call__(self, verb, message):
-        self.asked.append((verb, message))
-        if verb == "made-by":
+    def __call__(self, message):
+        self.asked.append(message)
+        if isinstance(message, MadeBy):
             return tuple(commit(id_) if id_ == "done" else None for id_ in message.ids)
-        if verb == "commits":
+        if isinstance(message, Transactions):
             return tuple(map(self.outcome, message.transactions))
         outcome = self.outcome(message)
         if outcome.error is not None:
@@ -59,14 +59,14 @@ def ask():
 
 def test_one_talk_asks_as_it_is_written(ask):
     assert hold(change("a"), ask) == "a"
-    assert ask.asked == [("made-by", MadeBy(ids=("a",))), ("commit", transaction("a"))]
+    assert ask.asked == [MadeBy(ids=("a",)), transaction("a")]
 
 
 def test_what_is_asked_at_the_same_time_goes_together(ask):
     assert hold(in_step([change("a"), change("b")]), ask) == ["a", "b"]
     assert ask.asked == [
-        ("made-by", MadeBy(ids=("a", "b"))),
-        ("commits", Transactions(transactions=(transaction("a"), transaction("b")))),
+        MadeBy(ids=("a", "b")),
+        Transactions(transactions=(transaction("a"), transaction("b"))),
     ]
 
 
@@ -82,9 +82,9 @@ def test_an_error_ends_its_own_talk_only(ask, bad, error):
 def test_a_talk_may_go_on_after_an_error(ask):
     def stubborn():
         try:
-            yield Question("commit", transaction("no"))
+            yield transaction("no")
         except errors.PreconditionFailed:
-            return (yield Question("commit", transaction("yes"))).id
+            return (yield transaction("yes")).id
 
     assert hold(in_step([stubborn(), change("a"), stubborn()]), ask) == ["yes", "a", "yes"]
 
@@ -92,14 +92,14 @@ def test_a_talk_may_go_on_after_an_error(ask):
 def test_who_was_answered_before_does_not_hold_up_the_others(ask):
     assert hold(in_step([change("a"), change("done"), change("b")]), ask) == ["a", "done", "b"]
     assert ask.asked == [
-        ("made-by", MadeBy(ids=("a", "done", "b"))),
-        ("commits", Transactions(transactions=(transaction("a"), transaction("b")))),
+        MadeBy(ids=("a", "done", "b")),
+        Transactions(transactions=(transaction("a"), transaction("b"))),
     ]
 
 
 def test_without_an_answer_nothing_is_said_to_be_done():
-    def nobody(verb, message):
-        raise errors.NoAnswer(verb)
+    def nobody(message):
+        raise errors.NoAnswer(message.VERB)
 
     with pytest.raises(errors.NoAnswer):
         hold(in_step([change("a"), change("b")]), nobody)
@@ -108,15 +108,15 @@ def test_without_an_answer_nothing_is_said_to_be_done():
 def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
     asked = []
 
-    def ask_later(verb, message):
-        asked.append((verb, message, Future()))
+    def ask_later(message):
+        asked.append((message, Future()))
         return asked[-1][-1]
 
     future = hold_later(in_step([change("a"), change("no")]), ask_later)
     while not future.done():
-        verb, message, answer = asked[-1]
+        message, answer = asked[-1]
         try:
-            answer.set_result(ask(verb, message))
+            answer.set_result(ask(message))
         except errors.SemmapError as error:
             answer.set_exception(error)
     first, second = future.result()
@@ -125,7 +125,7 @@ def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
 
 def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
     def broken():
-        yield Question("made-by", MadeBy(ids=()))
+        yield MadeBy(ids=())
         raise ZeroDivisionError
 
     done: Future = Future()

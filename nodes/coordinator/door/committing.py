@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
 from schemas.bridge import MadeBy
@@ -36,7 +36,7 @@ def once(change: Change[C]) -> Change[C]:
 
 def _done_before(command: Command) -> Talk[Changed | None]:
     """The result of the command with this id, if there was one."""
-    (commit,) = yield Question("made-by", MadeBy(ids=(command.id,)))
+    (commit,) = yield from ask(MadeBy(ids=(command.id,)))
     if commit is None:
         return None
     names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
@@ -45,8 +45,7 @@ def _done_before(command: Command) -> Talk[Changed | None]:
 
 def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
     """Commit it; None if it changes nothing."""
-    made: Effects | None = yield Question("commit", transaction)
-    return (yield from taken(view, made))
+    return (yield from taken(view, (yield from ask(transaction))))
 
 
 def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
@@ -54,7 +53,7 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     if commit is not None and not view.take(commit) and commit.abridged is not None:
         pages = view.begin_pages()
         while not pages.are_complete:
-            pages.take((yield Question("snapshot", pages.query)))
+            pages.take((yield from ask(pages.query)))
         view.begin(pages.snapshot)
     return commit
 
@@ -63,7 +62,7 @@ def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
     yield from taken(view, commit)
     if commit.tbox:
-        view.classes = ClassNames((yield Question("classes", Classes())))
+        view.classes = ClassNames((yield from ask(Classes())))
 
 
 def new_id() -> str:
