@@ -238,7 +238,7 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
     door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
     rests = Pose(position_m=(3.0, 1.0, 0.0))
     with monkeypatch.context() as away:
-        away.setattr(door, "_ask", lambda verb, message: raise_(errors.NoAnswer("it is being restarted")))
+        away.setattr(door, "_ask", lambda call: raise_(errors.NoAnswer("it is being restarted")))
         with pytest.raises(errors.NoAnswer):
             door.follow("chair1", rests)
     door.follow("chair1", rests)
@@ -260,9 +260,9 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
-    def ask_later(verb, message):
+    def ask_later(call):
         future: Future = Future()
-        settle(future, lambda: door._ask(verb, message))
+        settle(future, lambda: door._ask(call))
         return future
 
     turns = Turns(lambda group: hold_later(door.together(group), ask_later))
@@ -301,13 +301,12 @@ def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map)
 def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, semantic_map):
     for name in ("a", "b"):
         add(door, name=name, at=(1.0, 2.0, 0.0), ref="seat")
-    (star,) = semantic_map.stars(["a"])
-    (seat,) = star.preferred
+    seat, hers = (v.entity_iri(f"{name}_preferred_reference") for name in ("a", "b"))
     other = semantic_map.stars(["b"])[0]
     shared = Transaction(
         id="share",
         source="operator",
-        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] in other.preferred),
+        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] == hers),
         insert=((other.iri, v.HAS_PREFERRED_REFERENCE, seat),),
     )
     door.take(semantic_map.commit(shared))
