@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import queue
 import re
+import shlex
 import signal
 import socket
 import subprocess
@@ -38,7 +39,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     """
     supervisor = Supervisor(Path(settings.data))
     if supervisor.is_running():
-        down = f"semmap down --data {settings.data}"
+        down = f"semmap down --data {shlex.quote(settings.data)}"
         raise errors.Refused(f"a system runs on {settings.data} already; stop it with: {down}")
     _require_free(settings.listen)
     if settings.record:

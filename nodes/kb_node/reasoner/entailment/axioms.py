@@ -8,7 +8,7 @@ from typing import Final
 
 from nodes.kb_node.reasoner.entailment.expressions import Expression, Named, Or, Reader, Role
 from nodes.kb_node.reasoner.entailment.prover import Prover
-from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, iri
+from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
 from schemas.explanations import Term, Triple
 
 
@@ -158,6 +158,7 @@ class Axioms:
         return (
             any(next(iter(asserted(term, iri(name), None)), None) for name in subject)
             or any(next(iter(asserted(None, iri(name), term)), None) for name in object_)
+            or any(self._prover.holds((term, TYPE, iri(name))) for name in _NARROWER.get(kind, "").split())
             or (kind in _PROPERTIES and next(iter(asserted(None, term, None)), None) is not None)
         )
 
@@ -186,6 +187,17 @@ _AS_PROPERTY = (
         "owl:onProperty", "owl:assertionProperty",
     ),
 )  # fmt: skip
+_OBJECT = (
+    "owl:ObjectProperty owl:SymmetricProperty owl:AsymmetricProperty owl:TransitiveProperty "
+    "owl:ReflexiveProperty owl:IrreflexiveProperty owl:InverseFunctionalProperty"
+)
+_NARROWER = {
+    iri("owl:Class"): "rdfs:Class owl:Restriction",
+    iri("rdfs:Class"): "owl:Class owl:Restriction rdfs:Datatype",
+    iri("owl:ObjectProperty"): _OBJECT,
+    iri("rdf:Property"): f"{_OBJECT} owl:DatatypeProperty owl:AnnotationProperty owl:FunctionalProperty",
+}
+"""Classes whose members are of another, of those by which terms are declared."""
 _CLASSES = {iri("owl:Class"), iri("rdfs:Class")}
 _PROPERTIES = {iri("rdf:Property"), iri("owl:ObjectProperty")}
 _USES = dict.fromkeys(_CLASSES, _AS_CLASS) | dict.fromkeys(_PROPERTIES, _AS_PROPERTY)

@@ -10,6 +10,7 @@ from nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
 from nodes.kb_node.reasoner.entailment.prover import Prover
 from nodes.kb_node.reasoner.reasoner import Reasoner
 from nodes.kb_node.reasoner.rules.facts import Facts
+from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import FIRST, REST, TYPE, iri, iris, is_literal, is_named
 from schemas.explanations import Term, Triple
 
@@ -57,7 +58,7 @@ def entails(reasoner: Reasoner, graph: Iterable[Triple]) -> bool:
     try:
         if stated.follows():
             return True
-        return stated.prover.with_witnesses(stated.follows)
+        return stated.prover.with_witnesses(stated.individuals(), stated.follows)
     except Unreadable:
         return False
 
@@ -93,6 +94,12 @@ class _Stated:
             if proved is None:
                 search.append(triple)
         return self._search.matches(search)
+
+    def individuals(self) -> list[Term]:
+        """The named individuals that the graph speaks of."""
+        facts = [triple for triple in self._facts.facts if not is_schema(triple)]
+        terms = dict.fromkeys(term for s, p, o in facts for term in ((s,) if p == TYPE else (s, o)))
+        return [term for term in terms if is_named(term)]
 
     def _is_declaration(self, triple: Triple) -> bool:
         return triple[1] == TYPE and triple[2] in _DECLARED

@@ -72,6 +72,7 @@ class Prover:
         self._left = _MOST
         self._open: set[tuple[Term, Term]] = set()
         self.asserted = reasoner.asserted
+        self.holds = reasoner.holds
         self.reader = Reader(reasoner.asserted)
         self.fresh = self._writer.fresh
 
@@ -86,6 +87,7 @@ class Prover:
         supposed = [triple for triple in supposed if not is_literal(triple[0])]  # to suppose less is sound
         things = {triple[0]: None for triple in supposed if not is_schema(triple)}
         supposed += [(x, TYPE, THING) for x in things]
+        supposed += [(x, p, x) for p in self._reflexive() for x in things]
         if any(p in _BOTTOMS for _, p, _ in supposed):
             return True
         if self._left <= 0:
@@ -214,8 +216,8 @@ class Prover:
     def _has_datatype(self, x: Term, datatype: Term) -> bool:
         if is_literal(x):
             return datatypes.contains(datatype, x)
-        narrower = (known for known in datatypes.known() if datatypes.includes(datatype, known))
-        return any(self._reasoner.holds((x, TYPE, known)) for known in narrower)
+        held = [known for known in datatypes.known() if self._reasoner.holds((x, TYPE, known))]
+        return datatypes.includes_common(datatype, held)
 
     def _sufficient(self, cls: Term) -> Iterator[Expression]:
         """Expressions whose members are all in a class."""
@@ -303,10 +305,10 @@ class Prover:
 
     # Witnesses
 
-    def with_witnesses(self, goal: Callable[[], bool]) -> bool:
+    def with_witnesses(self, mentioned: Iterable[Term], goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached once what must exist, for two steps, has names."""
         with ExitStack() as stack:
-            individuals = self._individuals()
+            individuals = list(dict.fromkeys([*self._individuals(), *mentioned]))
             try:
                 for _ in range(2):
                     new = list(self._must_exist(individuals))
@@ -333,7 +335,7 @@ class Prover:
     def _must_exist(self, individuals: Sequence[Term]) -> Iterator[Triple]:
         """Values of existential restrictions under fresh names, edges to itself, and that all are things."""
         wanted = list(self._existential())
-        reflexive = [p for p, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:ReflexiveProperty"))]
+        reflexive = self._reflexive()
         for x in individuals:
             for node, expression in wanted:
                 if node == THING or self._reasoner.holds((x, TYPE, node)):
@@ -343,6 +345,9 @@ class Prover:
             yield from ((x, p, x) for p in reflexive)
             yield (x, TYPE, THING)
 
+    def _reflexive(self) -> list[Term]:
+        return [p for p, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:ReflexiveProperty"))]
+
     def _existential(self) -> Iterator[tuple[Term, Expression]]:
         nodes: dict[Term, None] = {}
         for name in _EXISTENTIAL:
@@ -351,7 +356,7 @@ class Prover:
             try:
                 for expression in self.reader.definitions(node):
                     positive = expression.parts if isinstance(expression, And) else (expression,)
-                    yield from ((node, part) for part in positive if isinstance(part, AtLeast | Self))
+                    yield from ((node, part) for part in positive if isinstance(part, AtLeast | Self | OneOf))
             except Unreadable:
                 continue
 
@@ -380,5 +385,5 @@ class Prover:
 
 _EXISTENTIAL = (
     "owl:someValuesFrom", "owl:minCardinality", "owl:minQualifiedCardinality", "owl:cardinality",
-    "owl:qualifiedCardinality", "owl:hasSelf",
+    "owl:qualifiedCardinality", "owl:hasSelf", "owl:oneOf",
 )  # fmt: skip

@@ -223,6 +223,25 @@ same in all
 from a contradiction
     :A owl:disjointWith :B . [] NEVER(:a :p :y)
     [ owl:intersectionOf (:A :B) ] rdfs:subClassOf :Z
+what two ranges have in common
+    :p rdfs:range xsd:short , xsd:unsignedInt
+    :p rdfs:range xsd:unsignedShort
+exactly one is at least one and at most one
+    :C rdfs:subClassOf [ owl:onProperty :p ; owl:cardinality ONE ]
+    :C rdfs:subClassOf [ owl:onProperty :p ; owl:minCardinality ONE ] , MOST(:p)
+at least one and at most one is exactly one
+    :C rdfs:subClassOf [ owl:onProperty :p ; owl:minCardinality ONE ] , MOST(:p)
+    :C rdfs:subClassOf [ owl:onProperty :p ; owl:cardinality ONE ]
+the same property by the same value
+    :d owl:equivalentClass HAS(:p :v) , HAS(:q :v) .
+      :p rdfs:domain :d . :q rdfs:domain :d . :p a owl:FunctionalProperty . :q a owl:FunctionalProperty
+    :p owl:equivalentProperty :q
+a class of either vocabulary
+    :A a owl:Class
+    :A a rdfs:Class
+a transitive property is a property
+    :p a owl:TransitiveProperty
+    :p a rdf:Property , owl:ObjectProperty
 declared as it is used
     :p rdfs:domain :A
     :A a owl:Class
@@ -298,6 +317,9 @@ not reflexive because symmetric and transitive
 not transitive by a chain of another
     :p owl:propertyChainAxiom (:p :q)
     :p a owl:TransitiveProperty
+shorts are not bytes, nor is what two ranges have in common
+    :p rdfs:range xsd:short , xsd:unsignedInt
+    :p rdfs:range xsd:unsignedByte
 shorts are not bytes
     :p rdfs:range xsd:short
     :p rdfs:range xsd:byte
