@@ -22,6 +22,13 @@ def own_system(data: Path, *words: str) -> Iterator[Client]:
 
     Raises RuntimeError, with what it printed, when it does not start.
     """
+    with system_at(data, *words) as (client, _):
+        yield client
+
+
+@contextmanager
+def system_at(data: Path, *words: str) -> Iterator[tuple[Client, str]]:
+    """The same with its endpoint, for others who talk to it."""
     endpoint = free_endpoint()
     up = [str(Path(sys.executable).with_name("semmap")), "up", "--data", str(data), "--listen", endpoint]
     with subprocess.Popen(
@@ -38,7 +45,7 @@ def own_system(data: Path, *words: str) -> Iterator[Client]:
                 raise RuntimeError("the system did not start:\n" + "".join(said))
             threading.Thread(target=process.stdout.read, daemon=True).start()  # or a full pipe would stop it
             with connect(endpoint) as client:
-                yield client
+                yield client, endpoint
         finally:
             process.terminate()
 
