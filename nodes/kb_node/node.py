@@ -57,6 +57,8 @@ from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sig
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
 
 
@@ -108,7 +110,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return _effects(self._commit(transaction))
+        if len(transaction.add) <= _FEW:
+            return _effects(self._commit(transaction))
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
