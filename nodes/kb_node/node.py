@@ -15,6 +15,7 @@ from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
 from nodes.kb_node.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.large_map import LargeMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
@@ -74,7 +75,11 @@ class KnowledgeBase:
         self._pages = Pages(self.map)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
-        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
+        self._sparql = SparqlService(
+            lambda: self.map.reasoner.asserted(),
+            NewsStand(node.session).publish,
+            LargeMap(journal, lambda: self.map.reasoner, node.soon),
+        )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:

@@ -190,6 +190,11 @@ class CompiledEngine:
             if triple in self._schema_triples:
                 yield triple
 
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups, between which the ABox may change."""
+        yield list(self._schema_triples)
+        yield from self._view.by_subject()
+
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)
