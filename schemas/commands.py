@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, Struct, field
+from msgspec import Meta, Struct, field, structs
 
 from schemas.entities import (
     Angle,
@@ -23,6 +23,7 @@ from schemas.entities import (
     Source,
     Text,
     Vector,
+    composed,
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
@@ -58,6 +59,11 @@ class Command(
     source: Source = "operator"
     agent: str = ""
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Names are compared in composed form, however they were typed."""
+        if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
+            structs.force_setattr(self, "name", composed(name))
 
 
 # To change
@@ -107,6 +113,10 @@ class Remove(Command, frozen=True, kw_only=True, tag="remove"):
     """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
 
     names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """As for `name`."""
+        structs.force_setattr(self, "names", tuple(map(composed, self.names)))
 
 
 class Clear(Command, frozen=True, kw_only=True, tag="clear"):

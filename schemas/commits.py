@@ -4,17 +4,28 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from schemas.entities import Angle, CommandId, Entity, Probability, Provenance, Quaternion, Source, Vector
+from schemas.entities import (
+    Angle,
+    CommandId,
+    Entity,
+    Probability,
+    Provenance,
+    Quaternion,
+    Size,
+    Source,
+    Vector,
+)
 from schemas.explanations import Term, Triple
 
 
 class Placed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity is from now on; what is not given stays as it is."""
+    """Where an entity is from now on, and how big; what is not given stays as it is."""
 
     name: str
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
+    size: Size | None = None
 
 
 class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

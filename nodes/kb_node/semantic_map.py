@@ -95,7 +95,9 @@ class SemanticMap:
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
+            entity_reading.read_star(
+                self.reasoner, self.classes, iri, self.seq, leaving if together else {iri}, self.tbox
+            )
             for iri in iris
         )
 
@@ -249,7 +251,9 @@ class SemanticMap:
             return transaction
         retract, insert = list(transaction.retract), list(transaction.insert)
         for placed in transaction.placed:
-            gone, come = placing.place(self.reasoner, self.tbox, self.entity(placed.name), placed)
+            gone, come = placing.place(
+                self.reasoner, self.classes, self.tbox, self.entity(placed.name), placed
+            )
             retract += gone
             insert += come
         return structs.replace(transaction, retract=tuple(retract), insert=tuple(insert))
@@ -321,7 +325,7 @@ class SemanticMap:
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
         owners = subjects.union(
-            *(entity_reading.owners(self.reasoner, s) for s in steadily(known, self._progress))
+            *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:

@@ -48,8 +48,8 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change what is named; what is not named stays."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
-    changes = (found, command.ref, command.alt, command.size)
-    if any(change is not None for change in changes):
+    changes = (found, command.ref, command.alt)
+    if any(change is not None for change in (*changes, command.size)):
         require_authority(command, [entity])
 
     def build(suffix: str) -> Talk[Transaction]:

@@ -8,7 +8,7 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.class_names import ClassNames
+from nodes.coordinator.class_names import AmbiguousClass, ClassNames
 from nodes.coordinator.dialogues import Question, Talk
 from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
@@ -119,6 +119,8 @@ def _sort_out(
     for i, item in enumerate(described, start=1):
         try:
             found = classes.spatial(item.class_)
+        except AmbiguousClass:
+            raise
         except errors.UnknownClass:
             unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
             continue

@@ -25,10 +25,8 @@ def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
         raise errors.Inconsistent(
             f"{what} is inconsistent: {error.explanation.text}", explanation=error.explanation
         ) from None
-    if not ClassTable(reasoner).spatial:
-        raise errors.BadFile(
-            f"{name or what} has no class of things in space: is it a TBox (an OWL ontology with classes)?"
-        )
+    if not ClassTable(reasoner).names:
+        raise errors.BadFile(f"{name or what} has no classes: is it a TBox (an OWL ontology with classes)?")
     return reasoner
 
 

@@ -1,38 +1,93 @@
-"""Where an entity is, as a change of triples."""
+"""Where an entity is and how big, as a change of triples.
+
+What is said in the words of an alignment is said anew in these words, where it stands, so that others read an
+export as before. What nobody has said yet is said in semmap's own words.
+"""
 
 from __future__ import annotations
 
+from nodes.kb_node.entities import aligned
+from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.entity_reading import owners
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Placed
-from schemas.entities import Entity, Pose
+from schemas.entities import Entity, Pose, Size
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
+Changes = tuple[list[Triple], list[Triple]]
+"""The triples that go, and those that come."""
+
 
 def place(
-    reasoner: Reasoner, tbox: frozenset[Triple], entity: Entity, placed: Placed
-) -> tuple[list[Triple], list[Triple]]:
-    """The triples that go and those that come when `entity` is placed anew.
+    reasoner: Reasoner, classes: ClassTable, tbox: frozenset[Triple], entity: Entity, placed: Placed
+) -> Changes:
+    """The triples that go and those that come when `entity` is placed anew, or has another size.
 
-    Its coordinates are changed where they are, unless somebody else uses them, too: then it gets its own.
+    They are changed where they are, unless somebody else uses them, too: then the entity gets its own.
     Raises BadRequest for a pose that is none, Refused for an entity that the TBox itself has.
     """
     iri = v.iri(entity.iri)
     said = reasoner.about(iri)
     if any((iri, p, o) in tbox for p, objects in said.items() for o in objects):
         raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
-    pose = _pose(entity, placed)
-    nodes = said.get(v.HAS_POSITION, [])
-    if len(nodes) == 1 and owners(reasoner, node := nodes[0]) == {iri, node}:
+    gone, come = list[Triple](), list[Triple]()
+    is_placed = not (placed.at is None and placed.yaw is None and placed.orientation is None)
+    if placed.size is not None:
+        gone, come = _resized(reasoner, classes, entity, placed.size, said.get(v.HAS_SIZE, []))
+    if is_placed or (placed.size is not None and classes.alignments and entity.pose is not None):
+        size_m = placed.size or entity.size_m
+        nodes = said.get(v.HAS_POSITION, [])
+        went, came = _moved(reasoner, classes, entity, _pose(entity, placed), size_m, nodes)
+        gone, come = gone + went, come + came
+    return gone, come
+
+
+def _moved(
+    reasoner: Reasoner,
+    classes: ClassTable,
+    entity: Entity,
+    pose: Pose,
+    size_m: Size | None,
+    nodes: list[Term],
+) -> Changes:
+    iri = v.iri(entity.iri)
+    if len(nodes) == 1 and owners(reasoner, classes, node := nodes[0]) == {iri, node}:
         values = reasoner.about(node)
         before = [(node, p, o) for p in stars.COORDINATE_PROPERTIES for o in values.get(p, ())]
         return before, stars.coordinates(node, pose)
     before = [(iri, v.HAS_POSITION, node) for node in nodes]
-    return before, stars.position(iri, _free_node(reasoner, entity.name), pose)
+    if classes.alignments and not nodes:
+        there = aligned.said_pose(classes.alignments, reasoner.about, iri)
+        if there is not None and _is_own(reasoner, there.nodes):
+            return aligned.pose_triples(there, pose, size_m, reasoner.about)
+        before = [(iri, there.words.path[0], there.nodes[1])] if there is not None else []
+    return before, stars.position(iri, _free_node(reasoner, f"{entity.name}_coordinates"), pose)
+
+
+def _resized(
+    reasoner: Reasoner, classes: ClassTable, entity: Entity, size_m: Size, nodes: list[Term]
+) -> Changes:
+    iri = v.iri(entity.iri)
+    if len(nodes) == 1 and owners(reasoner, classes, node := nodes[0]) == {iri, node}:
+        values = reasoner.about(node)
+        before = [(node, p, o) for p in v.SIZE_XYZ for o in values.get(p, ())]
+        return before, stars.extent(node, size_m)
+    before = [(iri, v.HAS_SIZE, node) for node in nodes]
+    if classes.alignments and not nodes:
+        there = aligned.said_size(classes.alignments, reasoner.about, iri)
+        if there is not None and _is_own(reasoner, there.nodes):
+            return aligned.size_triples(there, size_m, reasoner.about)
+        before = [(iri, there.words.path[0], there.nodes[1])] if there is not None else []
+    return before, stars.size(iri, _free_node(reasoner, f"{entity.name}_size"), size_m)
+
+
+def _is_own(reasoner: Reasoner, nodes: tuple[Term, ...]) -> bool:
+    """Whether the individuals on a way are nobody else's."""
+    return all(s in nodes for node in nodes[1:] for s, _, _ in reasoner.asserted(None, None, node))
 
 
 def _pose(entity: Entity, placed: Placed) -> Pose:
@@ -44,9 +99,9 @@ def _pose(entity: Entity, placed: Placed) -> Pose:
 
 
 def _free_node(reasoner: Reasoner, name: str) -> Term:
-    """The usual name of its coordinates, or the next that nobody has."""
-    node, number = v.entity_iri(f"{name}_coordinates"), 1
+    """An individual of that name, or with the next number that nobody has."""
+    node, number = v.entity_iri(name), 1
     while any(True for _ in reasoner.asserted(node)):
         number += 1
-        node = v.entity_iri(f"{name}_coordinates_{number}")
+        node = v.entity_iri(f"{name}_{number}")
     return node
