@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format schema models train-perception clean
+.PHONY: help setup demo test test-long lint format docs diagrams schema models train-perception clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -43,6 +43,14 @@ lint: setup  ## Style, types and the rules of who imports whom
 format: setup  ## Format the code
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+docs: setup  ## Build the manual into dist/docs; strict, works offline
+	$(BIN)/python docs/_ext/command_line.py
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs dist/docs
+	@echo dist/docs/index.html
+
+diagrams: setup  ## Draw the manual's Mermaid diagrams that have changed; needs node and Debian's chromium
+	$(BIN)/python docs/_ext/diagrams.py
 
 schema: setup  ## Write the JSON Schema of scene files anew
 	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json

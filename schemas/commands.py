@@ -1,4 +1,4 @@
-"""What one may ask: one verb, one Struct, one reply (`schemas.replies`).
+"""What one may ask: one verb, one Struct, one reply: `class Get(Command[Entity], tag="get")`.
 
 The fields are the words of the command line (`semmap add Chair --at 1 2 0`), of a selector
 (`semmap/cmd/add?class=Chair;at=1,2,0`) and of a message (`{"verb": "add", "class": "Chair", ...}`)
@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, Struct, field, structs
+from msgspec import Meta, field, structs
 
+from schemas.calls import Call, R
 from schemas.entities import (
     Angle,
     ClassInfo,
@@ -48,9 +49,9 @@ ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 
 
 class Command(
-    Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="verb", omit_defaults=True
+    Call[R], frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="verb", omit_defaults=True
 ):
-    """What every command has.
+    """What every command has; one that is answered with an R is a `Command[R]`.
 
     The same `id` sent twice is executed once, and answered twice with the same result.
     """
@@ -69,7 +70,7 @@ class Command(
 # To change
 
 
-class Add(Command, frozen=True, kw_only=True, tag="add"):
+class Add(Command[Changed], frozen=True, tag="add"):
     """Put an entity into the map.
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
@@ -90,7 +91,7 @@ class Add(Command, frozen=True, kw_only=True, tag="add"):
     wait: bool = False
 
 
-class Update(Command, frozen=True, kw_only=True, tag="update"):
+class Update(Command[Changed], frozen=True, tag="update"):
     """Change what is named; what is not named stays. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
@@ -109,7 +110,7 @@ class Update(Command, frozen=True, kw_only=True, tag="update"):
     wait: bool = False
 
 
-class Remove(Command, frozen=True, kw_only=True, tag="remove"):
+class Remove(Command[Changed], frozen=True, tag="remove"):
     """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
 
     names: tuple[str, ...]
@@ -119,11 +120,11 @@ class Remove(Command, frozen=True, kw_only=True, tag="remove"):
         structs.force_setattr(self, "names", tuple(map(composed, self.names)))
 
 
-class Clear(Command, frozen=True, kw_only=True, tag="clear"):
+class Clear(Command[Changed], frozen=True, tag="clear"):
     """Take every entity out of the map and the scene. The TBox stays."""
 
 
-class Load(Command, frozen=True, kw_only=True, tag="load"):
+class Load(Command[Changed], frozen=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
 
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
@@ -141,34 +142,37 @@ class Load(Command, frozen=True, kw_only=True, tag="load"):
 # To ask
 
 
-class List(Command, frozen=True, kw_only=True, tag="list"):
-    """The entities of a class (all, without one), over inferred types; with `as_of` those of then."""
+class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"):
+    """The entities of a class (all, without one), over inferred types; with `as_of` those of then.
+
+    Answered with the entities, or with the document of another format than `json`.
+    """
 
     class_: ClassName | None = field(name="class", default=None)
     format: ListFormat = "json"
     as_of: When | None = None
 
 
-class Get(Command, frozen=True, kw_only=True, tag="get"):
+class Get(Command[Entity], frozen=True, tag="get"):
     """One entity; with `as_of` as it was then."""
 
     name: str
     as_of: When | None = None
 
 
-class Check(Command, frozen=True, kw_only=True, tag="check"):
+class Check(Command[Checked], frozen=True, tag="check"):
     """Is the map consistent, and if not, why? `owlrl` is the slow second opinion."""
 
     engine: Literal["semmap", "owlrl"] = "semmap"
 
 
-class Infer(Command, frozen=True, kw_only=True, tag="infer"):
+class Infer(Command[Inferred], frozen=True, tag="infer"):
     """What follows that was not said, about one individual or about all entities."""
 
     name: str | None = None
 
 
-class Explain(Command, frozen=True, kw_only=True, tag="explain"):
+class Explain(Command[Explanation], frozen=True, tag="explain"):
     """Why a triple holds: `name`, `predicate` and `value` are local names, IRIs in <> or literals."""
 
     name: str
@@ -176,25 +180,25 @@ class Explain(Command, frozen=True, kw_only=True, tag="explain"):
     value: str
 
 
-class Export(Command, frozen=True, kw_only=True, tag="export"):
+class Export(Command[Document], frozen=True, tag="export"):
     """The map as a document, checked first; with `inferred` also what follows from it."""
 
     format: RdfFormat = "rdfxml"
     inferred: bool = False
 
 
-class Classes(Command, frozen=True, kw_only=True, tag="classes"):
+class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
     """The classes of the TBox, with the number of entities of each."""
 
 
-class Status(Command, frozen=True, kw_only=True, tag="status"):
+class Status(Command[SystemStatus], frozen=True, tag="status"):
     """The nodes and the map: who runs, since when, and what is amiss."""
 
 
 # To ask about the past, and to take back
 
 
-class History(Command, frozen=True, kw_only=True, tag="history"):
+class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     """The newest commits, or those that touched an entity, in order; `since` and `until` are included."""
 
     name: str | None = None
@@ -203,13 +207,13 @@ class History(Command, frozen=True, kw_only=True, tag="history"):
     limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
 
 
-class LastSeen(Command, frozen=True, kw_only=True, tag="last-seen"):
+class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
     """When, where and by whom an entity was last seen or put somewhere, even if it is no more."""
 
     name: str
 
 
-class Undo(Command, frozen=True, kw_only=True, tag="undo"):
+class Undo(Command[Changed], frozen=True, tag="undo"):
     """Take back a commit by another one, unless later ones rest on it; the scene follows.
 
     Without `commit`: the newest that a client asked for, with the settling that followed it.
@@ -226,7 +230,7 @@ RowLimit = Annotated[int, Meta(ge=1, le=100_000)]
 TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
-class Sparql(Command, frozen=True, kw_only=True, tag="sparql"):
+class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
     """A SPARQL 1.1 query over what is asserted or, with `inferred`, also over what follows from it.
 
     It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
@@ -238,7 +242,7 @@ class Sparql(Command, frozen=True, kw_only=True, tag="sparql"):
     limit: RowLimit = 10_000
 
 
-class Watch(Command, frozen=True, kw_only=True, tag="watch"):
+class Watch(Command[Watching], frozen=True, tag="watch"):
     """A standing SELECT: its rows now, and what changes of them on `semmap/jena/query/<watch>`.
 
     `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
@@ -251,7 +255,7 @@ class Watch(Command, frozen=True, kw_only=True, tag="watch"):
     lease: Annotated[float, Meta(ge=1.0, le=3600.0)] = 30.0
 
 
-class Renew(Command, frozen=True, kw_only=True, tag="renew"):
+class Renew(Command[Done], frozen=True, tag="renew"):
     """Keep a standing query for another lease or, with `end`, end it."""
 
     watch: Name
@@ -261,7 +265,7 @@ class Renew(Command, frozen=True, kw_only=True, tag="renew"):
 # To run
 
 
-class Move(Command, frozen=True, kw_only=True, tag="move"):
+class Move(Command[Moved], frozen=True, tag="move"):
     """Take the body of an entity and put it elsewhere, as a hand would: the map follows when it rests."""
 
     name: str
@@ -269,23 +273,23 @@ class Move(Command, frozen=True, kw_only=True, tag="move"):
     yaw: Angle | None = None
 
 
-class Pause(Command, frozen=True, kw_only=True, tag="pause"):
+class Pause(Command[Done], frozen=True, tag="pause"):
     """Stop simulated time, or with `off` let it run again; where it does so already, it says that."""
 
     off: bool = False
 
 
-class StepOnce(Command, frozen=True, kw_only=True, tag="step"):
+class StepOnce(Command[Done], frozen=True, tag="step"):
     """Let paused time go on by `seconds`; refused while it runs by itself."""
 
     seconds: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.1
 
 
-class Reset(Command, frozen=True, kw_only=True, tag="reset"):
+class Reset(Command[Done], frozen=True, tag="reset"):
     """Put every body back where the map says it stands."""
 
 
-class TakePicture(Command, frozen=True, kw_only=True, tag="picture"):
+class TakePicture(Command[Picture], frozen=True, tag="picture"):
     """A picture of the scene, from one of the world's cameras or from above."""
 
     camera: str | None = None
@@ -293,32 +297,8 @@ class TakePicture(Command, frozen=True, kw_only=True, tag="picture"):
     height: Annotated[int, Meta(ge=16, le=4096)] = 720
 
 
-REPLIES: dict[type[Command], Any] = {
-    Add: Changed,
-    Update: Changed,
-    Remove: Changed,
-    Clear: Changed,
-    Load: Changed,
-    List: Any,  # Entity messages, or the document of the wanted format
-    Get: Entity,
-    Check: Checked,
-    Infer: Inferred,
-    Explain: Explanation,
-    Export: Document,
-    Classes: tuple[ClassInfo, ...],
-    Status: SystemStatus,
-    History: tuple[LoggedCommit, ...],
-    LastSeen: Sighting,
-    Undo: Changed,
-    Move: Moved,
-    Pause: Done,
-    StepOnce: Done,
-    Reset: Done,
-    TakePicture: Picture,
-    Sparql: SparqlResult,
-    Watch: Watching,
-    Renew: Done,
-}
-
-COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in REPLIES}
+COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in Command.__subclasses__()}
 """Verb to request type."""
+
+for _verb, _command in COMMANDS.items():
+    _command.VERB = _verb

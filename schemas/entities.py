@@ -136,12 +136,16 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     detail: str = ""
     model: str = ""
     """The model that the body was made from; for a pending one, the model that it will have."""
+    own_size: bool = False
+    """The entity's size is that of its model, because the map states none."""
 
 
 class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One individual of the map that is somewhere: an object, a person, a wall, or a place.
 
     Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.
+    `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
+    states, or None; replies fill in what its body measures, or what its model does.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called.
     """

@@ -10,7 +10,7 @@ from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple
 from urllib.parse import quote, unquote
 
-from schemas.commits import Commit
+from schemas.commits import Commit, Effects
 from schemas.entities import Entity
 from schemas.health import Health
 from schemas.perception import Observations, SegmentedCloud
@@ -46,6 +46,8 @@ class Topic(NamedTuple):
 
 ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
+EFFECTS = Topic(COMMIT.key, Effects, "lossless")
+"""The same publication, read without its triples."""
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")

@@ -1,4 +1,4 @@
-"""What commands are answered with; `schemas.commands.REPLIES` says which with what."""
+"""What commands are answered with; each command says with what (`schemas.commands`)."""
 
 from __future__ import annotations
 

@@ -266,6 +266,28 @@ def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(tmp_pa
         assert client.get("cup_1").class_ == "Cup"
 
 
+def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(tmp_path):
+    file = tmp_path / "scene.json"
+    classes = ("Milk", "Beer", "Water", "Coffee", "Dining_Table", "Door")
+    described = [{"class": c, "name": c.lower(), "at": [i, 2, 0]} for i, c in enumerate(classes)]
+    file.write_text(json.dumps({"entities": described}))
+    words = ("--abox", "none", "--no-record", "--world", file)
+    with running(tmp_path / "world", *words) as system, system.client() as client:
+        as_world = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
+    with running(tmp_path / "map", *words[:3]) as system, system.client() as client:
+        client.load(file)
+        until(lambda: client.status().bodies == len(classes), "the bodies stand")
+        loaded = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
+        entities = client.list()
+    assert described_by(as_world) == described_by(loaded)
+    assert {e.name: e.size_m for e in entities} == {b.name: b.size_m for b in loaded}
+    assert all(e.body.own_size for e in entities)
+
+
+def described_by(bodies):
+    return {body.name: (body.class_, body.model, body.size_m, body.fixed) for body in bodies}
+
+
 @pytest.mark.long
 def test_a_node_that_hangs_is_killed_and_started_anew(tmp_path):
     with running(tmp_path, "--abox", "none", "--no-record") as system, system.client() as client:

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from nodes.coordinator.class_names import ClassNames
+from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from tests.conftest import running, until
 from tests.data import data_folder

@@ -86,6 +86,8 @@ def ask(
             continue
         if now_s > deadline_s:
             _nobody(key)
+        if meanwhile is not None:
+            meanwhile()
         time.sleep(0.01)
 
 

@@ -1,5 +1,5 @@
-"""One door for commands, and the keeper that keeps map and scene the same.
+"""One front end for commands, and the reconciler that keeps map and scene in agreement.
 
-`door.py` turns commands into transactions, with `class_names.py`, `naming.py`, `formats.py` and the readers
-of `files/`; `keeper.py` is the reconciler, a pure function; `scene_view.py` is what is known of the scene.
+`door/` turns commands into transactions, with `naming.py`, `formats.py` and the readers of `files/`;
+`scene/reconcile.py` is the reconciler, a pure function; `scene/scene_view.py` is what is known of the scene.
 """

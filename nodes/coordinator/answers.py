@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from concurrent.futures import Future
 from typing import Any
 
 from msgspec import structs
 
+from nodes import bus
 from nodes.coordinator import formats
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import Truth
@@ -13,11 +16,15 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
+from ontology.model_sizes import own_size_m
+from schemas import bridge, errors
 from schemas import commands as c
-from schemas import errors
 from schemas.entities import Entity
 from schemas.moments import When
 from schemas.replies import SystemStatus
+
+Listed = tuple[Entity, ...] | dict[str, Any]
+"""The entities, or the document of another format."""
 
 
 class Answers:
@@ -32,22 +39,22 @@ class Answers:
         self._health = health
         self._bridge = bridge
 
-    def list(self, query: c.List) -> Any:
+    def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
-        if query.class_ is not None:
-            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
+        class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
         if query.as_of is not None:
-            found = self._bridge.ask_later("list", query)
-            return then(found, lambda entities: self._formatted(entities, query.format))
-        entities = self._door.entities_of(query.class_)
+            asked = bridge.Entities(class_=class_, as_of=query.as_of)
+            found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
+            return then(found, lambda then_there: self._formatted(map(with_size, then_there), query.format))
+        entities = self._door.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
 
-    def get(self, query: c.Get) -> Any:
+    def get(self, query: c.Get) -> Entity | Future[Entity]:
         """One entity, with what has become of its body."""
         if query.as_of is not None:
-            return self._bridge.relay(query)
+            return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
         return self._with_body(self._door.entity(query.name))
 
     def status(self, _: c.Status) -> SystemStatus:
@@ -62,7 +69,8 @@ class Answers:
             problems=tuple(self._keeping.problems()),
         )
 
-    def _formatted(self, entities: tuple[Entity, ...], wanted: c.ListFormat) -> Any:
+    def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
+        entities = tuple(found)
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
@@ -80,4 +88,15 @@ class Answers:
             return word
 
     def _with_body(self, entity: Entity) -> Entity:
-        return structs.replace(entity, body=self._keeping.body_state(entity))
+        state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
+        if entity.size_m is not None or state.status == "none":
+            return structs.replace(entity, body=state)
+        sized = with_size(entity) if body is None else structs.replace(entity, size_m=body.size_m)
+        return structs.replace(sized, body=structs.replace(state, own_size=sized.size_m is not None))
+
+
+def with_size(entity: Entity) -> Entity:
+    """The entity with the size of its model, if the map states none and it is no place."""
+    if entity.size_m is not None or entity.place:
+        return entity
+    return structs.replace(entity, size_m=own_size_m(entity.model))

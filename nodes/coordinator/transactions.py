@@ -28,7 +28,7 @@ def transaction(
         id=command.id,
         source=command.source,
         agent=command.agent,
-        verb="" if command.source == "scene" else str(command.__struct_config__.tag),
+        verb="" if command.source == "scene" else command.VERB,
         reason=command.reason or reason,
         confidence=getattr(command, "confidence", None),
         placed=tuple(placed),
@@ -59,7 +59,7 @@ def add(
 
 
 def place(command: Update) -> Transaction:
-    """An entity is somewhere else or has another size, and that is all."""
+    """An entity is somewhere else, and that is all."""
     return transaction(command, f"update {command.name}", placed=_placed(command))
 
 
@@ -78,6 +78,10 @@ def update(
     if found is not None and found.name != entity.class_:
         retract += _types(star)
         insert.append((star.iri, v.RDF_TYPE, v.iri(found.iri)))
+    if command.size is not None:
+        size = star.size or node("size")
+        retract += _about(star, size, v.SIZE_XYZ) + _edges(star, v.HAS_SIZE)
+        insert += stars.size(star.iri, size, command.size)
     if command.ref is not None and command.ref != entity.preferred_reference:
         retract += _references(star, v.HAS_PREFERRED_REFERENCE, star.preferred)
         insert += stars.preferred_reference(star.iri, node("preferred_reference"), command.ref)
@@ -89,12 +93,13 @@ def update(
         retract += _edges(star, v.CONFLICTING_OBSERVATION)
         if command.conflict:
             insert.append((star.iri, v.CONFLICTING_OBSERVATION, v.literal(command.conflict)))
+    known = {star.iri, star.size}
     return transaction(
         command,
         f"update {entity.name}",
         placed=_placed(command),
         require=retract,
-        vacant=[s for s in _subjects(insert) if s != star.iri],
+        vacant=[s for s in _subjects(insert) if s not in known],
         retract=retract,
         insert=insert,
     )
@@ -123,12 +128,10 @@ def describe(name: str, found: ClassInfo, described: Described) -> list[Triple]:
 
 
 def _placed(command: Update) -> tuple[Placed, ...]:
-    """Where the command puts its entity and how big it is to be, if it says anything of it."""
-    where = (command.at, command.yaw, command.orientation, command.size)
-    if all(said is None for said in where):
+    """Where the command puts its entity, if it says anything of it."""
+    if command.at is None and command.yaw is None and command.orientation is None:
         return ()
-    at, yaw, orientation, size = where
-    return (Placed(name=command.name, at=at, yaw=yaw, orientation=orientation, size=size),)
+    return (Placed(name=command.name, at=command.at, yaw=command.yaw, orientation=command.orientation),)
 
 
 def _subjects(triples: Iterable[Triple]) -> list[Term]:
@@ -137,6 +140,10 @@ def _subjects(triples: Iterable[Triple]) -> list[Term]:
 
 def _types(star: Star) -> list[Triple]:
     return [t for t in star.own if t[:2] == (star.iri, v.RDF_TYPE) and t[2] != v.OWL_NAMED_INDIVIDUAL]
+
+
+def _about(star: Star, node: Term, predicates: tuple[Term, ...]) -> list[Triple]:
+    return [t for t in star.own if t[0] == node and t[1] in predicates]
 
 
 def _edges(star: Star, predicate: Term) -> list[Triple]:

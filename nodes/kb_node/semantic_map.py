@@ -76,6 +76,11 @@ class SemanticMap:
         """The entity of that name, if there is one."""
         return self._entities.get(name)
 
+    @property
+    def names(self) -> Collection[str]:
+        """Those of the entities."""
+        return self._entities.keys()
+
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import time
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 from nodes import bus
+from nodes.runtime.class_names import ClassNames
 from nodes.runtime.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
 from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
-from nodes.sim_node.world_file import open_world
+from nodes.sim_node.world_file import is_scene, open_world
 from schemas import codec, errors, keys, wording
-from schemas.commands import Pause, Reset, StepOnce
+from schemas.calls import by_verb
+from schemas.commands import Classes, Pause, Reset, StepOnce
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
@@ -54,7 +57,7 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = open_world(config.world, Models(config.models), node.tick)
+        self._world = open_world(config.world, Models(config.models), node.tick, self._classes(config.world))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -62,17 +65,17 @@ class Simulator:
         self._planes: dict[str, Any] = {}
         node.serve(
             keys.SIM,
-            {
-                "spawn": (Spawn, self._spawn),
-                "delete": (Delete, self._delete),
-                "move": (MoveBodies, self._move),
-                "snapshot": (SceneQuery, self._snapshot),
-                "pause": (Pause, self._pause),
-                "step": (StepOnce, self._step),
-                "reset": (Reset, self._reset),
-                "picture": (PictureQuery, self._picture),
-                "surfaces": (SurfaceQuery, self._surfaces),
-            },
+            by_verb(
+                Spawn.answered_by(self._spawn),
+                Delete.answered_by(self._delete),
+                MoveBodies.answered_by(self._move),
+                SceneQuery.answered_by(self._snapshot),
+                Pause.answered_by(self._pause),
+                StepOnce.answered_by(self._step),
+                Reset.answered_by(self._reset),
+                PictureQuery.answered_by(self._picture),
+                SurfaceQuery.answered_by(self._surfaces),
+            ),
         )
         self._window = Window(self._world) if config.window else None
         if self._window is not None:
@@ -82,6 +85,21 @@ class Simulator:
         if config.cameras.rate_hz > 0.0:
             node.every(1.0 / config.cameras.rate_hz, self._film)
         node.ready(self._summary())
+
+    def _classes(self, world: Path | None) -> ClassNames:
+        """What the TBox says of classes, if the world is a file that names bodies by class."""
+        if not is_scene(world):
+            return ClassNames()
+        try:
+            found = self._node.ask(
+                keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=bus.RESTART_S, beating=True
+            )
+        except errors.NoAnswer:
+            self._node.report(
+                "the knowledge base does not answer: bodies get the models named like their classes"
+            )
+            return ClassNames()
+        return ClassNames(found)
 
     def close(self) -> None:
         """Let go of the studio's thread and of the window."""

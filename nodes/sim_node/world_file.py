@@ -8,37 +8,48 @@ from pathlib import Path
 
 import numpy as np
 
+from nodes.runtime.class_names import ClassNames
 from nodes.sim_node.models.parts import rotation_matrix
 from nodes.sim_node.orders import ModelSource
 from nodes.sim_node.physics import base_scene
 from nodes.sim_node.vision.view import View, look_at, pinhole
 from nodes.sim_node.world import World
 from schemas import codec, scene_files
-from schemas.errors import BadFile
+from schemas.errors import BadFile, UnknownClass
 from schemas.scenes import BodyOrder
 
 _PICTURE = (4, 3)
 """How wide and high what a camera sees may be thought to be; only the angle counts here."""
 
 
-def open_world(path: Path | None, models: ModelSource, meanwhile: Callable[[], None] = lambda: None) -> World:
-    """The world that a file describes, a bare floor without one.
+def is_scene(path: Path | None) -> bool:
+    """Whether a world file is a scene in JSON, whose bodies are named by class. Raises BadFile."""
+    return path is not None and (path.suffix == ".json" or codec.looks_like_json(_read(path)))
 
-    Bodies of a JSON scene are the world's own furniture (commit 0), each with the model of its class's name.
-    Where it places no cameras, there is one that sees all of it. `meanwhile` is as in World. Raises BadFile
-    for a file that is neither MJCF nor a scene, or has a body that cannot be made.
+
+def open_world(
+    path: Path | None,
+    models: ModelSource,
+    meanwhile: Callable[[], None] = lambda: None,
+    classes: ClassNames | None = None,
+) -> World:
+    """The world that a file describes; a bare floor without a file.
+
+    Bodies of a JSON scene are the world's own furniture (commit 0). Each has the model of its class, and
+    stays where it is put if its class is fixed, as `classes` say; a class that they do not know has the model
+    of its own name. If the scene places no cameras, there is one that sees all of it. `meanwhile` is as in
+    World. Raises BadFile for a file that is neither MJCF nor a scene, or has a body that cannot be made.
     """
     if path is None:
         return World(models=models, meanwhile=meanwhile)
-    content = _read(path)
-    if path.suffix != ".json" and not codec.looks_like_json(content):
+    if not is_scene(path):
         return World(base_scene.read_mjcf(path), name=path.name, models=models, meanwhile=meanwhile)
-    scene = scene_files.read(content, path.name)
+    scene = scene_files.read(_read(path), path.name)
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )
     world = World(base_scene.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
-    spawned = world.spawn(_orders(scene.entities))
+    spawned = world.spawn(_orders(scene.entities, classes or ClassNames()))
     for name, reason in spawned.failed.items():
         raise BadFile(f"{path.name}: {name} cannot be made: {reason}")
     if views is None:
@@ -57,23 +68,34 @@ def _view(camera: scene_files.Camera) -> View:
     return View(*_PICTURE, pinhole(*_PICTURE, camera.fovy), map_from_camera)
 
 
-def _orders(described: Iterable[scene_files.Described]) -> list[BodyOrder]:
+def _orders(described: Iterable[scene_files.Described], classes: ClassNames) -> list[BodyOrder]:
     taken = {item.name for item in described}
     orders = []
     for i, item in enumerate(described, start=1):
         name = item.name or next(n for k in range(i, 10**9) if (n := f"{item.class_}_{k}") not in taken)
         taken.add(name)
+        model, fixed = _shape(item.class_, classes)
         orders.append(
             BodyOrder(
                 name=name,
                 class_=item.class_,
-                model=item.class_.lower(),
+                model=model,
                 pose=scene_files.pose_of(item.at or (0.0, 0.0, 0.0), item.yaw, item.orientation),
                 size_m=item.size,
+                fixed=fixed,
                 commit=0,
             )
         )
     return orders
+
+
+def _shape(class_name: str, classes: ClassNames) -> tuple[str, bool]:
+    """The model of a class, and whether its bodies are fixed."""
+    try:
+        found = classes.find(class_name)
+    except UnknownClass:
+        return class_name.lower(), False
+    return found.model, found.fixed
 
 
 def _read(path: Path) -> bytes:

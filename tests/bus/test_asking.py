@@ -10,8 +10,8 @@ import pytest
 
 from nodes import bus
 from schemas import commands, errors, keys, replies
-from tests.conftest import until
 from tests.bus.conftest import PREFIX, answer
+from tests.conftest import until
 
 
 def test_a_question_is_answered(pair):

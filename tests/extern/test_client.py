@@ -8,6 +8,7 @@ import pytest
 from nodes import bus
 from nodes.extern.client import connect
 from schemas import codec, errors, keys, replies
+from schemas.commands import Status
 from schemas.commits import Commit
 from tests.conftest import free_endpoint
 
@@ -18,7 +19,7 @@ def test_a_coordinator_that_is_too_busy_to_say_how_things_stand_is_told():
     with bus.open_session(network) as session, connect(endpoint) as client:
         queryable = session.declare_queryable(f"{keys.CMD}/*", kept.append)
         with pytest.raises(errors.NoAnswer, match=r"status did not answer within 0\.3 s"):
-            client.status(timeout_s=0.3)
+            client.send(Status(), timeout_s=0.3)
         queryable.undeclare()
     assert len(kept) == 1
 

@@ -3,9 +3,11 @@ import json
 import numpy as np
 import pytest
 
+from nodes.runtime.class_names import ClassNames
 from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.view import camera_names, camera_view
 from nodes.sim_node.world_file import open_world
+from schemas.entities import ClassInfo
 from schemas.errors import BadFile
 
 SCENE = {
@@ -21,6 +23,34 @@ def test_a_scene_in_json_is_a_world_with_furniture_of_its_own(tmp_path):
     assert not any(body.entity for body in bodies.values())
     assert bodies["chair9"].model == "chair"
     assert bodies["chair9"].pose.position_m[:2] == pytest.approx((1.0, 2.0))
+
+
+def test_a_body_has_the_model_of_its_class_and_is_held_if_that_is_fixed(tmp_path):
+    path = tmp_path / "world.json"
+    described = [
+        {"class": c, "at": [i, 0, 0]} for i, c in enumerate(("Milk", "dining_table", "Door", "Gizmo"))
+    ]
+    path.write_text(json.dumps({"entities": described}))
+    rows = [
+        row("Milk", "carton"),
+        row("Dining_Table", "table"),
+        row("Door", "door", fixed=True),
+    ]
+    bodies = open_world(path, Models(), classes=ClassNames(rows)).scene().bodies
+    assert [(body.model, body.fixed) for body in bodies] == [
+        *(("carton", False), ("table", False), ("door", True), ("box", False))
+    ]
+    path.write_text(json.dumps({"entities": [{"class": "Chair"}]}))
+    (chair,) = open_world(path, Models(), classes=ClassNames(rows)).scene().bodies
+    assert chair.model == "chair"  # for want of a better one: no class is called so
+
+
+def row(name, model, *, fixed=False):
+    """A class of things in space."""
+    return ClassInfo(
+        name=name, iri=f"x#{name}", parents=(), ancestors=(), labels={}, spatial=True, place=False,
+        fixed=fixed, model=model,
+    )  # fmt: skip
 
 
 def test_its_camera_sees_all_of_it_from_near(tmp_path):

@@ -13,7 +13,7 @@ from nodes.coordinator.naming import free_position
 from nodes.coordinator.scene.hands import Hand
 from schemas import errors
 from schemas.commands import Add, Clear, Command, Remove, Update
-from schemas.commits import Commit, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -48,8 +48,8 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change what is named; what is not named stays."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
-    changes = (found, command.ref, command.alt)
-    if any(change is not None for change in (*changes, command.size)):
+    changes = (found, command.ref, command.alt, command.size)
+    if any(change is not None for change in changes):
         require_authority(command, [entity])
 
     def build(suffix: str) -> Talk[Transaction]:
@@ -85,7 +85,7 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Commit | None]:
+def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | None]:
     """The map takes over where a body came to rest."""
     command = Update(
         id=new_id(),

@@ -8,16 +8,16 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.class_names import AmbiguousClass, ClassNames
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
+from nodes.runtime.class_names import AmbiguousClass, ClassNames
 from schemas import errors, scene_files, wording
-from schemas.bridge import LoadDocument, Loaded, LoadTBox
+from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
-from schemas.commits import Commit, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, free_name
 from schemas.explanations import Triple
 from schemas.replies import Changed
@@ -84,9 +84,9 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         replace=command.replace,
         skip_unknown=command.skip_unknown,
     )
-    loaded: Loaded = yield Question("load", document)
-    names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
-    return _loaded(command, taken(view, loaded.commit), names, loaded.skipped, loaded.notes)
+    loaded = yield from ask(document)
+    commit = yield from taken(view, loaded.commit)
+    return _loaded(command, commit, loaded.names, loaded.skipped, loaded.notes)
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
@@ -101,7 +101,7 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit: Commit | None = yield Question("load-tbox", order)
+    commit = yield from ask(order)
     if commit is None:
         return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
     yield from taken_with_classes(view, commit)
@@ -134,7 +134,7 @@ def _sort_out(
 
 def _loaded(
     command: Load,
-    commit: Commit | None,
+    commit: Effects | None,
     names: tuple[str, ...],
     skipped: tuple[str, ...],
     notes: tuple[str, ...],

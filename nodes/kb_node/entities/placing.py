@@ -1,4 +1,4 @@
-"""Where an entity is and how big, as a change of triples.
+"""Where an entity is, as a change of triples.
 
 What is said in the words of an alignment is said anew in these words, where it stands, so that others read an
 export as before. What nobody has said yet is said in semmap's own words.
@@ -14,7 +14,7 @@ from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Placed
-from schemas.entities import Entity, Pose, Size
+from schemas.entities import Entity, Pose
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
@@ -25,7 +25,7 @@ Changes = tuple[list[Triple], list[Triple]]
 def place(
     reasoner: Reasoner, classes: ClassTable, tbox: frozenset[Triple], entity: Entity, placed: Placed
 ) -> Changes:
-    """The triples that go and those that come when `entity` is placed anew, or has another size.
+    """The triples that go and those that come when `entity` is placed anew.
 
     They are changed where they are, unless somebody else uses them, too: then the entity gets its own.
     Raises BadRequest for a pose that is none, Refused for an entity that the TBox itself has.
@@ -34,16 +34,7 @@ def place(
     said = reasoner.about(iri)
     if any((iri, p, o) in tbox for p, objects in said.items() for o in objects):
         raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
-    gone, come = list[Triple](), list[Triple]()
-    is_placed = not (placed.at is None and placed.yaw is None and placed.orientation is None)
-    if placed.size is not None:
-        gone, come = _resized(reasoner, classes, entity, placed.size, said.get(v.HAS_SIZE, []))
-    if is_placed or (placed.size is not None and classes.alignments and entity.pose is not None):
-        size_m = placed.size or entity.size_m
-        nodes = said.get(v.HAS_POSITION, [])
-        went, came = _moved(reasoner, classes, entity, _pose(entity, placed), size_m, nodes)
-        gone, come = gone + went, come + came
-    return gone, come
+    return _moved(reasoner, classes, entity, _pose(entity, placed), said.get(v.HAS_POSITION, []))
 
 
 def _moved(
@@ -51,7 +42,6 @@ def _moved(
     classes: ClassTable,
     entity: Entity,
     pose: Pose,
-    size_m: Size | None,
     nodes: list[Term],
 ) -> Changes:
     iri = v.iri(entity.iri)
@@ -63,26 +53,9 @@ def _moved(
     if classes.alignments and not nodes:
         there = aligned.said_pose(classes.alignments, reasoner.about, iri)
         if there is not None and _is_own(reasoner, there.nodes):
-            return aligned.pose_triples(there, pose, size_m, reasoner.about)
+            return aligned.pose_triples(there, pose, entity.size_m, reasoner.about)
         before = [(iri, there.words.path[0], there.nodes[1])] if there is not None else []
     return before, stars.position(iri, _free_node(reasoner, f"{entity.name}_coordinates"), pose)
-
-
-def _resized(
-    reasoner: Reasoner, classes: ClassTable, entity: Entity, size_m: Size, nodes: list[Term]
-) -> Changes:
-    iri = v.iri(entity.iri)
-    if len(nodes) == 1 and owners(reasoner, classes, node := nodes[0]) == {iri, node}:
-        values = reasoner.about(node)
-        before = [(node, p, o) for p in v.SIZE_XYZ for o in values.get(p, ())]
-        return before, stars.extent(node, size_m)
-    before = [(iri, v.HAS_SIZE, node) for node in nodes]
-    if classes.alignments and not nodes:
-        there = aligned.said_size(classes.alignments, reasoner.about, iri)
-        if there is not None and _is_own(reasoner, there.nodes):
-            return aligned.size_triples(there, size_m, reasoner.about)
-        before = [(iri, there.words.path[0], there.nodes[1])] if there is not None else []
-    return before, stars.size(iri, _free_node(reasoner, f"{entity.name}_size"), size_m)
 
 
 def _is_own(reasoner: Reasoner, nodes: tuple[Term, ...]) -> bool:

@@ -10,15 +10,17 @@ import base64
 import binascii
 import re
 import struct
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Collection, Hashable
 from datetime import UTC, date, datetime, time, timedelta, timezone
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
+from itertools import count
+from math import inf
 from typing import Any, Final
 from xml.parsers import expat
 
-from nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal
+from nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, literal, quoted
 from schemas.explanations import Term
 
 Value = tuple[str, Hashable]
@@ -58,6 +60,13 @@ _STRINGS: Final = {
     "NCName": re.compile(f"[{_NAME_START.replace(':', '', 1)}][{_NAME_CHAR.replace(':', '', 1)}]*"),
 }
 """The values of the string types."""
+_WIDER: Final = {
+    "normalizedString": ("string",),
+    "token": ("string", "normalizedString"),
+    **dict.fromkeys(("language", "NMTOKEN", "Name"), ("string", "normalizedString", "token")),
+    "NCName": ("string", "normalizedString", "token", "NMTOKEN", "Name"),
+}
+"""The string types that hold all values of another."""
 
 _FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
 _DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
@@ -103,6 +112,65 @@ def value(term: Term) -> Value | None:
         return None
 
 
+def canonical(term: Term) -> Term:
+    """The literal by which a value is given when nobody spelled it: one and the same for all its spellings.
+
+    Integers and decimals are the shortest `xsd:integer` or `xsd:decimal`, texts are plain or carry their
+    language in lower case, floats have the fewest digits that tell them apart. What is no literal, or a
+    literal without a known value, is returned as it is.
+    """
+    found = value(term) if is_literal(term) else None
+    return term if found is None else _spelled(found)
+
+
+@lru_cache(maxsize=4096)
+def _spelled(found: Value) -> Term:
+    kind: str
+    key: Any
+    kind, key = found
+    if kind == "text":
+        return quoted(key[0], language=key[1])
+    if kind == "decimal" and key.denominator == 1:
+        return quoted(str(key.numerator), datatype=_XSD + "integer")
+    write = _WRITERS.get(kind)
+    return quoted(write(key) if write else key, datatype=kind if ":" in kind else _XSD + kind)
+
+
+def _write_decimal(number: Fraction) -> str:
+    places = next(n for n in count(1) if 10**n % number.denominator == 0)
+    digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")
+    return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def _write_float(code: str) -> Callable[[bytes], str]:
+    def write(bits: bytes) -> str:
+        (number,) = struct.unpack(code, bits)
+        if number != number:
+            return "NaN"
+        if number in (inf, -inf):
+            return "INF" if number > 0 else "-INF"
+        for digits in range(1, 18):
+            text = f"{number:.{digits}g}"
+            if _packed(code, text) == bits:
+                return repr(float(text))
+        raise AssertionError(f"no text for {number}")
+
+    return write
+
+
+def _packed(code: str, text: str) -> bytes:
+    try:
+        return struct.pack(code, float(text))
+    except OverflowError:  # beyond the greatest single: rounds to infinity
+        return struct.pack(code, -inf if text[0] == "-" else inf)
+
+
+def _write_date_time(key: tuple[str, str, Fraction]) -> str:
+    zone, moment, fraction = key
+    decimals = _write_decimal(fraction)[1:] if fraction else ""
+    return moment.removesuffix("+00:00") + decimals + ("Z" if zone == "zoned" else "")
+
+
 def is_ill_typed(term: Term) -> bool:
     """Whether a literal claims a known datatype and is outside of its lexical space."""
     return value(term) is None and is_datatype(f"<{literal(term).datatype}>")
@@ -131,6 +199,47 @@ def contains(datatype: Term, term: Term) -> bool:
     if kind == "dateTime":
         return name == "dateTime" or (name == "dateTimeStamp" and key[0] == "zoned")
     return kind == name
+
+
+def known() -> frozenset[Term]:
+    """The datatypes whose values are known here."""
+    return _KNOWN
+
+
+def includes(wide: Term, narrow: Term) -> bool:
+    """Whether every value of one known datatype is a value of another; False if that is not known."""
+    if wide in (narrow, LITERAL):
+        return True
+    one, other = (term[1:-1].removeprefix(_XSD) for term in (wide, narrow))
+    if one == "decimal":
+        return other in _INTEGERS
+    if one in _INTEGERS and other in _INTEGERS:
+        (low, high), (lowest, highest) = _INTEGERS[one], _INTEGERS[other]
+        return _is_within(lowest, highest, low, high)
+    if one == _RDF + "PlainLiteral":
+        return other in _STRINGS or narrow == iri("rdf:langString")
+    return one in _WIDER.get(other, ()) or (one, other) == ("dateTime", "dateTimeStamp")
+
+
+def includes_common(wide: Term, narrow: Collection[Term]) -> bool:
+    """Whether every value that some known datatypes have in common is one of another."""
+    if any(includes(wide, datatype) for datatype in narrow):
+        return True
+    names = [datatype[1:-1].removeprefix(_XSD) for datatype in (wide, *narrow)]
+    bounds = [_INTEGERS[name] for name in names[1:] if name in _INTEGERS]
+    if names[0] not in _INTEGERS or not bounds:
+        return False
+    low, high = _INTEGERS[names[0]]
+    lowest = max((least for least, _ in bounds if least is not None), default=None)
+    highest = min((most for _, most in bounds if most is not None), default=None)
+    return _is_within(lowest, highest, low, high)
+
+
+def _is_within(lowest: int | None, highest: int | None, low: int | None, high: int | None) -> bool:
+    """Whether the integers from `lowest` to `highest` are all from `low` to `high`; None is no bound."""
+    return (low is None or (lowest is not None and lowest >= low)) and (
+        high is None or (highest is not None and highest <= high)
+    )
 
 
 def excludes(datatype: Term, term: Term) -> bool:
@@ -168,11 +277,7 @@ def _binary_float(name: str, code: str) -> Callable[[str], Value | None]:
         text = text.strip(" \t\n\r")
         if not _FLOAT.fullmatch(text):
             return None
-        try:
-            bits = struct.pack(code, float(text))
-        except OverflowError:  # beyond the greatest single: rounds to infinity
-            bits = struct.pack(code, float("-inf" if text[0] == "-" else "inf"))
-        return (name, bits)
+        return (name, _packed(code, text))
 
     return read
 
@@ -265,6 +370,17 @@ _READERS: Final[dict[str, Callable[[str], Value | None]]] = {
     _RDF + "PlainLiteral": _plain,
     _RDF + "XMLLiteral": _xml,
 }
+_WRITERS: Final[dict[str, Callable[[Any], str]]] = {
+    "decimal": _write_decimal,
+    "float": _write_float("<f"),
+    "double": _write_float("<d"),
+    "boolean": lambda truth: "true" if truth else "false",
+    "hexBinary": lambda octets: octets.hex().upper(),
+    "base64Binary": lambda octets: base64.b64encode(octets).decode(),
+    "dateTime": _write_date_time,
+    "date": lambda key: key[0].isoformat() + (key[1] or ""),
+}
+"""How the values that are no text are written; all others are their own spelling."""
 _KNOWN: Final = frozenset(
     {f"<{_XSD}{name}>" for name in (*_INTEGERS, *_STRINGS)}
     | {f"<{name if ':' in name else _XSD + name}>" for name in _READERS}

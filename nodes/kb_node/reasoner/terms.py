@@ -16,7 +16,10 @@ PREFIXES: Final = {
 }
 _LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"(?:@([A-Za-z0-9-]+)|\^\^<([^>]*)>)?', re.DOTALL)
 _ESCAPE = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|U([0-9A-Fa-f]{8})|(.))", re.DOTALL)
+_PLAIN_TEXT = re.compile(r'[^"\\\x00-\x1f\x7f]*')
+_SPECIAL = re.compile(r'["\\\x00-\x1f\x7f]')
 _CONTROL = {"t": "\t", "b": "\b", "n": "\n", "r": "\r", "f": "\f"}
+_ESCAPED = {char: "\\" + letter for letter, char in (*_CONTROL.items(), ('"', '"'), ("\\", "\\"))}
 
 
 @cache
@@ -84,6 +87,19 @@ def literal(term: Term) -> Literal:
     if language:
         return Literal(text, PREFIXES["rdf"] + "langString", language)
     return Literal(text, datatype or PREFIXES["xsd"] + "string", "")
+
+
+def quoted(text: str, *, datatype: str = "", language: str = "") -> Term:
+    """A literal put together: the inverse of `literal`, with a datatype's IRI without brackets."""
+    escaped = text if _PLAIN_TEXT.fullmatch(text) else _SPECIAL.sub(_escaped, text)
+    if language:
+        return f'"{escaped}"@{language}'
+    return f'"{escaped}"^^<{datatype}>' if datatype else f'"{escaped}"'
+
+
+def _escaped(match: re.Match[str]) -> str:
+    char = match[0]
+    return _ESCAPED.get(char) or f"\\u{ord(char):04X}"
 
 
 def _unescaped(match: re.Match[str]) -> str:

@@ -1,7 +1,9 @@
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from nodes.kb_node.reasoner.datatypes import contains, datatypes, is_ill_typed, value
-from nodes.kb_node.reasoner.terms import iri, literal
+from nodes.kb_node.reasoner.datatypes import canonical, contains, datatypes, is_ill_typed, value
+from nodes.kb_node.reasoner.terms import iri, literal, quoted
 
 
 def lit(text, datatype):
@@ -85,3 +87,48 @@ def test_escapes_are_read():
 def test_no_literal():
     with pytest.raises(ValueError, match="not a literal"):
         literal("<http://example.org/a>")
+
+
+@pytest.mark.parametrize(
+    ("term", "wanted"),
+    [
+        (lit("+01.500", "xsd:decimal"), lit("1.5", "xsd:decimal")),
+        (lit("-0.05", "xsd:decimal"), lit("-0.05", "xsd:decimal")),
+        (lit("3.00", "xsd:decimal"), lit("3", "xsd:integer")),
+        (lit("007", "xsd:byte"), lit("7", "xsd:integer")),
+        (lit("1.00", "xsd:float"), lit("1.0", "xsd:float")),
+        (lit("0.10000000149", "xsd:float"), lit("0.1", "xsd:float")),
+        (lit("-0", "xsd:double"), lit("-0.0", "xsd:double")),
+        (lit("-1e99", "xsd:float"), lit("-INF", "xsd:float")),
+        (lit("1", "xsd:boolean"), lit("true", "xsd:boolean")),
+        (lit("0a", "xsd:hexBinary"), lit("0A", "xsd:hexBinary")),
+        (lit("YQ ==", "xsd:base64Binary"), lit("YQ==", "xsd:base64Binary")),
+        (lit("a", "xsd:token"), '"a"'),
+        ('"chair"@en-GB', '"chair"@en-gb'),
+        (lit("2026-01-01T01:00:00.50+01:00", "xsd:dateTime"), lit("2026-01-01T00:00:00.5Z", "xsd:dateTime")),
+        (lit("2026-01-01T24:00:00", "xsd:dateTime"), lit("2026-01-02T00:00:00", "xsd:dateTime")),
+        (lit("abc", "xsd:float"), lit("abc", "xsd:float")),
+        ('"x"^^<http://example.org/d>', '"x"^^<http://example.org/d>'),
+        ("<http://example.org/a>", "<http://example.org/a>"),
+    ],
+)
+def test_the_canonical_spelling(term, wanted):
+    assert canonical(term) == wanted
+    assert canonical(wanted) == wanted
+
+
+@given(
+    st.one_of(
+        st.floats(width=32).map(lambda x: (repr(x).replace("inf", "INF").replace("nan", "NaN"), "float")),
+        st.floats().map(lambda x: (repr(x).replace("inf", "INF").replace("nan", "NaN"), "double")),
+        st.decimals(allow_nan=False, allow_infinity=False).map(lambda x: (f"{x:f}", "decimal")),
+        st.datetimes().map(lambda x: (x.isoformat(), "dateTime")),
+        st.text(st.characters(exclude_categories=["Cs"])).map(lambda x: (x, "string")),
+    )
+)
+def test_a_canonical_spelling_has_the_value(text_and_datatype):
+    text, name = text_and_datatype
+    term = quoted(text, datatype=f"http://www.w3.org/2001/XMLSchema#{name}")
+    assert literal(term).text == text
+    assert value(canonical(term)) == value(term) is not None
+    assert canonical(canonical(term)) == canonical(term)

@@ -55,13 +55,14 @@ def entity_line(entities: Sequence[Entity]) -> str:
 def entity_card(e: Entity) -> Table:
     """All about one entity."""
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
+    own_size = " (the model's own)" if e.body is not None and e.body.own_size else ""
     rows = {
         "name": e.name,
         "iri": e.iri,
         "class": e.class_,
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
-        "size": _size(e) or "the model's own",
+        "size": (_size(e) or "unknown") + own_size,
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         "body": body,
@@ -140,8 +141,11 @@ def explanation(e: Explanation) -> Iterable[str]:
 def commit_line(commit: Commit) -> str:
     """A commit in one line."""
     stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
-    counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
+    extent = commit.extent
+    counts = f"+{extent.inserted} -{extent.retracted} triples"
     names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
+    if commit.abridged is not None:
+        names = [wording.entities(extent.changed + extent.removed)]
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
     return printable(line).plain

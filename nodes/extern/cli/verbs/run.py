@@ -66,7 +66,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
         verb = str(said.get("verb", ""))
         if verb not in commands.COMMANDS:
             raise errors.UnknownVerb(f"unknown verb '{verb}'{errors.did_you_mean(verb, commands.COMMANDS)}")
-        reply = client.send(codec.decode(message, commands.COMMANDS[verb]))
+        reply: Any = client.send(codec.decode(message, commands.COMMANDS[verb]))
     except errors.SemmapError as error:
         complain(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status

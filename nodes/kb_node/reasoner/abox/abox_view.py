@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
+from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import ASSERTED
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME
-from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
+from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 from schemas.explanations import Term, Triple
 
 
@@ -111,13 +112,13 @@ class View:
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The triples of a pattern that follow and were not asserted, each once.
 
-        Left out are what is trivial (everything is the same as itself), classes without a name, and other
-        spellings of a literal.
+        Left out are what is trivial (everything is the same as itself) and classes without a name. A value
+        is given once, in its canonical spelling, unless it was asserted in any spelling.
         """
         if s is not None:
             node = self._store.find(s)
             nodes = iter(()) if node is None else iter((node,))
-        elif o is not None and p != TYPE:
+        elif o is not None and p != TYPE and not is_literal(o):
             nodes = self._linked_to(o)
         elif p == TYPE and o is not None:
             nodes = (node for node in self._instances(o))
@@ -159,15 +160,18 @@ class View:
         told = {
             (store.predicate[e], store.object[e]) for e in store.out.all(node) if store.source[e] == ASSERTED
         }
+        values: dict[tuple[int, Term], None] = {}
         for predicate, object_ in dict.fromkeys(self._implied(node)):
             name = self._schema.axioms[predicate].term
-            if (
-                (predicate, object_) not in told
-                and wanted in (None, predicate)
-                and name[0] == "<"
-                and " " not in name
-            ):
+            if wanted not in (None, predicate) or name[0] != "<" or " " in name:
+                continue
+            if self._abox.is_literal(object_):
+                values[predicate, datatypes.canonical(store.terms[object_])] = None
+            elif (predicate, object_) not in told:
                 yield (term, name, store.terms[object_])
+        if values:
+            known = {(p, datatypes.canonical(store.terms[o])) for p, o in told if self._abox.is_literal(o)}
+            yield from ((term, self._schema.axioms[p].term, o) for p, o in values if (p, o) not in known)
 
     def _inferred_same(self, node: int) -> Iterator[Triple]:
         store = self._store

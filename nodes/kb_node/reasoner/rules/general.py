@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
 
+from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.explain.proof import Prover
 from nodes.kb_node.reasoner.rules.closure import Closure
-from nodes.kb_node.reasoner.terms import TYPE, is_named
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 
 
@@ -43,21 +45,55 @@ class GeneralEngine:
         return {term for s, _, o in self.asserted(None, None, None) for term in (s, o) if term in terms}
 
     def inferred(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        """The triples of a pattern that follow and were not asserted."""
-        return (triple for triple in self._closure.match(s, p, o) if triple not in self._asserted)
+        """The triples of a pattern that follow and were not asserted; which, `Reasoner.inferred` says."""
+        wants_schema = p is not None and (p != TYPE or (o is not None and is_schema((o, p, o))))
+        given: set[Triple] = set()
+        for triple in self._closure.match(s, p, None if o is not None and is_literal(o) else o):
+            subject, predicate, object_ = triple
+            if triple in self._asserted or is_literal(subject) or not is_named(predicate):
+                continue
+            if is_schema(triple):
+                if wants_schema:
+                    yield triple
+            elif is_literal(object_):
+                spelled = (subject, predicate, datatypes.canonical(object_))
+                if spelled not in given and o in (None, spelled[2]) and not self._is_said(spelled):
+                    given.add(spelled)
+                    yield spelled
+            elif predicate != TYPE or is_named(object_):
+                yield triple
+
+    def _is_said(self, triple: Triple) -> bool:
+        """Whether a value, in its canonical spelling, is asserted in any."""
+        s, p, value = triple
+        return any(datatypes.canonical(o) == value for _, _, o in self.asserted(s, p, None))
 
     def holds(self, triple: Triple) -> bool:
         """Whether a triple is asserted or follows."""
-        return self._closure.holds(triple)
+        return self._fact(triple) is not None
+
+    def _fact(self, triple: Triple) -> Triple | None:
+        """The fact that a triple states, a value perhaps in another spelling; None if it does not hold."""
+        if self._closure.holds(triple):
+            return triple
+        s, p, o = triple
+        if not is_literal(o):
+            return None
+        wanted = datatypes.canonical(o)
+        return next(
+            (fact for fact in self._closure.match(s, p) if datatypes.canonical(fact[2]) == wanted), None
+        )
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual."""
-        return frozenset(o for _, _, o in self._closure.match(individual, TYPE) if is_named(o))
+        facts = self._closure.match(individual, TYPE)
+        return frozenset(fact[2] for fact in facts if is_named(fact[2]) and not is_schema(fact))
 
     def instances(self, cls: Term) -> Iterator[Term]:
         """The individuals of a class."""
-        return (s for s, _, _ in self._closure.match(None, TYPE, cls))
+        facts = self._closure.match(None, TYPE, cls)
+        return (fact[0] for fact in facts if not is_literal(fact[0]) and not is_schema(fact))
 
     def explain(self, triple: Triple) -> Explanation:
         """Why a triple follows that holds."""
-        return Prover().prove(self._closure.leaves(triple), triple)
+        return Prover().prove(self._closure.leaves(self._fact(triple)), triple)

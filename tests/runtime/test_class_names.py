@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from nodes.coordinator.class_names import ClassNames
+from nodes.runtime.class_names import ClassNames
 from schemas.entities import ClassInfo
 from schemas.errors import UnknownClass
 

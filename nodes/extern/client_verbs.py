@@ -1,0 +1,188 @@
+"""The verbs of a client, each once: its fields, types and documentation are those of its command.
+
+Type checkers and editors see `client.add(class_, name=None, at=None, ...) -> Changed`, because a `Verb` has
+the parameters of the command's constructor; so do `help(client.add)` and `inspect.signature`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from types import MethodType
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Generic,
+    Literal,
+    ParamSpec,
+    TypeVar,
+    get_args,
+    get_type_hints,
+    overload,
+)
+
+from nodes.extern.files import read_file
+from schemas import commands, replies
+from schemas.calls import reply_type
+from schemas.commands import Command
+from schemas.entities import Entity
+from schemas.moments import When
+from schemas.scenes import Picture
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
+
+P = ParamSpec("P")
+R = TypeVar("R")
+U = TypeVar("U")
+
+
+class Verb(Generic[P, U]):
+    """A method that sends the command that `make` makes of its arguments, and returns its reply.
+
+    With `read`, what that makes of the reply. Types and documentation are those of `make`.
+    """
+
+    @overload
+    def __init__(self: Verb[P, R], make: Callable[P, Command[R]]) -> None: ...
+    @overload
+    def __init__(self: Verb[P, U], make: Callable[P, Command[R]], read: Callable[[R], U]) -> None: ...
+    def __init__(self, make: Callable[..., Command[Any]], read: Callable[[Any], Any] | None = None) -> None:
+        self._make, self._read = make, read
+
+    def __set_name__(self, owner: type[Any], name: str) -> None:
+        make, read = self._make, self._read
+
+        def method(client: Any, *args: Any, **fields: Any) -> Any:
+            return client.request(make(*args, **fields), read)
+
+        method.__name__, method.__qualname__ = name, f"{owner.__name__}.{name}"
+        method.__doc__, method.__module__ = make.__doc__, make.__module__
+        method.__signature__ = _signature(make, read)  # type: ignore[attr-defined]
+        self._method = method
+
+    @overload
+    def __get__(self, client: Client, owner: type[Client]) -> Callable[P, U]: ...
+    @overload
+    def __get__(self, client: None, owner: type[Any]) -> Callable[..., Any]: ...
+    def __get__(self, client: Any, owner: type[Any]) -> Any:
+        return self._method if client is None else MethodType(self._method, client)
+
+
+def _signature(make: Callable[..., Any], read: Callable[[Any], Any] | None) -> inspect.Signature:
+    """That of `make` as a method, with the type of the reply. Types are named as in the code."""
+    signature = inspect.signature(make)
+    written = _written_types(make) if isinstance(make, type) else {}
+    parameters = [p.replace(annotation=written.get(n, p.annotation)) for n, p in signature.parameters.items()]
+    if read is not None:
+        reply = get_type_hints(read)["return"]
+    elif isinstance(make, type):
+        reply = reply_type(make)
+    else:
+        (reply,) = get_args(get_type_hints(make)["return"])
+    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    return signature.replace(parameters=[itself, *parameters], return_annotation=reply)
+
+
+def _written_types(kind: type[Any]) -> dict[str, Any]:
+    return {
+        name: said for base in reversed(kind.__mro__) for name, said in inspect.get_annotations(base).items()
+    }
+
+
+def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
+    """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
+    return commands.Remove(names=names, id=id, reason=reason)
+
+
+def _load(
+    path: str | Path,
+    *,
+    replace: bool = False,
+    skip_unknown: bool = False,
+    tbox: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile.
+
+    `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
+    that the TBox does not have. With `tbox` the file is a TBox that takes the place of the present one.
+    """
+    return commands.Load(
+        content=read_file(Path(path)),
+        filename=Path(path).name,
+        replace=replace,
+        skip_unknown=skip_unknown,
+        tbox=tbox,
+        id=id,
+        reason=reason,
+    )
+
+
+def _list(class_: str | None = None, *, as_of: When | None = None) -> commands.List:
+    """The entities of a class, over inferred types; all of them without one.
+
+    `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
+    or a reply's `stamp_ns`. A time denotes its written precision (see `schemas.moments.When`).
+    """
+    return commands.List(class_=class_, as_of=as_of)
+
+
+def _list_as(
+    format: Literal["lu4r", "legacy"], class_: str | None = None, *, as_of: When | None = None
+) -> commands.List:
+    """The entity list in the format of another system."""
+    return commands.List(class_=class_, format=format, as_of=as_of)
+
+
+def _entities(reply: tuple[Entity, ...] | dict[str, Any]) -> tuple[Entity, ...]:
+    assert isinstance(reply, tuple)
+    return reply
+
+
+def _document(reply: tuple[Entity, ...] | dict[str, Any]) -> dict[str, Any]:
+    assert isinstance(reply, dict)
+    return reply
+
+
+def _png(picture: Picture) -> bytes:
+    return picture.png
+
+
+class Verbs:
+    """What one may ask of a system and do to its map and scene: every command, and its reply.
+
+    Positions are metres in the map frame, angles radians, quaternions `wxyz`. Each verb takes an `id`, too:
+    the same one twice is executed once. Raises the errors of `schemas.errors`: Refused, BadRequest, NoAnswer.
+    """
+
+    # To change
+    add = Verb(commands.Add)
+    update = Verb(commands.Update)
+    remove = Verb(_remove)
+    clear = Verb(commands.Clear)
+    load = Verb(_load)
+    undo = Verb(commands.Undo)
+
+    # To ask
+    list = Verb(_list, _entities)
+    list_as = Verb(_list_as, _document)
+    get = Verb(commands.Get)
+    check = Verb(commands.Check)
+    infer = Verb(commands.Infer)
+    explain = Verb(commands.Explain)
+    export = Verb(commands.Export)
+    classes = Verb(commands.Classes)
+    status = Verb(commands.Status)
+    history = Verb(commands.History)
+    last_seen = Verb(commands.LastSeen)
+    sparql = Verb(commands.Sparql)
+
+    # To run
+    move = Verb(commands.Move)
+    pause = Verb(commands.Pause)
+    step = Verb(commands.StepOnce)
+    reset = Verb(commands.Reset)
+    picture = Verb(commands.TakePicture, _png)

@@ -1,0 +1,58 @@
+"""The manual builds strictly, and what is generated is up to date."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(
+    {ROOT / "README.md", ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *DOCS.rglob("*.md")}
+    - set((DOCS / "_build").rglob("*.md"))
+)
+LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+@pytest.fixture
+def extensions(monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS / "_ext"))
+
+
+def test_the_manual_builds_without_a_warning(tmp_path):
+    built = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", DOCS, tmp_path],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert built.returncode == 0, built.stderr
+    assert "<svg" in (tmp_path / "architecture.html").read_text()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_between_files_lead_somewhere(page):
+    for target in LINK.findall(page.read_text()):
+        if "://" not in target:
+            assert (page.parent / target).exists(), target
+
+
+def test_the_command_line_s_page_is_what_its_help_says(extensions):
+    import command_line
+
+    assert command_line.PAGE.read_text() == command_line.page(), "make docs"
+
+
+def test_every_diagram_is_drawn(extensions):
+    import diagrams
+
+    texts = [text for page in diagrams.PAGES for text in diagrams.BLOCK.findall(page.read_text())]
+    assert {diagrams.drawn(text) for text in texts} == set(diagrams.DRAWN.glob("*.svg")), "make diagrams"
+
+
+def test_the_architecture_is_one_page():
+    text = (ROOT / "ARCHITECTURE.md").read_text()
+    assert len(text.split()) < 1500
+    assert text.count("```mermaid") == 3
