@@ -17,7 +17,7 @@ import zenoh
 from msgspec import structs
 
 from nodes import bus
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
 from schemas import errors, keys
@@ -48,7 +48,10 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
         process = supervisor.start(settings)
         try:
-            _Foreground(supervisor, settings, process, say).run()
+            with registry.entered(
+                data=supervisor.data, listen=settings.listen, reachable=settings.reachable, pid=process.pid
+            ):
+                _Foreground(supervisor, settings, process, say).run()
         finally:
             _stop(process)
             say("stopped")
