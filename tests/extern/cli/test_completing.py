@@ -101,8 +101,9 @@ def test_a_shell_is_told_how_to_complete(shell):
 
 
 def test_bash_completes(endpoint):
-    script = f'PATH={SEMMAP.parent}:$PATH; eval "$(semmap completion bash)"; '
-    script += 'COMP_WORDS=(semmap get cup); COMP_CWORD=2; _semmap_completion semmap cup get; echo "${COMPREPLY[@]}"'
+    script = f'PATH={SEMMAP.parent}:$PATH; eval "$(semmap completion bash)";'
+    script += " COMP_WORDS=(semmap get cup); COMP_CWORD=2; _semmap_completion semmap cup get;"
+    script += ' echo "${COMPREPLY[@]}"'
     environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
     ended = subprocess.run(["bash", "-c", script], capture_output=True, text=True, env=environment)
     assert (ended.stdout, ended.stderr) == ("cup1 cup2\n", "")
