@@ -59,12 +59,16 @@ class ClassTable:
         """The properties that lead from an entity to the individuals that describe it, and on."""
         self.first_words = frozenset[Term]().union(*(known.first_words for known in self.alignments))
         """The alignments' properties by which an entity begins to describe itself."""
+        self.declared_roots = tuple(
+            sorted(s for s, _, o in reasoner.asserted(None, v.SPATIAL, None) if o in _TRUE)
+        )
+        """Those that the TBox or whoever loaded it calls so, in so many words."""
         self.spatial_roots: tuple[Term, ...] = tuple(self._spatial_roots())
         """The classes whose instances, and those of whose subclasses, are things in space."""
         self.spatial: frozenset[Term] = self._named_below(*self.spatial_roots)
-        solid = self._named_below(*(c for known in self.alignments for c in known.solid))
+        self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
-        self.places: frozenset[Term] = places - solid
+        self.places: frozenset[Term] = places - self._solid
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
@@ -107,7 +111,7 @@ class ClassTable:
         return Kind(
             class_name=self.names[said[0]],
             types=tuple(self.names[t] for t in named),
-            place=any(t in self.places for t in named),
+            place=any(t in self.places for t in named) and self._solid.isdisjoint(named),
             fixed=any(t in self.fixed for t in said),
             model=self.models[said[0]],
         )
@@ -200,8 +204,7 @@ class ClassTable:
         other TBox nobody knows, and nothing of it is in space until somebody says what is.
         """
         asserted = self._reasoner.asserted
-        said = {s for s, _, o in asserted(None, v.SPATIAL, None) if o in _TRUE}
-        said = said or {o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)}
+        said = set(self.declared_roots) or {o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)}
         said = {c for c in said if c in self.names} or {v.PHYSICAL_THING}.intersection(self.names)
         said = said or {c for known in self.alignments for c in known.things if self._named_below(c)}
         if not said and v.TBOX in self.prefixes.values():
