@@ -117,7 +117,7 @@ BRIDGE: dict[str, tuple[type[Struct], Any]] = {
     "history": (History, tuple[LoggedCommit, ...]),
     "last-seen": (LastSeen, Sighting),
     "undo": (Undo, Effects),
-    "load-tbox": (LoadTBox, Effects | None),
+    "load-tbox": (LoadTBox, Loaded),
     "sparql": (Sparql, SparqlResult),
     "watch": (Watch, Watching),
     "renew": (Renew, Done),

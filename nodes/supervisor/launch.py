@@ -37,7 +37,8 @@ def seed(settings: Settings) -> None:
     begins = settings.fresh or not Path(settings.data, JOURNAL).exists()
     if begins and abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
         raise errors.BadFile(f"{abox.name} is no ABox; start with --abox none, then: semmap load {abox}")
-    print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
+    imports = {iri: Path(file) for iri, file in settings.imports.items()}
+    print(seed_journal(Path(settings.data), settings.tboxes, abox, imports=imports, fresh=settings.fresh))
 
 
 def _kb_node(settings: Settings) -> None:

@@ -101,12 +101,13 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit: Effects | None = yield Question("load-tbox", order)
-    if commit is None:
-        return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
+    loaded: Loaded = yield Question("load-tbox", order)
+    if (commit := loaded.commit) is None:
+        text = f"the TBox is as in {command.filename or 'the file'} already"
+        return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
-    return Changed(commit=commit.seq, text=text, names=commit.names)
+    return Changed(commit=commit.seq, text=text, names=commit.names, notes=loaded.notes)
 
 
 def _sort_out(
