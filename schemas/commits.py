@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from msgspec import Struct, structs
 
+from schemas.calls import Call
 from schemas.entities import Angle, CommandId, Entity, Probability, Provenance, Quaternion, Source, Vector
 from schemas.explanations import Term, Triple
 
@@ -15,34 +18,6 @@ class Placed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
-
-
-class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One atomic change with its preconditions.
-
-    It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
-    `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
-    a second time changes nothing and is answered with the first commit.
-
-    `placed` are entities (`UnknownName` without one) that are somewhere else now; the knowledge base itself
-    says so in triples, because it knows their coordinates.
-
-    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
-    settling). `undoes` are the commits that it takes back.
-    """
-
-    id: CommandId
-    source: Source
-    agent: str = ""
-    verb: str = ""
-    reason: str = ""
-    confidence: Probability | None = None
-    undoes: tuple[int, ...] = ()
-    placed: tuple[Placed, ...] = ()
-    require: tuple[Triple, ...] = ()
-    vacant: tuple[Term, ...] = ()
-    retract: tuple[Triple, ...] = ()
-    insert: tuple[Triple, ...] = ()
 
 
 class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -147,6 +122,35 @@ class Effects(Struct, frozen=True, kw_only=True):
     def names(self) -> tuple[str, ...]:
         """The names of the entities that it touched."""
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
+
+
+class Transaction(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One atomic change with its preconditions.
+
+    It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
+    `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
+    a second time changes nothing and is answered with the first commit.
+
+    `placed` are entities (`UnknownName` without one) that are somewhere else now; the knowledge base itself
+    says so in triples, because it knows their coordinates.
+
+    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
+    settling). `undoes` are the commits that it takes back.
+    """
+
+    VERB: ClassVar[str] = "commit"
+    id: CommandId
+    source: Source
+    agent: str = ""
+    verb: str = ""
+    reason: str = ""
+    confidence: Probability | None = None
+    undoes: tuple[int, ...] = ()
+    placed: tuple[Placed, ...] = ()
+    require: tuple[Triple, ...] = ()
+    vacant: tuple[Term, ...] = ()
+    retract: tuple[Triple, ...] = ()
+    insert: tuple[Triple, ...] = ()
 
 
 MANY_ENTITIES = 10_000

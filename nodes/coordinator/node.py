@@ -6,7 +6,7 @@ import gc
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, TypeVar
 
 from msgspec import structs
 
@@ -24,29 +24,18 @@ from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
+from schemas import calls, errors, keys, wording
 from schemas import commands as c
-from schemas import errors, keys, wording
 from schemas.commits import Effects, Snapshot
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
 from schemas.scenes import Poses
 
+R = TypeVar("R")
+
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
-_RELAYED: tuple[type[c.Command], ...] = (
-    c.History,
-    c.LastSeen,
-    c.Check,
-    c.Infer,
-    c.Explain,
-    c.Export,
-    c.Classes,
-    c.Sparql,
-    c.Watch,
-    c.Renew,
-)
-"""What the knowledge base answers as it is asked."""
 
 
 class Coordinator:
@@ -68,26 +57,35 @@ class Coordinator:
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
         running = Running(config.truth, door, self._keeping, self._ask_sim)
-        functions: dict[type[c.Command], Callable[[Any], Any]] = {
-            c.Add: self._with_body,
-            c.Update: self._with_body,
-            c.Remove: self._noted,
-            c.Clear: self._noted,
-            c.Load: self._turns.change,
-            c.Undo: self._turns.change,
-            c.List: answers.list,
-            c.Get: answers.get,
-            c.Status: answers.status,
-            c.Move: running.move,
-            c.Pause: running.pause,
-            c.StepOnce: running.step,
-            c.Reset: running.reset,
-            c.TakePicture: running.picture,
-        }
-        functions.update(dict.fromkeys(_RELAYED, self._bridge.relay))
+        relay = self._bridge.relay
+        of_the_map = calls.by_verb(
+            c.Add.answered_by(self._with_body),
+            c.Update.answered_by(self._with_body),
+            c.Remove.answered_by(self._noted),
+            c.Clear.answered_by(self._noted),
+            c.Load.answered_by(self._turns.change),
+            c.Undo.answered_by(self._turns.change),
+            c.List.answered_by(answers.list),
+            c.Get.answered_by(answers.get),
+            c.Move.answered_by(running.move),
+            c.Pause.answered_by(running.pause),
+            c.StepOnce.answered_by(running.step),
+            c.Reset.answered_by(running.reset),
+            c.TakePicture.answered_by(running.picture),
+            c.History.answered_by(relay),
+            c.LastSeen.answered_by(relay),
+            c.Check.answered_by(relay),
+            c.Infer.answered_by(relay),
+            c.Explain.answered_by(relay),
+            c.Export.answered_by(relay),
+            c.Classes.answered_by(relay),
+            c.Sparql.answered_by(relay),
+            c.Watch.answered_by(relay),
+            c.Renew.answered_by(relay),
+        )
         handlers = {
-            verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
-            for verb, kind in c.COMMANDS.items()
+            **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
+            **calls.by_verb(c.Status.answered_by(answers.status)),
         }
         node.follow(keys.EFFECTS, self._on_commit)
         node.follow_newest(keys.POSES, self._on_poses)
@@ -154,7 +152,7 @@ class Coordinator:
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
                 fetched.append(future.result())
-            self._bridge.ask_later("snapshot", pages.query).add_done_callback(on_page)
+            self._bridge.ask_later(pages.query).add_done_callback(on_page)
 
         def on_page(future: Future[Snapshot]) -> None:
             if future.exception() is not None or not fetched:
@@ -162,7 +160,7 @@ class Coordinator:
                 return
             pages.take(future.result())
             if not pages.are_complete:
-                self._bridge.ask_later("snapshot", pages.query).add_done_callback(on_page)
+                self._bridge.ask_later(pages.query).add_done_callback(on_page)
                 return
             self._fetching = False
             self._door.classes = ClassNames(fetched[0])
@@ -172,16 +170,16 @@ class Coordinator:
             self._node.ready(wording.entities(len(self._door.entities)))
             self._keep()
 
-        self._bridge.ask_later("classes", c.Classes()).add_done_callback(on_classes)
+        self._bridge.ask_later(c.Classes()).add_done_callback(on_classes)
 
     # Changing
 
-    def _with_body(self, command: c.Add | c.Update) -> Future[Any]:
+    def _with_body(self, command: c.Add | c.Update) -> Future[Changed]:
         """The reply waits for the body if that is wanted."""
         made = self._noted(command)
         if not command.wait:
             return made
-        future: Future[Any] = Future()
+        future: Future[Changed] = Future()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
@@ -243,8 +241,8 @@ class Coordinator:
 
         return guarded
 
-    def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
+    def _ask_sim(self, call: calls.Call[R]) -> Future[R]:
+        return self._node.ask_later(keys.SIM, call, timeout_s=_SIM_TIMEOUT_S)
 
 
 def _spoken(state: BodyState) -> str:

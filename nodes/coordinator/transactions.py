@@ -28,7 +28,7 @@ def transaction(
         id=command.id,
         source=command.source,
         agent=command.agent,
-        verb="" if command.source == "scene" else command.verb,
+        verb="" if command.source == "scene" else command.VERB,
         reason=command.reason or reason,
         confidence=getattr(command, "confidence", None),
         placed=tuple(placed),

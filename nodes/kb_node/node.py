@@ -30,7 +30,7 @@ from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.bridge import (
-    BRIDGE,
+    Entities,
     LoadDocument,
     Loaded,
     LoadTBox,
@@ -38,8 +38,10 @@ from schemas.bridge import (
     Recall,
     SnapshotQuery,
     StarQuery,
+    TakeBack,
     Transactions,
 )
+from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
@@ -49,10 +51,8 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
-    List,
     Renew,
     Sparql,
-    Undo,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
@@ -79,17 +79,37 @@ class KnowledgeBase:
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
-        functions = {
-            name.removeprefix("on_").replace("_", "-"): getattr(self, name)
-            for name in dir(self)
-            if name.startswith("on_")
-        }
-        node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        handlers = self._handlers()
+        node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
-            node.serve_one(keys.CMD, verb, BRIDGE[verb][0], functions[verb])
+            node.serve_one(keys.CMD, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.note(self._notes())
         node.ready(self._summary())
+
+    def _handlers(self) -> dict[str, Handler]:
+        return by_verb(
+            Transaction.answered_by(self.on_commit),
+            Transactions.answered_by(self.on_commits),
+            LoadDocument.answered_by(self.on_load),
+            SnapshotQuery.answered_by(self.on_snapshot),
+            Recall.answered_by(self.on_recall),
+            StarQuery.answered_by(self.on_star),
+            Classes.answered_by(self.on_classes),
+            Entities.answered_by(self.on_list),
+            Get.answered_by(self.on_get),
+            Infer.answered_by(self.on_infer),
+            Explain.answered_by(self.on_explain),
+            Export.answered_by(self.on_export),
+            History.answered_by(self.on_history),
+            LastSeen.answered_by(self.on_last_seen),
+            TakeBack.answered_by(self.on_undo),
+            LoadTBox.answered_by(self.on_load_tbox),
+            Check.answered_by(self.on_check),
+            Sparql.answered_by(self.on_sparql),
+            Watch.answered_by(self.on_watch),
+            Renew.answered_by(self.on_renew),
+        )
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
@@ -191,7 +211,7 @@ class KnowledgeBase:
         """The class table."""
         return tuple(self.map.class_table())
 
-    def on_list(self, query: List) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
+    def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then."""
         if query.as_of is not None:
             return self._aside.submit(
@@ -227,7 +247,7 @@ class KnowledgeBase:
             return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
-    def on_undo(self, command: Undo) -> Effects:
+    def on_undo(self, command: TakeBack) -> Effects:
         """A commit that takes back another one."""
         return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
 

@@ -69,8 +69,8 @@ class Heartbeat:
         self._detail = detail
 
     def note(self, notes: tuple[str, ...]) -> None:
-        """Say this of what the node works with, from the next beat on."""
-        self._notes = notes
+        """Say this of what the node works with, from now on."""
+        self._notes, self.due_s = notes, 0.0
 
     def report(self, text: str) -> None:
         """Log an error, and say it with the time of the day, from now on and for an hour."""

@@ -57,7 +57,7 @@ def door(semantic_map):
         "star": lambda query: semantic_map.stars(query.names, together=query.together),
         "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
     }
-    door = Door(lambda verb, message: answers[verb](message))
+    door = Door(lambda call: answers[call.VERB](call))
     door.classes = ClassNames(semantic_map.class_table())
     door.begin(semantic_map.snapshot())
     return door

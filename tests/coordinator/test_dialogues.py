@@ -6,7 +6,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.dialogues import Question, hold, hold_later, in_step
+from nodes.coordinator.dialogues import hold, hold_later, in_step
 from schemas import errors
 from schemas.bridge import Outcome, StarQuery, Transactions
 from schemas.commits import Commit, Star, Transaction
@@ -34,8 +34,8 @@ def commit(name):
 
 def change(name):
     """A talk as of a command: the star, then the commit."""
-    (found,) = yield Question("star", StarQuery(names=(name,)))
-    made = yield Question("commit", transaction(found.name))
+    (found,) = yield StarQuery(names=(name,))
+    made = yield transaction(found.name)
     return made.id
 
 
@@ -45,13 +45,13 @@ class KnowledgeBase:
     def __init__(self):
         self.asked = []
 
-    def __call__(self, verb, message):
-        self.asked.append((verb, message))
-        if verb == "star":
+    def __call__(self, message):
+        self.asked.append(message)
+        if isinstance(message, StarQuery):
             if "gone" in message.names:
                 raise errors.UnknownName("no entity is named 'gone'")
             return tuple(map(star, message.names))
-        if verb == "commits":
+        if isinstance(message, Transactions):
             return tuple(map(self.outcome, message.transactions))
         outcome = self.outcome(message)
         if outcome.error is not None:
@@ -73,14 +73,14 @@ def ask():
 
 def test_one_talk_asks_as_it_is_written(ask):
     assert hold(change("a"), ask) == "a"
-    assert ask.asked == [("star", StarQuery(names=("a",))), ("commit", transaction("a"))]
+    assert ask.asked == [StarQuery(names=("a",)), transaction("a")]
 
 
 def test_what_is_asked_at_the_same_time_goes_together(ask):
     assert hold(in_step([change("a"), change("b")]), ask) == ["a", "b"]
     assert ask.asked == [
-        ("star", StarQuery(names=("a", "b"), together=False)),
-        ("commits", Transactions(transactions=(transaction("a"), transaction("b")))),
+        StarQuery(names=("a", "b"), together=False),
+        Transactions(transactions=(transaction("a"), transaction("b"))),
     ]
 
 
@@ -96,24 +96,24 @@ def test_an_error_ends_its_own_talk_only(ask, bad, error):
 def test_a_talk_may_go_on_after_an_error(ask):
     def stubborn():
         try:
-            yield Question("commit", transaction("no"))
+            yield transaction("no")
         except errors.PreconditionFailed:
-            return (yield Question("commit", transaction("yes"))).id
+            return (yield transaction("yes")).id
 
     assert hold(in_step([stubborn(), change("a"), stubborn()]), ask) == ["yes", "a", "yes"]
 
 
 def test_the_stars_of_entities_that_leave_together_are_asked_as_such(ask):
     def leaving(*names):
-        return (yield Question("star", StarQuery(names=names)))
+        return (yield StarQuery(names=names))
 
     hold(in_step([leaving("a", "b"), leaving("c")]), ask)
-    assert ask.asked == [("star", StarQuery(names=("a", "b"))), ("star", StarQuery(names=("c",)))]
+    assert ask.asked == [StarQuery(names=("a", "b")), StarQuery(names=("c",))]
 
 
 def test_without_an_answer_nothing_is_said_to_be_done():
-    def nobody(verb, message):
-        raise errors.NoAnswer(verb)
+    def nobody(message):
+        raise errors.NoAnswer(message.VERB)
 
     with pytest.raises(errors.NoAnswer):
         hold(in_step([change("a"), change("b")]), nobody)
@@ -122,15 +122,15 @@ def test_without_an_answer_nothing_is_said_to_be_done():
 def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
     asked = []
 
-    def ask_later(verb, message):
-        asked.append((verb, message, Future()))
+    def ask_later(message):
+        asked.append((message, Future()))
         return asked[-1][-1]
 
     future = hold_later(in_step([change("a"), change("gone")]), ask_later)
     while not future.done():
-        verb, message, answer = asked[-1]
+        message, answer = asked[-1]
         try:
-            answer.set_result(ask(verb, message))
+            answer.set_result(ask(message))
         except errors.SemmapError as error:
             answer.set_exception(error)
     first, second = future.result()
@@ -139,7 +139,7 @@ def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
 
 def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
     def broken():
-        yield Question("star", StarQuery(names=()))
+        yield StarQuery(names=())
         raise ZeroDivisionError
 
     done: Future = Future()

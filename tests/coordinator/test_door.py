@@ -238,7 +238,7 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
     door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
     rests = Pose(position_m=(3.0, 1.0, 0.0))
     with monkeypatch.context() as away:
-        away.setattr(door, "_ask", lambda verb, message: raise_(errors.NoAnswer("it is being restarted")))
+        away.setattr(door, "_ask", lambda call: raise_(errors.NoAnswer("it is being restarted")))
         with pytest.raises(errors.NoAnswer):
             door.follow("chair1", rests)
     door.follow("chair1", rests)
@@ -260,9 +260,9 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
-    def ask_later(verb, message):
+    def ask_later(call):
         future: Future = Future()
-        settle(future, lambda: door._ask(verb, message))
+        settle(future, lambda: door._ask(call))
         return future
 
     turns = Turns(lambda group: hold_later(door.together(group), ask_later))

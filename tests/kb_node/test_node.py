@@ -13,8 +13,9 @@ from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
-from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
+from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
+from schemas.calls import reply_type
+from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
 from schemas.commits import Effects
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
@@ -75,7 +76,7 @@ def session(bench):
 
 
 def ask(session, verb, message, **limits):
-    return bus.ask(session, keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+    return bus.ask(session, keys.BRIDGE, verb, message, reply_type(BRIDGE[verb]), **limits)
 
 
 def await_answer(session):
@@ -138,14 +139,14 @@ def test_the_tbox_that_holds_is_no_change(session):
         return ask(session, "load-tbox", order)
 
     text = TBOX_TURTLE + "dm:Chair rdfs:subClassOf [ owl:unionOf ( dm:Seat dm:Object ) ] ."
-    commit = load(1, text)
+    commit = load(1, text).commit
     assert commit.tbox
-    assert load(2, text) is None
-    assert load(1, text) == commit
-    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").seq
+    assert load(2, text).commit is None
+    assert load(1, text).commit == commit
+    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").commit.seq
     (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
-    assert load(3, TBOX_TURTLE).seq == commit.seq + 2
+    assert load(3, TBOX_TURTLE).commit.seq == commit.seq + 2
 
 
 def test_two_clients_see_one_map(bench, session):
@@ -161,7 +162,7 @@ def test_two_clients_see_one_map(bench, session):
 
 def test_questions_are_answered(session):
     ask(session, "commit", transaction("q", chair("q", preferred="queen")))
-    assert [e.name for e in ask(session, "list", List(class_="Chair")) if e.name == "q"] == ["q"]
+    assert [e.name for e in ask(session, "list", Entities(class_="Chair")) if e.name == "q"] == ["q"]
     (star,) = ask(session, "star", StarQuery(names=("q",)))
     assert set(star.own) == set(chair("q", preferred="queen"))
     assert "q type Seat" in ask(session, "infer", Infer(name="q")).text
@@ -180,7 +181,7 @@ def load(number, content, **fields):
 def test_look_ups_are_answered_without_anybody_between(session):
     commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
     query = Sparql(query="SELECT ?class { :looked_up a ?class }")
-    result = bus.ask(session, keys.CMD, "sparql", query, BRIDGE["sparql"][1])
+    result = bus.ask(session, keys.CMD, "sparql", query, reply_type(BRIDGE["sparql"]))
     assert result.rows == ((v.dm("Chair"),),)
     assert result.seq == commit.seq
 

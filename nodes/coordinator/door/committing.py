@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
@@ -39,7 +39,7 @@ def once(change: Change[C]) -> Change[C]:
 def _done_before(command: Command) -> Talk[Changed | None]:
     """The result of the command with this id, if there was one."""
     nothing = Transaction(id=command.id, source=command.source)
-    commit: Effects | None = yield Question("commit", nothing)
+    commit = yield from ask(nothing)
     if commit is None:
         return None
     names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
@@ -48,8 +48,7 @@ def _done_before(command: Command) -> Talk[Changed | None]:
 
 def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
     """Commit it; None if it changes nothing."""
-    made: Effects | None = yield Question("commit", transaction)
-    return (yield from taken(view, made))
+    return (yield from taken(view, (yield from ask(transaction))))
 
 
 def commit_built(view: KnownMap, build: Callable[[str], Talk[Transaction]]) -> Talk[Effects | None]:
@@ -74,7 +73,7 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     if commit is not None and not view.take(commit) and commit.abridged is not None:
         pages = view.begin_pages()
         while not pages.are_complete:
-            pages.take((yield Question("snapshot", pages.query)))
+            pages.take((yield from ask(pages.query)))
         view.begin(pages.snapshot)
     return commit
 
@@ -83,13 +82,12 @@ def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
     yield from taken(view, commit)
     if commit.tbox:
-        view.classes = ClassNames((yield Question("classes", Classes())))
+        view.classes = ClassNames((yield from ask(Classes())))
 
 
 def stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
     """The triples about some entities."""
-    found: tuple[Star, ...] = yield Question("star", StarQuery(names=names))
-    return found
+    return (yield from ask(StarQuery(names=names)))
 
 
 def new_id() -> str:

@@ -33,7 +33,7 @@ class Door(KnownMap):
     """
 
     def __init__(self, ask: Ask) -> None:
-        """`ask(verb, message)` asks the knowledge base."""
+        """`ask(call)` asks the knowledge base."""
         super().__init__()
         self._ask = ask
         self.hands = Hands()

@@ -8,14 +8,14 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.runtime.class_names import ClassNames
 from schemas import errors, scene_files, wording
-from schemas.bridge import LoadDocument, Loaded, LoadTBox
+from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
 from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, free_name
@@ -83,15 +83,19 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         filename=command.filename,
         replace=command.replace,
         skip_unknown=command.skip_unknown,
+        strict=command.strict,
     )
-    loaded: Loaded = yield Question("load", document)
+    loaded = yield from ask(document)
     commit = yield from taken(view, loaded.commit)
     return _loaded(command, commit, loaded.names, loaded.skipped, loaded.notes)
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
-    if command.replace or command.skip_unknown:
-        raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+    if command.replace or command.skip_unknown or command.strict:
+        raise errors.BadRequest(
+            "--replace, --skip-unknown and --strict are for maps: a TBox takes the place of the present one,"
+            " and the map stays as it is"
+        )
     require_operator(command, "replace the TBox")
     order = LoadTBox(
         id=command.id,
@@ -101,7 +105,7 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    loaded: Loaded = yield Question("load-tbox", order)
+    loaded = yield from ask(order)
     if (commit := loaded.commit) is None:
         text = f"the TBox is as in {command.filename or 'the file'} already"
         return Changed(commit=None, text=text, notes=loaded.notes)

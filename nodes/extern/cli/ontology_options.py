@@ -9,21 +9,24 @@ from typing import Any
 import click
 
 
-class _Import(click.ParamType):
+class _Import(click.ParamType[tuple[str, Path]]):
     name = "import"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, Path]:
         """`IRI=FILE` as a pair. An IRI may have a `=`, too: what follows one and is a file counts."""
         if isinstance(value, tuple):
-            return value
+            iri, file = value
+            return iri, file
         parts = value.split("=")
         for i in range(1, len(parts)):
             iri, file = "=".join(parts[:i]), Path("=".join(parts[i:]))
             if iri and file.is_file():
                 return iri.strip("<>"), file.resolve()
         if len(parts) == 1 or not parts[0] or not parts[-1]:
-            self.fail(f"'{value}' should be IRI=FILE: http://example.org/things=things.owl", param, ctx)
-        self.fail(f"there is no file {value.partition('=')[2]}", param, ctx)
+            return self.fail(f"'{value}' is not IRI=FILE, as in http://example.org/things=things.owl")
+        return self.fail(f"there is no file {value.partition('=')[2]}")
 
 
 def import_option(function: Callable[..., Any]) -> Callable[..., Any]:

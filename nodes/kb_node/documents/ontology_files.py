@@ -71,8 +71,9 @@ def gather(named: Sequence[Path], given: Mapping[str, Path]) -> Gathered:
 
 class _Gathering:
     def __init__(self, named: Iterable[Path], given: Mapping[str, Path]) -> None:
-        self.to_read = list(dict.fromkeys(path.resolve() for path in named))
-        self._named = tuple(self.to_read)
+        self._called = {path.resolve(): path for path in named}
+        self._named = tuple(self._called)
+        self.to_read = list(self._named)
         self._given = {_plain(v.iri(iri)): path for iri, path in given.items()}
         self._parsed: dict[Path, list[Triple]] = {}
         self._read: dict[Path, list[Triple]] = {}
@@ -152,7 +153,7 @@ class _Gathering:
     def _triples(self, path: Path) -> list[Triple]:
         """The triples of a file, which is parsed once."""
         if path not in self._parsed:
-            self._parsed[path] = read(path, f"t{len(self._parsed)}x")
+            self._parsed[path] = read(self._called.get(path, path), f"t{len(self._parsed)}x")
         return self._parsed[path]
 
 

@@ -62,6 +62,8 @@ def seed(
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += sorted_out.triples
         notes = sorted_out.notes
+        if found := abox_document.strangers(sorted_out.triples, reasoner):
+            notes.append(abox_document.of_strangers(found))
     source = abox.name if abox is not None else "nothing"
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",

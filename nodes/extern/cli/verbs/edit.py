@@ -10,8 +10,8 @@ from typing import Any
 import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
-from nodes.extern.cli.output import show
 from nodes.extern.cli.ontology_options import import_option
+from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
 
@@ -78,7 +78,7 @@ def clear(client: Client) -> None:
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
 @import_option
 @talks
-def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: bool) -> None:
+def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
     with progress(client):
         reply = client.load(file, imports=dict(imports), **how)

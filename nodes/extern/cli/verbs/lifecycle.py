@@ -33,12 +33,12 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         "--tbox",
         type=_path,
         multiple=True,
-        help="Ontology, or a folder of such, with what it imports; may be repeated. Default: the household's.",
+        help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
     )
     @import_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the shipped flat; none if perceived, or with --tbox.",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -152,7 +152,8 @@ def node(name: str, settings: Settings) -> None:
 
 
 def _settings(
-    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
+    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], abox: str | None,
+    world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
