@@ -55,13 +55,19 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The stars of these entities; UnknownName if one is not there."""
+    """The stars of these entities, taken together; UnknownName if one is not there."""
 
     VERB: ClassVar[str] = "star"
 
     names: tuple[str, ...]
-    together: bool = True
-    """What only they use counts as their own; if not, only what one of them uses alone is its own."""
+
+
+class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commits that these commands have made already; None for a command that has made none."""
+
+    VERB: ClassVar[str] = "made-by"
+
+    ids: tuple[CommandId, ...]
 
 
 class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -132,7 +138,7 @@ BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
-        *(SnapshotQuery, Recall, StarQuery, Entities),
+        *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
         *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Sparql, Watch, Renew),
     )
 }

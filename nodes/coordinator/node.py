@@ -128,10 +128,9 @@ class Coordinator:
         if self._has_map:
             self._keeping.keep()
             self._answer_waiting()
-            self._node.describe(
-                f"{wording.entities(len(self._door.entities))},"
-                f" {wording.bodies(len(self._keeping.scene.bodies))}"
-            )
+            scene = self._keeping.scene
+            bodies = f", {wording.bodies(len(scene.bodies))}" if scene.known else ""
+            self._node.describe(f"{wording.entities(len(self._door.entities))}{bodies}")
 
     def _catch_up(self) -> None:
         """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""

@@ -34,6 +34,7 @@ from schemas.bridge import (
     LoadDocument,
     Loaded,
     LoadTBox,
+    MadeBy,
     Outcome,
     Recall,
     SnapshotQuery,
@@ -95,6 +96,7 @@ class KnowledgeBase:
             SnapshotQuery.answered_by(self.on_snapshot),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
+            MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
             Entities.answered_by(self.on_list),
             Get.answered_by(self.on_get),
@@ -205,7 +207,11 @@ class KnowledgeBase:
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
-        return self.map.stars(query.names, together=query.together)
+        return self.map.stars(query.names)
+
+    def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
+        """The commits that some commands have made."""
+        return tuple(_effects(self._journal.commit_of(id_)) for id_ in query.ids)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""

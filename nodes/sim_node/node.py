@@ -199,7 +199,9 @@ class Simulator:
 
     def _summary(self) -> str:
         state = ", paused" if self._paused else ""
-        return f"{wording.bodies(len(self._world))} in {self._world.name}{state}"
+        world = self._world
+        bodies = f"{wording.bodies(len(world))} in " if len(world) else ""  # at first the map's are to come
+        return f"{bodies}{world.name}{state}"
 
 
 def run(config: SimConfig) -> None:

@@ -301,13 +301,12 @@ def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map)
 def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, semantic_map):
     for name in ("a", "b"):
         add(door, name=name, at=(1.0, 2.0, 0.0), ref="seat")
-    (star,) = semantic_map.stars(["a"])
-    (seat,) = star.preferred
+    seat, hers = (v.entity_iri(f"{name}_preferred_reference") for name in ("a", "b"))
     other = semantic_map.stars(["b"])[0]
     shared = Transaction(
         id="share",
         source="operator",
-        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] in other.preferred),
+        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] == hers),
         insert=((other.iri, v.HAS_PREFERRED_REFERENCE, seat),),
     )
     door.take(semantic_map.commit(shared))

@@ -6,6 +6,7 @@ never older than the orders before it.
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
@@ -33,6 +34,8 @@ from schemas.scenes import (
     Spawn,
     Spawned,
 )
+
+log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 GHOSTLY = "overlaps something, so it does not collide until it is free"
@@ -165,7 +168,8 @@ class Keeping:
             if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
         ]
         seen = [f"{name}: perception: {entity.conflict}" for name, entity in entities if entity.conflict]
-        return amiss + seen + [f"{name}: {reason}" for name, reason in sorted(self._foreign.items())]
+        foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
+        return amiss + seen + [f"{name}: {why}" for name, why in foreign]
 
     def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step[Any]]:
         steps: list[Step[Any]] = []
@@ -210,7 +214,7 @@ class Keeping:
         self.scene.add(reply.bodies)
         for name, reason in reply.failed.items():
             self._failed[name] = (tried[name], reason)
-            self._report(f"{name} has no body: {reason}")
+            log.warning("%s has no body: %s", name, reason)  # `problems` says so as long as it is true
 
     def _placed(self, reply: BodiesMoved) -> None:
         """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
@@ -259,8 +263,8 @@ class Keeping:
                 )
             )
         except (errors.Refused, errors.BadRequest) as error:
-            self._foreign[body.name] = f"a body of the scene that is no entity: {error.text}"
-            self._report(f"{body.name} did not become an entity: {error.text}")
+            self._foreign[body.name] = f"a scene body without a map entity: {error.text}"
+            log.warning("%s did not become an entity: %s", body.name, error.text)
 
 
 def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:

@@ -10,6 +10,7 @@ from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.spawn_batches import BATCH
 from schemas import commands as c
 from schemas import errors
+from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
 
 
@@ -59,6 +60,40 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 1
     keeping.place_all()
     assert len(spawns) == 2
+
+
+def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_there(door):
+    said = []
+
+    def ask(verb, message, kind):
+        answer = {
+            "spawn": Spawned(bodies=(), failed={"chair1": "its model file is broken"}),
+            "snapshot": Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=()),
+        }[verb]
+        future = Future()
+        future.set_result(answer)
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, said.append)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.keep()
+    assert keeping.problems() == ["chair1: failed: its model file is broken"]
+    door.change(c.Remove(names=("chair1",)))
+    keeping.keep()
+    assert (keeping.problems(), said) == ([], [])  # and no heartbeat says it for an hour
+
+
+def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(door):
+    keeping = Keeping(CoordinatorConfig("scene"), door, lambda *_: Future(), print)
+    gizmo = standing(BodyOrder(name="gizmo", class_="Gizmo", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
+    keeping.scene.known = True
+    keeping.scene.bodies["gizmo"] = gizmo
+    keeping.keep()
+    (problem,) = keeping.problems()
+    assert problem.startswith("gizmo: a scene body without a map entity: unknown class 'Gizmo'")
+    del keeping.scene.bodies["gizmo"]
+    assert keeping.problems() == []
 
 
 def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):

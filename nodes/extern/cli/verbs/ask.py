@@ -13,6 +13,7 @@ import click
 from nodes import bus
 from nodes.extern import availability
 from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
+from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
@@ -27,7 +28,13 @@ _STATUS_S = 20.0
 
 
 @click.command("list")
-@click.option("--class", "class_", metavar="CLASS", help="Only those of this class, also by inference.")
+@click.option(
+    "--class",
+    "class_",
+    metavar="CLASS",
+    shell_complete=class_names,
+    help="Only those of this class, also by inference.",
+)
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
@@ -44,7 +51,7 @@ def list_(client: Client, class_: str | None, format: str, as_of: str | None) ->
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
 @talks
@@ -69,7 +76,7 @@ def check(client: Client, engine: Any) -> None:
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=entity_names)
 @talks
 def infer(client: Client, name: str | None) -> None:
     """What follows that was not said, about one entity or all."""
@@ -77,7 +84,7 @@ def infer(client: Client, name: str | None) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
 @talks
