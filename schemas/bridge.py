@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, ClassVar
 
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, field
 
+from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
@@ -15,53 +16,80 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
-    List,
     Renew,
     Sparql,
-    Undo,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, CommandId, Entity, Source
+from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
+from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
-from schemas.explanations import Explanation
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
-from schemas.sparql import SparqlResult, Watching
-
-
-class SnapshotQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All entities, with the number of the commit that they are true after."""
-
-
-class StarQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The stars of these entities; UnknownName if one is not there."""
-
-    names: tuple[str, ...]
-    together: bool = True
-    """What only they use counts as their own; if not, only what one of them uses alone is its own."""
-
-
-class Recall(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """These commits again, for a follower that has missed them; those that there never were are left out."""
-
-    seqs: Annotated[tuple[int, ...], Meta(max_length=100)]
-
-
-class Transactions(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Several changes, each accepted or refused by itself in this order, and made durable together."""
-
-    transactions: tuple[Transaction, ...]
+from schemas.moments import When
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What became of one of several changes: an error, or else the commit (None when it changed nothing)."""
 
-    commit: Commit | None = None
+    commit: Effects | None = None
     error: ErrorMessage | None = None
 
 
-class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commit, the names of the entities that it changed, and what was left out and why."""
+
+    commit: Effects | None
+    names: tuple[str, ...] = ()
+    skipped: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The entities, with the number of the commit that they are true after.
+
+    With a `limit`, a page of that many at most: those whose names come after `after`, in their order. Other
+    commits may come between two pages; who follows those and takes them all in has the map in the end.
+    """
+
+    VERB: ClassVar[str] = "snapshot"
+    after: str = ""
+    limit: Annotated[int, Meta(ge=1)] | None = None
+
+
+class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The stars of these entities, taken together; UnknownName if one is not there."""
+
+    VERB: ClassVar[str] = "star"
+
+    names: tuple[str, ...]
+
+
+class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commits that these commands have made already; None for a command that has made none."""
+
+    VERB: ClassVar[str] = "made-by"
+
+    ids: tuple[CommandId, ...]
+
+
+class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """These commits again, for a follower that has missed them; those that there never were are left out."""
+
+    VERB: ClassVar[str] = "recall"
+
+    seqs: Annotated[tuple[int, ...], Meta(max_length=100)]
+
+
+class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Several changes, each accepted or refused by itself in this order, and made durable together."""
+
+    VERB: ClassVar[str] = "commits"
+
+    transactions: tuple[Transaction, ...]
+
+
+class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Add an ABox in any RDF syntax in one commit; with `replace` instead of the present one."""
+
+    VERB: ClassVar[str] = "load"
 
     id: CommandId
     source: Source
@@ -73,8 +101,10 @@ class LoadDocument(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     skip_unknown: bool
 
 
-class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+
+    VERB: ClassVar[str] = "load-tbox"
 
     id: CommandId
     source: Source
@@ -84,34 +114,31 @@ class LoadTBox(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     filename: str
 
 
-class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, and what was left out and why."""
+class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then."""
 
-    commit: Commit | None
-    skipped: tuple[str, ...]
-    notes: tuple[str, ...] = ()
+    VERB: ClassVar[str] = "list"
+    class_: str | None = field(name="class", default=None)
+    as_of: When | None = None
 
 
-BRIDGE: dict[str, tuple[type[Struct], Any]] = {
-    "commit": (Transaction, Commit | None),
-    "commits": (Transactions, tuple[Outcome, ...]),
-    "load": (LoadDocument, Loaded),
-    "snapshot": (SnapshotQuery, Snapshot),
-    "recall": (Recall, tuple[Commit, ...]),
-    "star": (StarQuery, tuple[Star, ...]),
-    "classes": (Classes, tuple[ClassInfo, ...]),
-    "list": (List, tuple[Entity, ...]),
-    "get": (Get, Entity),
-    "check": (Check, Checked),
-    "infer": (Infer, Inferred),
-    "explain": (Explain, Explanation),
-    "export": (Export, Document),
-    "history": (History, tuple[LoggedCommit, ...]),
-    "last-seen": (LastSeen, Sighting),
-    "undo": (Undo, Commit),
-    "load-tbox": (LoadTBox, Commit | None),
-    "sparql": (Sparql, SparqlResult),
-    "watch": (Watch, Watching),
-    "renew": (Renew, Done),
+class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Take back a commit by another one; see `schemas.commands.Undo`."""
+
+    VERB: ClassVar[str] = "undo"
+    id: CommandId
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    commit: int | None = None
+
+
+BRIDGE: dict[str, type[Call]] = {
+    call.VERB: call
+    for call in (
+        *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
+        *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
+        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Sparql, Watch, Renew),
+    )
 }
-"""Verb to request and reply: what `semmap/bridge/<verb>` takes and gives. What changes nothing gives None."""
+"""Verb to type: what `semmap/bridge/<verb>` takes."""

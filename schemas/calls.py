@@ -27,7 +27,7 @@ else:
 class Call(Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A message whose answer is an R: `class Get(Call[Entity])`."""
 
-    verb: ClassVar[str]
+    VERB: ClassVar[str]
     """The last chunk of the key at which it is asked; it is a field of the message in commands only."""
 
     @classmethod
@@ -55,12 +55,14 @@ class Relay(Generic[R]):
 @cache
 def reply_type(kind: type[Call[R]]) -> Any:
     """The type of the answers to calls of this type, as its definition says: `Entity` for `Get`."""
-    for base in kind.__dict__.get("__orig_bases__", ()):
-        if isinstance(origin := get_origin(base), type) and issubclass(origin, Call):
-            return get_args(base)[0]
+    for ancestor in kind.__mro__:
+        for base in vars(ancestor).get("__orig_bases__", ()):
+            said = get_args(base)
+            if said and not isinstance(said[0], TypeVar) and isinstance(get_origin(base), type):
+                return said[0]
     raise TypeError(f"{kind.__name__} does not say what it is answered with")
 
 
 def by_verb(*handlers: Handler) -> dict[str, Handler]:
     """Handlers by the verbs that they serve."""
-    return {handler.kind.verb: handler for handler in handlers}
+    return {handler.kind.VERB: handler for handler in handlers}

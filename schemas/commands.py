@@ -291,4 +291,4 @@ COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in C
 """Verb to request type."""
 
 for _verb, _command in COMMANDS.items():
-    _command.verb = _verb
+    _command.VERB = _verb

@@ -2,47 +2,62 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
+from typing import ClassVar
 
-from schemas.entities import Angle, CommandId, Entity, Probability, Provenance, Quaternion, Source, Vector
+from msgspec import Struct, structs
+
+from schemas.calls import Call
+from schemas.entities import (
+    Angle,
+    CommandId,
+    Entity,
+    Name,
+    Pose,
+    Probability,
+    Provenance,
+    Quaternion,
+    Remark,
+    Size,
+    Source,
+    Text,
+    Vector,
+)
 from schemas.explanations import Term, Triple
 
 
-class Placed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity is from now on; what is not given stays as it is."""
+class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
+
+    name: Name
+    class_iri: str
+    pose: Pose | None = None
+    size: Size | None = None
+    ref: Text | None = None
+    alt: tuple[Text, ...] = ()
+    affordances: tuple[str, ...] = ()
+    """Individuals of the TBox, by their local names."""
+
+
+class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What an entity is to be from now on; omitted fields keep their values.
+
+    `alt` replaces all alternative references. An empty `conflict` takes the present one back.
+    """
 
     name: str
+    class_iri: str | None = None
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
+    size: Size | None = None
+    ref: Text | None = None
+    alt: tuple[Text, ...] | None = None
+    conflict: Remark | None = None
 
-
-class Transaction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One atomic change with its preconditions.
-
-    It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
-    `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
-    a second time changes nothing and is answered with the first commit.
-
-    `placed` are entities (`UnknownName` without one) that are somewhere else now; the knowledge base itself
-    says so in triples, because it knows their coordinates.
-
-    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
-    settling). `undoes` are the commits that it takes back.
-    """
-
-    id: CommandId
-    source: Source
-    agent: str = ""
-    verb: str = ""
-    reason: str = ""
-    confidence: Probability | None = None
-    undoes: tuple[int, ...] = ()
-    placed: tuple[Placed, ...] = ()
-    require: tuple[Triple, ...] = ()
-    vacant: tuple[Term, ...] = ()
-    retract: tuple[Triple, ...] = ()
-    insert: tuple[Triple, ...] = ()
+    @property
+    def places(self) -> bool:
+        """Does it say where the entity is?"""
+        return not (self.at is None and self.yaw is None and self.orientation is None)
 
 
 class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -52,10 +67,21 @@ class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     types: tuple[str, ...]
 
 
+class Extent(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How many triples and entities a commit is about."""
+
+    inserted: int
+    retracted: int
+    changed: int
+    removed: int
+
+
 class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One atomic, checked, durable change. `changed` and `removed` are the entities that it touched.
 
     `verb` and `undoes` are those of the transaction. `tbox`: it replaced the TBox, so the classes are others.
+    A very large commit is published `abridged`, without its triples and entities: whoever follows the map
+    takes a new snapshot then. The journal always holds all of it.
     """
 
     seq: int
@@ -68,6 +94,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     confidence: Probability | None = None
     undoes: tuple[int, ...] = ()
     tbox: bool = False
+    abridged: Extent | None = None
     retracted: tuple[Triple, ...] = ()
     inserted: tuple[Triple, ...] = ()
     changed: tuple[Entity, ...] = ()
@@ -86,16 +113,112 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
     @property
+    def extent(self) -> Extent:
+        """How much it is, or was before it was abridged."""
+        return self.abridged or Extent(
+            inserted=len(self.inserted),
+            retracted=len(self.retracted),
+            changed=len(self.changed),
+            removed=len(self.removed),
+        )
+
+    @property
     def names(self) -> tuple[str, ...]:
         """The names of the entities that it touched."""
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
+class Effects(Struct, frozen=True, kw_only=True):
+    """What became of the entities: all that a follower of the map needs of a commit.
+
+    A `Commit` can be read as its effects; its triples are skipped, unread.
+    """
+
+    seq: int
+    id: str
+    reason: str = ""
+    undoes: tuple[int, ...] = ()
+    tbox: bool = False
+    abridged: Extent | None = None
+    changed: tuple[Entity, ...] = ()
+    removed: tuple[Departed, ...] = ()
+
+    @classmethod
+    def of(cls, commit: Commit) -> Effects:
+        """Those of `commit`, abridged if there are very many."""
+        commit = abridged(commit)
+        return cls(
+            seq=commit.seq,
+            id=commit.id,
+            reason=commit.reason,
+            undoes=commit.undoes,
+            tbox=commit.tbox,
+            abridged=commit.abridged,
+            changed=commit.changed,
+            removed=commit.removed,
+        )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the entities that it touched."""
+        return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
+
+
+class Transaction(
+    Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """One atomic change with its preconditions.
+
+    What is wanted of entities travels as intents: `remove` (names), `edit` and `add`, carried out in this
+    order. The knowledge base turns them into triples, because it knows the ones that are there; it raises
+    `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
+
+    `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
+    triple of `require` is asserted. `id` is the command's: the same id a second time changes nothing and is
+    answered with the first commit.
+
+    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
+    settling). `undoes` are the commits that it takes back.
+    """
+
+    VERB: ClassVar[str] = "commit"
+    id: CommandId
+    source: Source
+    agent: str = ""
+    verb: str = ""
+    reason: str = ""
+    confidence: Probability | None = None
+    undoes: tuple[int, ...] = ()
+    remove: tuple[str, ...] = ()
+    edit: tuple[Edit, ...] = ()
+    add: tuple[NewEntity, ...] = ()
+    require: tuple[Triple, ...] = ()
+    retract: tuple[Triple, ...] = ()
+    insert: tuple[Triple, ...] = ()
+
+
+MANY_ENTITIES = 10_000
+MANY_TRIPLES = 20 * MANY_ENTITIES
+"""A commit with more than either is abridged when it is passed on."""
+
+
+def abridged(commit: Commit) -> Commit:
+    """`commit` as it is passed on: one that is very large without its triples and entities."""
+    triples = len(commit.inserted) + len(commit.retracted)
+    if triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES:
+        return commit
+    return structs.replace(commit, abridged=commit.extent, retracted=(), inserted=(), changed=(), removed=())
+
+
 class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All entities as they are after commit `seq`."""
+    """The entities as they are after commit `seq`: all, or a page of them in the order of their names.
+
+    With `more`, further pages follow.
+    """
 
     seq: int
     entities: tuple[Entity, ...]
+    more: bool = False
 
 
 class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -108,7 +231,3 @@ class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Its own: they go when it goes. A reference that another entity uses too is not among them."""
     incoming: tuple[Triple, ...]
     """What other individuals say of it."""
-    coordinates: Term | None
-    size: Term | None
-    preferred: tuple[Term, ...]
-    alternatives: tuple[Term, ...]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
-from schemas.commits import Commit
+from schemas.commits import Commit, Effects
 from schemas.entities import Entity
 from schemas.health import Health
 from schemas.perception import Observations, SegmentedCloud
@@ -43,6 +43,8 @@ class Topic(NamedTuple):
 
 ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
+EFFECTS = Topic(COMMIT.key, Effects, "lossless")
+"""The same publication, read without its triples."""
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")

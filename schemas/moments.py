@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
-from datetime import datetime
+from datetime import date, datetime
 from typing import Annotated, NamedTuple
 
 from msgspec import Meta
@@ -22,6 +22,7 @@ _ROUNDING_NS = 1000
 _WRITTEN = re.compile(
     r"(?P<date>\d{4}-\d\d-\d\d)(?P<time>[Tt ]\d\d(:\d\d(:\d\d([.,]\d+)?)?)?)?(?P<offset>Z|[+-]\d\d:?\d\d)?"
 )
+_OF_TODAY = re.compile(r"\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
 _LASTS_S = {
     len(time): seconds for time, seconds in (("", 86_400), ("T12", 3600), ("T12:30", 60), ("T12:30:05", 1))
 }
@@ -29,9 +30,10 @@ _LASTS_S = {
 
 When = Annotated[int, Meta(ge=0)] | Annotated[float, Meta(ge=0.0)] | Annotated[str, Meta(min_length=1)]
 """As it is written: a commit's number, seconds since 1970, a stamp as replies have it (`stamp_ns`), or ISO
-8601 (without an offset it is local time, that of the client where a client of ours sends it).
+8601; without an offset it is local time, that of the client where one of ours sends it, and without a date
+it is today's.
 
-A time is as long as it is written: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
+A time denotes its written precision: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
 
 
 class Moment(NamedTuple):
@@ -48,13 +50,19 @@ def read_moment(when: When) -> Moment:
         return _read_text(when) if isinstance(when, str) else _read_number(when)
     except (ValueError, OverflowError, OSError):
         raise BadRequest(
-            f"'{when}' is neither a commit's number nor a time like 2026-03-01T12:30 or 1772368200.5"
+            f"'{when}' is neither a commit number nor a time like 2026-03-01T12:30, 12:30 or 1772368200.5"
         ) from None
 
 
 def with_offset(when: When | None) -> When | None:
-    """The same for a reader in another time zone: a time without an offset gets that of this machine."""
-    if not isinstance(when, str) or (written := _WRITTEN.fullmatch(when)) is None or written["offset"]:
+    """The same for a reader in another time zone.
+
+    A time without an offset gets that of this machine, and one without a date today's.
+    """
+    if not isinstance(when, str):
+        return when
+    when = _with_date(when)
+    if (written := _WRITTEN.fullmatch(when)) is None or written["offset"]:
         return when
     try:
         return when + datetime.fromisoformat(when).astimezone().strftime("%z")[:5]
@@ -66,13 +74,17 @@ def _read_text(text: str) -> Moment:
     for number in (int, float):
         with contextlib.suppress(ValueError):
             return _read_number(number(text))
-    if (written := _WRITTEN.fullmatch(text)) is None:
+    if (written := _WRITTEN.fullmatch(_with_date(text))) is None:
         raise ValueError
     time = written["time"] or ""
     begin = datetime.fromisoformat(f"{written['date']}{time or 'T00'}{written['offset'] or ''}")
     stamp_ns = round(begin.timestamp() * 1_000_000) * 1000
     seconds = _LASTS_S.get(len(time))
     return _exactly(stamp_ns) if seconds is None else _lasting(stamp_ns, seconds)
+
+
+def _with_date(text: str) -> str:
+    return f"{date.today().isoformat()}T{text}" if _OF_TODAY.fullmatch(text) else text
 
 
 def _read_number(number: float) -> Moment:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta, Struct, field
 
+from schemas.calls import Call
 from schemas.entities import Name, Pose, Size
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
@@ -50,12 +51,6 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     shape_commit: int
 
 
-class Spawn(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Make bodies, all in one go; each succeeds or fails by itself."""
-
-    bodies: tuple[BodyOrder, ...]
-
-
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What came of it: the bodies made, and a reason for each that could not be."""
 
@@ -63,15 +58,23 @@ class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     failed: dict[str, str]
 
 
-class Delete(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Take bodies away; one that is not there is no error."""
+class Spawn(Call[Spawned], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Make bodies, all in one go; each succeeds or fails by itself."""
 
-    names: tuple[str, ...]
+    VERB: ClassVar[str] = "spawn"
+    bodies: tuple[BodyOrder, ...]
 
 
 class Deleted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The bodies that were there and are gone."""
 
+    names: tuple[str, ...]
+
+
+class Delete(Call[Deleted], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Take bodies away; one that is not there is no error."""
+
+    VERB: ClassVar[str] = "delete"
     names: tuple[str, ...]
 
 
@@ -83,12 +86,6 @@ class Placement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     commit: int | None = None
 
 
-class MoveBodies(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Put bodies elsewhere: kinematically, then released to physics."""
-
-    placements: tuple[Placement, ...]
-
-
 class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The bodies that were moved, where there was room for them, and a reason for each that was not."""
 
@@ -96,14 +93,11 @@ class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     failed: dict[str, str]
 
 
-class SceneQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Every body as it stands."""
+class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Put bodies elsewhere: kinematically, then released to physics."""
 
-
-class SurfaceQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What these bodies look like."""
-
-    names: tuple[str, ...]
+    VERB: ClassVar[str] = "move"
+    placements: tuple[Placement, ...]
 
 
 class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -125,18 +119,26 @@ class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     surfaces: dict[str, Surface]
 
 
-class PictureQuery(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
+class SurfaceQuery(Call[Surfaces], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What these bodies look like."""
 
-    camera: str = ""
-    width: Annotated[int, Meta(ge=16, le=4096)] = 960
-    height: Annotated[int, Meta(ge=16, le=4096)] = 640
+    VERB: ClassVar[str] = "surfaces"
+    names: tuple[str, ...]
 
 
 class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A PNG file."""
 
     png: bytes
+
+
+class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
+
+    VERB: ClassVar[str] = "picture"
+    camera: str = ""
+    width: Annotated[int, Meta(ge=16, le=4096)] = 960
+    height: Annotated[int, Meta(ge=16, le=4096)] = 640
 
 
 class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -175,6 +177,12 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sim_time_s: float
     world: str
     bodies: tuple[Body, ...]
+
+
+class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Every body as it stands."""
+
+    VERB: ClassVar[str] = "snapshot"
 
 
 class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -1,7 +1,7 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
 from nodes.bus.asking import TIMEOUT_S, Encoded, ask, ask_later, read_reply
-from nodes.bus.lifelines import Lifelines
+from nodes.bus.lifelines import Lifelines, follow_presence
 from nodes.bus.pubsub import follow, follow_cameras, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import DEFAULT_ENDPOINT, PATIENCE_S, RESTART_S, Network, open_session
@@ -19,6 +19,7 @@ __all__ = [
     "ask_later",
     "follow",
     "follow_cameras",
+    "follow_presence",
     "listen",
     "open_session",
     "publisher",

@@ -1,10 +1,13 @@
-"""What was asked of a node ends when the node is gone.
+"""Which nodes are there; what was asked of a node ends when the node is gone.
 
 Zenoh (1.10.2) ends the questions that a peer has when it goes. One that was sent within the few milliseconds
 until that is noticed nobody has, and it waits for its time-out.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
 
 import zenoh
 
@@ -39,3 +42,19 @@ class Lifelines:
         gone = keys.live_node(key)
         for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
             self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]
+
+
+def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:
+    """Call `receive(there)` whenever the first process of a node appears or the last one is gone.
+
+    It is called on a thread of Zenoh's, at first when one is there already. The subscriber is returned.
+    """
+    there: set[str] = set()
+
+    def on_change(sample: zenoh.Sample) -> None:
+        was = bool(there)
+        (there.discard if sample.kind == zenoh.SampleKind.DELETE else there.add)(str(sample.key_expr))
+        if was != bool(there):
+            receive(bool(there))
+
+    return session.liveliness().declare_subscriber(keys.live_key(node), on_change, history=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from concurrent.futures import Future
 from typing import Any
 
 from msgspec import structs
@@ -16,11 +17,14 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
 from ontology.model_sizes import own_size_m
+from schemas import bridge, errors
 from schemas import commands as c
-from schemas import errors
 from schemas.entities import Entity
 from schemas.moments import When
 from schemas.replies import SystemStatus
+
+Listed = tuple[Entity, ...] | dict[str, Any]
+"""The entities, or the document of another format."""
 
 
 class Answers:
@@ -35,22 +39,22 @@ class Answers:
         self._health = health
         self._bridge = bridge
 
-    def list(self, query: c.List) -> Any:
+    def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
-        if query.class_ is not None:
-            query = structs.replace(query, class_=self._class_name(query.class_, query.as_of))
+        class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
         if query.as_of is not None:
-            found = self._bridge.ask_later("list", query, patience_s=bus.RESTART_S)
+            asked = bridge.Entities(class_=class_, as_of=query.as_of)
+            found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
             return then(found, lambda then_there: self._formatted(map(with_size, then_there), query.format))
-        entities = self._door.entities_of(query.class_)
+        entities = self._door.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
 
-    def get(self, query: c.Get) -> Any:
+    def get(self, query: c.Get) -> Entity | Future[Entity]:
         """One entity, with what has become of its body."""
         if query.as_of is not None:
-            return then(self._bridge.ask_later("get", query, patience_s=bus.RESTART_S), with_size)
+            return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
         return self._with_body(self._door.entity(query.name))
 
     def status(self, _: c.Status) -> SystemStatus:
@@ -65,7 +69,7 @@ class Answers:
             problems=tuple(self._keeping.problems()),
         )
 
-    def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Any:
+    def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
         entities = tuple(found)
         if wanted == "lu4r":
             return formats.lu4r(entities)

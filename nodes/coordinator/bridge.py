@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, TypeVar
 
 from nodes import bus
 from nodes.runtime.futures import settle
-from nodes.runtime.loop import Node, Relay
+from nodes.runtime.loop import Node
 from schemas import errors, keys
-from schemas.bridge import BRIDGE
+from schemas.calls import Call, Relay
 from schemas.commands import Command
+
+R = TypeVar("R")
 
 _LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
 """What keeps the knowledge base busy; the heart goes on beating meanwhile."""
@@ -26,47 +28,35 @@ class Bridge:
     def __init__(self, node: Node) -> None:
         self._node = node
 
-    def ask(self, verb: str, message: Any) -> Any:
+    def ask(self, call: Call[R]) -> R:
         """The answer; nothing else is done until it comes. Raises its error."""
-        return self._node.ask(keys.BRIDGE, verb, message, BRIDGE[verb][1], timeout_s=_USUALLY_S)
+        return self._node.ask(keys.BRIDGE, call, timeout_s=_USUALLY_S)
 
-    def ask_later(self, verb: str, message: Any, *, patience_s: float = 0.0) -> Future[Any]:
+    def ask_later(self, call: Call[R], *, patience_s: float = 0.0) -> Future[R]:
         """The answer when it comes; NoAnswer when nobody serves the key for `patience_s`."""
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1], patience_s=patience_s)
+        return self._node.ask_later(keys.BRIDGE, call, patience_s=patience_s)
 
-    def change(self, verb: str, message: Any) -> Future[Any]:
+    def change(self, call: Call[R]) -> Future[R]:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        timeout_s, beating = _LONG_S.get(verb, _AT_ONCE_S), verb in _LONG_S
-        future: Future[Any] = Future()
+        timeout_s, beating = _LONG_S.get(call.VERB, _AT_ONCE_S), call.VERB in _LONG_S
+        future: Future[R] = Future()
         settle(
             future,
-            lambda: self._node.ask(
-                keys.BRIDGE,
-                verb,
-                message,
-                BRIDGE[verb][1],
-                timeout_s=timeout_s,
-                patience_s=0.0,
-                beating=beating,
-            ),
+            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=0.0, beating=beating),
         )
-        return self.change_later(verb, message) if _is_unanswered(future) else future
+        return self.change_later(call) if _is_unanswered(future) else future
 
-    def change_later(self, verb: str, message: Any) -> Future[Any]:
+    def change_later(self, call: Call[R]) -> Future[R]:
         """The answer when it comes; while nobody serves the key it is asked again, over a restart.
 
         What is asked has the id of its command, so that it is done once.
         """
-        kind, timeout_s = BRIDGE[verb][1], _LONG_S.get(verb, _USUALLY_S)
-        return self._node.ask_later(
-            keys.BRIDGE, verb, message, kind, timeout_s=timeout_s, patience_s=bus.RESTART_S
-        )
+        timeout_s = _LONG_S.get(call.VERB, _USUALLY_S)
+        return self._node.ask_later(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=bus.RESTART_S)
 
-    def relay(self, command: Command) -> Relay:
+    def relay(self, command: Command[R]) -> Relay[R]:
         """Let the knowledge base answer a command itself."""
-        verb = str(command.__struct_config__.tag)
-        timeout_s = _BESIDE_S.get(verb, bus.TIMEOUT_S)
-        return Relay(keys.BRIDGE, verb, command, BRIDGE[verb][1], timeout_s)
+        return Relay(keys.BRIDGE, command, _BESIDE_S.get(command.VERB, bus.TIMEOUT_S))
 
 
 def _is_unanswered(asked: Future[Any]) -> bool:

@@ -9,29 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from schemas import errors
-from schemas.bridge import Outcome, StarQuery, Transactions
-from schemas.commits import Star
+from schemas.bridge import MadeBy, Outcome, Transactions
+from schemas.calls import Call
+from schemas.commits import Transaction
 
 T = TypeVar("T")
 
 
-class Question(NamedTuple):
-    """What is asked at `semmap/bridge/<verb>`."""
-
-    verb: str
-    message: Any
-
-
-Ask = Callable[[str, Any], Any]
-"""`ask(verb, message)` gives the answer, or raises a SemmapError."""
-AskLater = Callable[[str, Any], Future[Any]]
+Ask = Callable[[Call], Any]
+"""`ask(call)` gives the answer of the knowledge base, or raises a SemmapError."""
+AskLater = Callable[[Call], Future[Any]]
 """The same, without waiting."""
-Talk = Generator[Question, Any, T]
+Talk = Generator[Call, Any, T]
 Answer = Any
 """A message or a SemmapError."""
+
+
+def ask(call: Call[T]) -> Talk[T]:
+    """The answer to one call, with its type: `answer = yield from` this."""
+    answer: T = yield call
+    return answer
 
 
 def hold(talk: Talk[T], ask: Ask) -> T:
@@ -39,11 +39,11 @@ def hold(talk: Talk[T], ask: Ask) -> T:
     answer: Answer = None
     while True:
         try:
-            question = _go_on(talk, answer)
+            call = _go_on(talk, answer)
         except StopIteration as end:
             result: T = end.value
             return result
-        answer = _answer_of(lambda question=question: ask(*question))  # type: ignore[misc]
+        answer = _answer_of(lambda call=call: ask(call))  # type: ignore[misc]
 
 
 def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
@@ -52,13 +52,13 @@ def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
 
     def go_on(answer: Answer) -> None:
         try:
-            question = _go_on(talk, answer)
+            call = _go_on(talk, answer)
         except StopIteration as end:
             future.set_result(end.value)
         except Exception as error:
             future.set_exception(error)
         else:
-            ask_later(*question).add_done_callback(lambda done: go_on(_answer_of(done.result)))
+            ask_later(call).add_done_callback(lambda done: go_on(_answer_of(done.result)))
 
     go_on(None)
     return future
@@ -69,19 +69,19 @@ def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:
     results: dict[int, T | errors.SemmapError] = {}
     answers: dict[int, Answer] = dict.fromkeys(range(len(talks)))
     while answers:
-        questions: dict[int, Question] = {}
+        calls: dict[int, Call] = {}
         for i, answer in answers.items():
             try:
-                questions[i] = _go_on(talks[i], answer)
+                calls[i] = _go_on(talks[i], answer)
             except StopIteration as end:
                 results[i] = end.value
             except errors.SemmapError as error:
                 results[i] = error
-        answers = yield from _ask_together(questions)
+        answers = yield from _ask_together(calls)
     return [results[i] for i in range(len(talks))]
 
 
-def _go_on(talk: Talk[T], answer: Answer) -> Question:
+def _go_on(talk: Talk[T], answer: Answer) -> Call:
     return talk.throw(answer) if isinstance(answer, errors.SemmapError) else talk.send(answer)
 
 
@@ -92,55 +92,49 @@ def _answer_of(ask: Callable[[], Any]) -> Answer:
         return error
 
 
-def _ask_together(questions: Mapping[int, Question]) -> Talk[dict[int, Answer]]:
-    """The answers, in the order of the questions."""
-    by_verb: dict[str, dict[int, Any]] = {}
-    for i, (verb, message) in questions.items():
-        by_verb.setdefault(verb, {})[i] = message
+def _ask_together(calls: Mapping[int, Call]) -> Talk[dict[int, Answer]]:
+    """The answers, in the order of the calls."""
+    by_kind: dict[type[Call], dict[int, Any]] = {}
+    for i, call in calls.items():
+        by_kind.setdefault(type(call), {})[i] = call
     answers: dict[int, Answer] = {}
-    for verb, messages in by_verb.items():
-        together = _TOGETHER.get(verb) if len(messages) > 1 else None
-        answers.update((yield from (together(messages) if together else _each(verb, messages))))
-    return {i: answers[i] for i in questions}
+    for kind, alike in by_kind.items():
+        together = _TOGETHER.get(kind, _each) if len(alike) > 1 else _each
+        answers.update((yield from together(alike)))
+    return {i: answers[i] for i in calls}
 
 
-def _each(verb: str, messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
+def _each(calls: Mapping[int, Call]) -> Talk[dict[int, Answer]]:
     answers: dict[int, Answer] = {}
-    for i, message in messages.items():
+    for i, call in calls.items():
         try:
-            answers[i] = yield Question(verb, message)
+            answers[i] = yield call
         except errors.SemmapError as error:
             answers[i] = error
     return answers
 
 
-def _stars(messages: Mapping[int, StarQuery]) -> Talk[dict[int, Answer]]:
-    names = tuple(dict.fromkeys(name for query in messages.values() for name in query.names))
-    if any(query.together and len(query.names) > 1 for query in messages.values()):
-        return (yield from _each("star", messages))
-    try:
-        found: tuple[Star, ...] = yield Question("star", StarQuery(names=names, together=False))
-    except errors.Refused:  # one of them
-        return (yield from _each("star", messages))
-    stars = {star.name: star for star in found}
-    return {i: tuple(stars[name] for name in query.names) for i, query in messages.items()}
+def _made_by(queries: Mapping[int, MadeBy]) -> Talk[dict[int, Answer]]:
+    ids = tuple(dict.fromkeys(id_ for query in queries.values() for id_ in query.ids))
+    commits = yield from ask(MadeBy(ids=ids))
+    made = dict(zip(ids, commits, strict=True))
+    return {i: tuple(made[id_] for id_ in query.ids) for i, query in queries.items()}
 
 
-def _commits(messages: Mapping[int, Any]) -> Talk[dict[int, Answer]]:
-    several = Transactions(transactions=tuple(messages.values()))
+def _commits(transactions: Mapping[int, Transaction]) -> Talk[dict[int, Answer]]:
     try:
-        outcomes: tuple[Outcome, ...] = yield Question("commits", several)
+        outcomes = yield from ask(Transactions(transactions=tuple(transactions.values())))
     except errors.BadRequest:  # one of them
-        return (yield from _each("commit", messages))
-    return {i: _said(outcome) for i, outcome in zip(messages, outcomes, strict=True)}
+        return (yield from _each(transactions))
+    return {i: _said(outcome) for i, outcome in zip(transactions, outcomes, strict=True)}
 
 
 def _said(outcome: Outcome) -> Answer:
     return outcome.commit if outcome.error is None else errors.from_message(outcome.error)
 
 
-_TOGETHER: Mapping[str, Callable[[Mapping[int, Any]], Talk[dict[int, Answer]]]] = {
-    "star": _stars,
-    "commit": _commits,
+_TOGETHER: Mapping[type[Call], Callable[[Mapping[int, Any]], Talk[dict[int, Answer]]]] = {
+    MadeBy: _made_by,
+    Transaction: _commits,
 }
-"""The questions that can be asked together."""
+"""The calls that can be asked together."""

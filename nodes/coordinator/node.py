@@ -6,7 +6,7 @@ import gc
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, TypeVar
 
 from msgspec import structs
 
@@ -24,30 +24,18 @@ from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
+from schemas import calls, errors, keys, wording
 from schemas import commands as c
-from schemas import errors, keys, wording
-from schemas.bridge import SnapshotQuery
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Effects, Snapshot
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
 from schemas.scenes import Poses
 
+R = TypeVar("R")
+
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
-_RELAYED: tuple[type[c.Command], ...] = (
-    c.History,
-    c.LastSeen,
-    c.Check,
-    c.Infer,
-    c.Explain,
-    c.Export,
-    c.Classes,
-    c.Sparql,
-    c.Watch,
-    c.Renew,
-)
-"""What the knowledge base answers as it is asked."""
 
 
 class Coordinator:
@@ -69,28 +57,37 @@ class Coordinator:
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
         running = Running(config.truth, door, self._keeping, self._ask_sim)
-        functions: dict[type[c.Command], Callable[[Any], Any]] = {
-            c.Add: self._with_body,
-            c.Update: self._with_body,
-            c.Remove: self._noted,
-            c.Clear: self._noted,
-            c.Load: self._turns.change,
-            c.Undo: self._turns.change,
-            c.List: answers.list,
-            c.Get: answers.get,
-            c.Status: answers.status,
-            c.Move: running.move,
-            c.Pause: running.pause,
-            c.StepOnce: running.step,
-            c.Reset: running.reset,
-            c.TakePicture: running.picture,
-        }
-        functions.update(dict.fromkeys(_RELAYED, self._bridge.relay))
+        relay = self._bridge.relay
+        of_the_map = calls.by_verb(
+            c.Add.answered_by(self._with_body),
+            c.Update.answered_by(self._with_body),
+            c.Remove.answered_by(self._noted),
+            c.Clear.answered_by(self._noted),
+            c.Load.answered_by(self._turns.change),
+            c.Undo.answered_by(self._turns.change),
+            c.List.answered_by(answers.list),
+            c.Get.answered_by(answers.get),
+            c.Move.answered_by(running.move),
+            c.Pause.answered_by(running.pause),
+            c.StepOnce.answered_by(running.step),
+            c.Reset.answered_by(running.reset),
+            c.TakePicture.answered_by(running.picture),
+            c.History.answered_by(relay),
+            c.LastSeen.answered_by(relay),
+            c.Check.answered_by(relay),
+            c.Infer.answered_by(relay),
+            c.Explain.answered_by(relay),
+            c.Export.answered_by(relay),
+            c.Classes.answered_by(relay),
+            c.Sparql.answered_by(relay),
+            c.Watch.answered_by(relay),
+            c.Renew.answered_by(relay),
+        )
         handlers = {
-            verb: (kind, functions[kind] if kind is c.Status else self._with_map(functions[kind]))
-            for verb, kind in c.COMMANDS.items()
+            **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
+            **calls.by_verb(c.Status.answered_by(answers.status)),
         }
-        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.EFFECTS, self._on_commit)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map)
@@ -103,7 +100,7 @@ class Coordinator:
 
     # Following
 
-    def _on_commit(self, commit: Commit) -> None:
+    def _on_commit(self, commit: Effects) -> None:
         if not self._door.take(commit) or commit.tbox:
             self._fetch_map()
         self._changed.update(commit.names)
@@ -131,10 +128,9 @@ class Coordinator:
         if self._has_map:
             self._keeping.keep()
             self._answer_waiting()
-            self._node.describe(
-                f"{wording.entities(len(self._door.entities))},"
-                f" {wording.bodies(len(self._keeping.scene.bodies))}"
-            )
+            scene = self._keeping.scene
+            bodies = f", {wording.bodies(len(scene.bodies))}" if scene.known else ""
+            self._node.describe(f"{wording.entities(len(self._door.entities))}{bodies}")
 
     def _catch_up(self) -> None:
         """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""
@@ -150,33 +146,39 @@ class Coordinator:
             return
         self._fetching = True
         fetched: list[Any] = []
+        pages = self._door.begin_pages()
 
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
                 fetched.append(future.result())
-            self._bridge.ask_later("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+            self._bridge.ask_later(pages.query).add_done_callback(on_page)
 
-        def on_snapshot(future: Future[Snapshot]) -> None:
-            self._fetching = False
+        def on_page(future: Future[Snapshot]) -> None:
             if future.exception() is not None or not fetched:
+                self._fetching = False
                 return
+            pages.take(future.result())
+            if not pages.are_complete:
+                self._bridge.ask_later(pages.query).add_done_callback(on_page)
+                return
+            self._fetching = False
             self._door.classes = ClassNames(fetched[0])
-            self._door.begin(future.result())
+            self._door.begin(pages.snapshot)
             self._has_map = True
             gc.freeze()  # most of the map stays as it is: the collector need not look through it again
             self._node.ready(wording.entities(len(self._door.entities)))
             self._keep()
 
-        self._bridge.ask_later("classes", c.Classes()).add_done_callback(on_classes)
+        self._bridge.ask_later(c.Classes()).add_done_callback(on_classes)
 
     # Changing
 
-    def _with_body(self, command: c.Add | c.Update) -> Future[Any]:
+    def _with_body(self, command: c.Add | c.Update) -> Future[Changed]:
         """The reply waits for the body if that is wanted."""
         made = self._noted(command)
         if not command.wait:
             return made
-        future: Future[Any] = Future()
+        future: Future[Changed] = Future()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
@@ -238,8 +240,8 @@ class Coordinator:
 
         return guarded
 
-    def _ask_sim(self, verb: str, message: Any, kind: Any) -> Future[Any]:
-        return self._node.ask_later(keys.SIM, verb, message, kind, timeout_s=_SIM_TIMEOUT_S)
+    def _ask_sim(self, call: calls.Call[R]) -> Future[R]:
+        return self._node.ask_later(keys.SIM, call, timeout_s=_SIM_TIMEOUT_S)
 
 
 def _spoken(state: BodyState) -> str:

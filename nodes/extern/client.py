@@ -66,9 +66,9 @@ class Client(Verbs):
         Raises BadRequest, before anything is sent, for a field that is not of its type, and NoAnswer when the
         reply takes longer than `timeout_s` [s].
         """
-        signed, first_hand = _checked(command, self._signature), command.verb in keys.OF_THE_MAP
+        signed, first_hand = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
         reply: R = self._ask(
-            command.verb, signed, reply_type(type(command)), timeout_s=timeout_s, first_hand=first_hand
+            command.VERB, signed, reply_type(type(command)), timeout_s=timeout_s, first_hand=first_hand
         )
         return reply
 

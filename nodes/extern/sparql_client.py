@@ -68,6 +68,7 @@ class StandingQuery:
                 if not news.appeared and not news.disappeared:
                     seq = again.seq
                     continue
+                seq = min(seq, again.seq - 1)  # another map's numbers may be lower
             if news.error:
                 raise errors.Refused(news.error)
             if news.seq <= seq:

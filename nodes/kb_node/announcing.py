@@ -8,7 +8,7 @@ import zenoh
 
 from nodes import bus
 from schemas import codec, keys
-from schemas.commits import Commit
+from schemas.commits import Commit, abridged
 from schemas.entities import Entity
 
 
@@ -23,8 +23,9 @@ class Announcer:
         self._types = {entity.name: entity.types for entity in entities}
 
     def announce(self, commit: Commit) -> None:
-        """Tell of the commit; of its entities only if somebody follows them."""
-        self._commits.put(codec.encode(commit), encoding=codec.encoding_of(commit))
+        """Tell of the commit, abridged if it is very large; of its entities only if somebody follows them."""
+        passed_on = abridged(commit)
+        self._commits.put(codec.encode(passed_on), encoding=codec.encoding_of(passed_on))
         if self._entities_are_watched():
             for gone in commit.removed:
                 self._delete(gone.name, self._types.get(gone.name, gone.types))

@@ -13,6 +13,7 @@ from nodes.kb_node import answers, gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
+from nodes.kb_node.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
@@ -22,16 +23,19 @@ from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.bridge import (
-    BRIDGE,
+    Entities,
     LoadDocument,
     Loaded,
     LoadTBox,
+    MadeBy,
     Outcome,
     Recall,
     SnapshotQuery,
     StarQuery,
+    TakeBack,
     Transactions,
 )
+from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
@@ -41,13 +45,11 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
-    List,
     Renew,
     Sparql,
-    Undo,
     Watch,
 )
-from schemas.commits import Commit, Snapshot, Star, Transaction
+from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
@@ -67,24 +69,46 @@ class KnowledgeBase:
         self._past = history.Past(journal)
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
+        self._pages = Pages(self.map)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
-        functions = {
-            name.removeprefix("on_").replace("_", "-"): getattr(self, name)
-            for name in dir(self)
-            if name.startswith("on_")
-        }
-        node.serve(keys.BRIDGE, {verb: (BRIDGE[verb][0], function) for verb, function in functions.items()})
+        handlers = self._handlers()
+        node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
-            node.serve_one(keys.CMD, verb, BRIDGE[verb][0], functions[verb])
+            node.serve_one(keys.CMD, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.ready(self._summary())
 
-    def on_commit(self, transaction: Transaction) -> Commit | None:
+    def _handlers(self) -> dict[str, Handler]:
+        return by_verb(
+            Transaction.answered_by(self.on_commit),
+            Transactions.answered_by(self.on_commits),
+            LoadDocument.answered_by(self.on_load),
+            SnapshotQuery.answered_by(self.on_snapshot),
+            Recall.answered_by(self.on_recall),
+            StarQuery.answered_by(self.on_star),
+            MadeBy.answered_by(self.on_made_by),
+            Classes.answered_by(self.on_classes),
+            Entities.answered_by(self.on_list),
+            Get.answered_by(self.on_get),
+            Infer.answered_by(self.on_infer),
+            Explain.answered_by(self.on_explain),
+            Export.answered_by(self.on_export),
+            History.answered_by(self.on_history),
+            LastSeen.answered_by(self.on_last_seen),
+            TakeBack.answered_by(self.on_undo),
+            LoadTBox.answered_by(self.on_load_tbox),
+            Check.answered_by(self.on_check),
+            Sparql.answered_by(self.on_sparql),
+            Watch.answered_by(self.on_watch),
+            Renew.answered_by(self.on_renew),
+        )
+
+    def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return self._commit(transaction)
+        return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
@@ -141,7 +165,13 @@ class KnowledgeBase:
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
             commit = self._commit(transaction)
-            return Loaded(commit=commit, skipped=tuple(sorted_out.skipped), notes=tuple(sorted_out.notes))
+            names = () if commit is None else tuple(entity.name for entity in commit.changed)
+            return Loaded(
+                commit=_effects(commit),
+                names=names,
+                skipped=tuple(sorted_out.skipped),
+                notes=tuple(sorted_out.notes),
+            )
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -157,9 +187,9 @@ class KnowledgeBase:
         finally:
             self._node.describe(self._summary())
 
-    def on_snapshot(self, _: SnapshotQuery) -> Snapshot:
-        """Every entity, as of the last commit."""
-        return self.map.snapshot()
+    def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
+        """The entities as of the last commit, or a page of them."""
+        return self._pages.snapshot(query)
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
         """Commits of the history, whole."""
@@ -167,13 +197,17 @@ class KnowledgeBase:
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
-        return self.map.stars(query.names, together=query.together)
+        return self.map.stars(query.names)
+
+    def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
+        """The commits that some commands have made."""
+        return tuple(_effects(self._journal.commit_of(id_)) for id_ in query.ids)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
         return tuple(self.map.class_table())
 
-    def on_list(self, query: List) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
+    def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then."""
         if query.as_of is not None:
             return self._aside.submit(
@@ -209,19 +243,19 @@ class KnowledgeBase:
             return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
-    def on_undo(self, command: Undo) -> Commit:
+    def on_undo(self, command: TakeBack) -> Effects:
         """A commit that takes back another one."""
-        return self._published_if_new(lambda: undo.undo(self.map, self._journal, command))
+        return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
 
-    def on_load_tbox(self, load: LoadTBox) -> Commit | None:
+    def on_load_tbox(self, load: LoadTBox) -> Effects | None:
         """Another TBox, in one commit; none for the one that holds."""
         read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
-            return self._journal.commit_of(load.id)
+            return _effects(self._journal.commit_of(load.id))
         try:
-            return self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+            return Effects.of(self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox)))
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
@@ -264,7 +298,11 @@ class KnowledgeBase:
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
     if isinstance(result, errors.SemmapError):
         return Outcome(error=errors.to_message(result))
-    return Outcome(commit=result)
+    return Outcome(commit=_effects(result))
+
+
+def _effects(commit: Commit | None) -> Effects | None:
+    return None if commit is None else Effects.of(commit)
 
 
 def run(config: KbConfig) -> None:

@@ -10,12 +10,12 @@ from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Undo
+from schemas.bridge import TakeBack
 from schemas.commits import Commit, Transaction
 from schemas.explanations import Triple
 
 
-def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
+def undo(semantic_map: SemanticMap, journal: Journal, command: TakeBack) -> Commit:
     """Take back a commit with the settling that followed it, or the TBox that it let hold.
 
     Raises Refused when there is nothing to take back, later commits rest on it, its author outranks who wants
@@ -43,7 +43,7 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: Undo) -> Commit:
     return commit
 
 
-def _reverse(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit | None:
+def _reverse(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit | None:
     later = _later(journal, target)
     _require_in_force(target, later if target.names else map(journal.commit, journal.undoing(target.seq)))
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
@@ -54,7 +54,7 @@ def _reverse(semantic_map: SemanticMap, journal: Journal, command: Undo, target:
     return semantic_map.commit(_transaction(command, undone, retract, insert, require=retract))
 
 
-def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: Undo, target: Commit) -> Commit:
+def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit:
     """Let the TBox hold again that held before."""
     later = [journal.commit(seq) for seq in journal.tbox_changes(after=target.seq)]
     _require_in_force(target, later)
@@ -67,7 +67,7 @@ def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: Undo, ta
 
 
 def _transaction(
-    command: Undo,
+    command: TakeBack,
     undone: Sequence[Commit],
     retract: tuple[Triple, ...],
     insert: tuple[Triple, ...],
@@ -109,7 +109,7 @@ def _named(journal: Journal, seq: int) -> Commit:
     return journal.commit(seq)
 
 
-def _require_authority(command: Undo, target: Commit) -> None:
+def _require_authority(command: TakeBack, target: Commit) -> None:
     if command.source in ("scene", "perception") and target.source in ("operator", "file"):
         raise errors.Refused(f"commit {target.seq} is an operator's, so only an operator may take it back")
 

@@ -29,13 +29,13 @@ from nodes.perception_node.tracking.tracks import Tracks
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
 from schemas import codec, keys, wording
-from schemas.bridge import BRIDGE, SnapshotQuery
+from schemas.bridge import SnapshotQuery
 from schemas.commands import Add, Classes, Command, LastSeen
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Effects, Snapshot
 from schemas.entities import Size
 from schemas.errors import UnknownName
 from schemas.health import Health
-from schemas.replies import Changed, Sighting
+from schemas.replies import Sighting
 
 _COMPLAINT_S = 60.0
 """What is wrong is over when it was not heard of for so long."""
@@ -62,7 +62,7 @@ class Perception:
         self._node = node
         self._config = config
         self._usual_m = usual_m
-        self._map = MapReplica()
+        self._map = MapReplica[Effects]()
         self._classes = ClassHierarchy()
         self._tracks = Tracks()
         self._fetching = False
@@ -76,7 +76,7 @@ class Perception:
         self._looked_at = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
-        node.follow(keys.COMMIT, self._on_commit)
+        node.follow(keys.EFFECTS, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
@@ -147,7 +147,7 @@ class Perception:
     def _add(self, command: Add) -> None:
         """Ask first whether anything was ever called so: names were given before this process began."""
         assert command.name is not None
-        asked = self._ask_kb("last-seen", LastSeen(name=command.name))
+        asked = self._node.ask_later(keys.BRIDGE, LastSeen(name=command.name))
         asked.add_done_callback(partial(self._on_sighting, command))
 
     def _on_sighting(self, command: Add, done: Future[Sighting]) -> None:
@@ -161,7 +161,7 @@ class Perception:
             self._on_told(command, done)
 
     def _send(self, command: Command) -> None:
-        future = self._node.ask_later(keys.CMD, str(command.__struct_config__.tag), command, Changed)
+        future = self._node.ask_later(keys.CMD, command)
         future.add_done_callback(partial(self._on_told, command))
 
     def _on_told(self, command: Command, done: Future[Any]) -> None:
@@ -173,7 +173,7 @@ class Perception:
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
         self._on_complaint(f"the map did not take what was seen: {error}")
 
-    def _on_commit(self, commit: Commit) -> None:
+    def _on_commit(self, commit: Effects) -> None:
         if not self._map.take(commit) or commit.tbox:
             self._fetch_map()
 
@@ -200,7 +200,7 @@ class Perception:
         def on_classes(future: Future[Any]) -> None:
             if future.exception() is None:
                 classes.append(hierarchy_of(future.result(), self._usual_m))
-            self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+            self._node.ask_later(keys.BRIDGE, SnapshotQuery()).add_done_callback(on_snapshot)
 
         def on_snapshot(future: Future[Snapshot]) -> None:
             self._fetching = False
@@ -211,10 +211,7 @@ class Perception:
             self._told_commit = min(self._told_commit, self._map.seq)
             self._node.ready("no frames of cameras yet")
 
-        self._ask_kb("classes", Classes()).add_done_callback(on_classes)
-
-    def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
+        self._node.ask_later(keys.BRIDGE, Classes()).add_done_callback(on_classes)
 
 
 def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 
 from ontology import vocabulary as v
+from schemas import wording
 from schemas.commits import Commit
 from schemas.entities import Entity
 from schemas.explanations import Triple
@@ -17,7 +18,8 @@ def headline(commit: Commit) -> str:
     """What a commit did, in one line: `12  operator ann: add beer1 (+9 -0)`."""
     who = f"{commit.source} {commit.agent}".strip()
     why = commit.reason or _entities(commit)
-    return f"{commit.seq}  {who}: {why} (+{len(commit.inserted)} -{len(commit.retracted)})"
+    extent = commit.extent
+    return f"{commit.seq}  {who}: {why} (+{extent.inserted} -{extent.retracted})"
 
 
 def page(commit: Commit) -> str:
@@ -39,6 +41,8 @@ def page(commit: Commit) -> str:
 
 
 def _entities(commit: Commit) -> str:
+    if commit.abridged is not None:
+        return wording.entities(commit.abridged.changed + commit.abridged.removed)
     names = [entity.name for entity in commit.changed] + [gone.name for gone in commit.removed]
     more = f" and {len(names) - 3} more" if len(names) > 3 else ""
     return ", ".join(names[:3]) + more or "no entity"

@@ -16,7 +16,7 @@ from nodes.recorder.state.map_state import MapState, missed
 from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.loop import Node, open_node
 from schemas import keys, wording
-from schemas.bridge import BRIDGE, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commits import Commit, Snapshot
 from schemas.health import Health
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
@@ -81,14 +81,14 @@ class Recorder:
                 return
             snapshots.append(future.result())
             names = tuple(entity.name for entity in snapshots[0].entities)
-            self._ask_kb("star", StarQuery(names=names)).add_done_callback(on_stars)
+            self._node.ask_later(keys.BRIDGE, StarQuery(names=names)).add_done_callback(on_stars)
 
         def on_stars(future: Future[Any]) -> None:
             self._fetching_map = False
             if future.exception() is None:
                 self._begin(snapshots[0], future.result())
 
-        self._ask_kb("snapshot", SnapshotQuery()).add_done_callback(on_snapshot)
+        self._node.ask_later(keys.BRIDGE, SnapshotQuery()).add_done_callback(on_snapshot)
 
     def _begin(self, snapshot: Snapshot, stars: Any) -> None:
         first = self._map.seq < 0
@@ -112,7 +112,7 @@ class Recorder:
         """Record what was committed while nobody listened, and the commit that the recording starts with."""
         for start in range(0, len(seqs), _RECALLED_AT_ONCE):
             some = tuple(seqs[start : start + _RECALLED_AT_ONCE])
-            self._ask_kb("recall", Recall(seqs=some)).add_done_callback(self._on_recalled)
+            self._node.ask_later(keys.BRIDGE, Recall(seqs=some)).add_done_callback(self._on_recalled)
 
     def _on_recalled(self, future: Future[tuple[Commit, ...]]) -> None:
         if (error := future.exception()) is not None:
@@ -154,7 +154,7 @@ class Recorder:
                 self._show_all()
                 self._fetch_surfaces()
 
-        self._node.ask_later(keys.SIM, "snapshot", SceneQuery(), Scene).add_done_callback(on_scene)
+        self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)
 
     def _fetch_surfaces(self) -> None:
         """Ask what the bodies look like, as far as that was never told."""
@@ -173,7 +173,7 @@ class Recorder:
             self._show_all()
 
         query = SurfaceQuery(names=tuple(kinds))
-        self._node.ask_later(keys.SIM, "surfaces", query, Surfaces).add_done_callback(on_surfaces)
+        self._node.ask_later(keys.SIM, query).add_done_callback(on_surfaces)
 
     def _tick(self) -> None:
         if not self._has_map:
@@ -198,9 +198,6 @@ class Recorder:
             self._arranged = True
             self._recording.arrange(self._stage.poses)
         self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
-
-    def _ask_kb(self, verb: str, message: Any) -> Future[Any]:
-        return self._node.ask_later(keys.BRIDGE, verb, message, BRIDGE[verb][1])
 
 
 def run(config: RecorderConfig) -> None:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from typing import TypeVar
+
+T = TypeVar("T")
+U = TypeVar("U")
 
 
-def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
+def settle(future: Future[T], execute: Callable[[], T | Future[T]]) -> None:
     """Resolve `future` with what `execute()` returns (or, if that is a future, with its result) or raises."""
     try:
         result = execute()
@@ -20,11 +23,11 @@ def settle(future: Future[Any], execute: Callable[[], Any]) -> None:
         future.set_result(result)
 
 
-def then(future: Future[Any], function: Callable[[Any], Any]) -> Future[Any]:
+def then(future: Future[T], function: Callable[[T], U]) -> Future[U]:
     """The future of `function(result)`; errors pass through."""
-    following: Future[Any] = Future()
+    following: Future[U] = Future()
 
-    def on_done(done: Future[Any]) -> None:
+    def on_done(done: Future[T]) -> None:
         try:
             following.set_result(function(done.result()))
         except Exception as error:

@@ -17,30 +17,26 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from itertools import count
-from typing import Any, NamedTuple
+from typing import Any, TypeVar
 
 import zenoh
 
 from nodes import bus
 from nodes.runtime.heartbeat import Heartbeat
 from schemas import errors, keys
+from schemas.calls import Call, Handler, Relay, reply_type
 
 log = logging.getLogger(__name__)
 
 _AGAIN_S = 0.05
 
+R = TypeVar("R")
+
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
-"""Verb to (type of the message, function of the message). A function may return a Future, or a Relay."""
+"""Verb to (type of the message, function of the message). A function may return a Future, or a Relay.
 
-
-class Relay(NamedTuple):
-    """A reply that another node gives: that to `message` at `prefix/verb`, of type `kind`."""
-
-    prefix: str
-    verb: str
-    message: Any
-    kind: Any
-    timeout_s: float
+`calls.by_verb(Get.answered_by(function), ...)` makes them, and has mypy check the types of the functions.
+"""
 
 
 class Node:
@@ -82,12 +78,13 @@ class Node:
         if puts:
             bus.serve_puts(self.session, prefix, receive)
 
-    def serve_one(self, prefix: str, verb: str, kind: Any, function: Callable[[Any], Any]) -> None:
-        """Answer queries on `prefix/verb` whose other verbs another node serves."""
+    def serve_one(self, prefix: str, handler: Handler) -> None:
+        """Answer queries on `prefix/<verb>` of one verb; another node serves all others of the prefix."""
+        verb = handler.kind.VERB
 
         def receive(request: bus.Request) -> None:
             if request.verb == verb:  # and not one to all verbs
-                self._events.put(lambda: self._handle(request, {verb: (kind, function)}))
+                self._events.put(lambda: self._handle(request, {verb: handler}))
 
         bus.serve(self.session, prefix, receive, verb=verb)
 
@@ -131,44 +128,40 @@ class Node:
     def ask(
         self,
         prefix: str,
-        verb: str,
-        message: Any,
-        kind: Any,
+        call: Call[R],
         *,
         timeout_s: float,
         patience_s: float = bus.PATIENCE_S,
         beating: bool = False,
-    ) -> Any:
+    ) -> R:
         """`bus.ask` on this node's session; the heart stops meanwhile, or goes on if `beating` (slower)."""
         meanwhile = self.beat if beating else None
-        return bus.ask(
+        answer: R = bus.ask(
             self.session,
             prefix,
-            verb,
-            message,
-            kind,
+            call.VERB,
+            call,
+            reply_type(type(call)),
             timeout_s=timeout_s,
             patience_s=patience_s,
             meanwhile=meanwhile,
             lifelines=self._lifelines,
         )
+        return answer
 
     def ask_later(
-        self,
-        prefix: str,
-        verb: str,
-        message: Any,
-        kind: Any,
-        *,
-        timeout_s: float = bus.TIMEOUT_S,
-        patience_s: float = 0.0,
-        decoded: bool = True,
-    ) -> Future[Any]:
+        self, prefix: str, call: Call[R], *, timeout_s: float = bus.TIMEOUT_S, patience_s: float = 0.0
+    ) -> Future[R]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread.
 
-        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key. The result is
-        the message, or, unless `decoded`, as it came.
+        It is asked again until `patience_s` (0 unless given) ends while nobody serves the key.
         """
+        return self._ask_later(prefix, call, timeout_s=timeout_s, patience_s=patience_s, decoded=True)
+
+    def _ask_later(
+        self, prefix: str, call: Call[Any], *, timeout_s: float, patience_s: float, decoded: bool
+    ) -> Future[Any]:
+        """The result is the message, or, unless `decoded`, as it came."""
         future: Future[Any] = Future()
         deadline_s = time.monotonic() + patience_s
 
@@ -176,9 +169,9 @@ class Node:
             bus.ask_later(
                 self.session,
                 prefix,
-                verb,
-                message,
-                kind,
+                call.VERB,
+                call,
+                reply_type(type(call)),
                 answer,
                 timeout_s=timeout_s,
                 lifelines=self._lifelines,
@@ -289,20 +282,16 @@ class Node:
 
     def _answer(self, request: bus.Request, result: Any) -> None:
         if isinstance(result, Relay):
-            self._relay(request, *result)
+            self._relay(request, result)
         else:
             request.reply(result)
 
-    def _relay(
-        self, request: bus.Request, prefix: str, verb: str, message: Any, kind: Any, timeout_s: float
-    ) -> None:
+    def _relay(self, request: bus.Request, relay: Relay[Any]) -> None:
         """Pass a reply on as it comes, also from a node that is just being restarted."""
-        future = self.ask_later(
-            prefix,
-            verb,
-            message,
-            kind,
-            timeout_s=timeout_s,
+        future = self._ask_later(
+            relay.prefix,
+            relay.call,
+            timeout_s=relay.timeout_s,
             patience_s=bus.RESTART_S,
             decoded=not request.plain,
         )

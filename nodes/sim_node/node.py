@@ -17,8 +17,8 @@ from nodes.sim_node.vision.view import View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import is_scene, open_world
 from schemas import codec, errors, keys, wording
+from schemas.calls import by_verb
 from schemas.commands import Classes, Pause, Reset, StepOnce
-from schemas.entities import ClassInfo
 from schemas.replies import Done
 from schemas.scenes import (
     BodiesMoved,
@@ -65,17 +65,17 @@ class Simulator:
         self._planes: dict[str, Any] = {}
         node.serve(
             keys.SIM,
-            {
-                "spawn": (Spawn, self._spawn),
-                "delete": (Delete, self._delete),
-                "move": (MoveBodies, self._move),
-                "snapshot": (SceneQuery, self._snapshot),
-                "pause": (Pause, self._pause),
-                "step": (StepOnce, self._step),
-                "reset": (Reset, self._reset),
-                "picture": (PictureQuery, self._picture),
-                "surfaces": (SurfaceQuery, self._surfaces),
-            },
+            by_verb(
+                Spawn.answered_by(self._spawn),
+                Delete.answered_by(self._delete),
+                MoveBodies.answered_by(self._move),
+                SceneQuery.answered_by(self._snapshot),
+                Pause.answered_by(self._pause),
+                StepOnce.answered_by(self._step),
+                Reset.answered_by(self._reset),
+                PictureQuery.answered_by(self._picture),
+                SurfaceQuery.answered_by(self._surfaces),
+            ),
         )
         self._window = Window(self._world) if config.window else None
         if self._window is not None:
@@ -92,13 +92,7 @@ class Simulator:
             return ClassNames()
         try:
             found = self._node.ask(
-                keys.BRIDGE,
-                "classes",
-                Classes(),
-                tuple[ClassInfo, ...],
-                timeout_s=bus.TIMEOUT_S,
-                patience_s=bus.RESTART_S,
-                beating=True,
+                keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=bus.RESTART_S, beating=True
             )
         except errors.NoAnswer:
             self._node.report(
@@ -205,7 +199,9 @@ class Simulator:
 
     def _summary(self) -> str:
         state = ", paused" if self._paused else ""
-        return f"{wording.bodies(len(self._world))} in {self._world.name}{state}"
+        world = self._world
+        bodies = f"{wording.bodies(len(world))} in " if len(world) else ""  # at first the map's are to come
+        return f"{bodies}{world.name}{state}"
 
 
 def run(config: SimConfig) -> None:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import logging
+import shlex
 import sys
 import time
 from collections.abc import Callable
@@ -36,7 +37,8 @@ def seed(settings: Settings) -> None:
     abox = Path(settings.abox) if settings.abox is not None else None
     begins = settings.fresh or not Path(settings.data, JOURNAL).exists()
     if begins and abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
-        raise errors.BadFile(f"{abox.name} is no ABox; start with --abox none, then: semmap load {abox}")
+        load = f"semmap load {shlex.quote(str(abox))}"
+        raise errors.BadFile(f"{abox.name} is not an ABox; start with --abox none, then: {load}")
     print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
 
 

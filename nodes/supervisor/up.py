@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import queue
 import re
+import shlex
 import signal
 import socket
 import subprocess
@@ -20,8 +21,8 @@ from nodes.supervisor import presence
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
 from schemas import errors, keys
+from schemas.calls import reply_type
 from schemas.commands import Classes
-from schemas.entities import ClassInfo
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
@@ -38,7 +39,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     """
     supervisor = Supervisor(Path(settings.data))
     if supervisor.is_running():
-        down = f"semmap down --data {settings.data}"
+        down = f"semmap down --data {shlex.quote(settings.data)}"
         raise errors.Refused(f"a system runs on {settings.data} already; stop it with: {down}")
     _require_free(settings.listen)
     if settings.record:
@@ -138,7 +139,7 @@ class _Foreground:
         from nodes.sim_node.models.sources import passed_over  # and with it MuJoCo
 
         with contextlib.suppress(errors.SemmapError, OSError):
-            classes = bus.ask(session, keys.CMD, "classes", Classes(), tuple[ClassInfo, ...])
+            classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
             if strange := passed_over(Path(self._settings.models), {c.model for c in classes}):
                 said = f"passed over, for no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")

@@ -7,12 +7,14 @@ from pathlib import Path
 import pytest
 
 from nodes.coordinator.door import Door
+from nodes.kb_node.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.undo import undo
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.bridge import Outcome
+from schemas.commits import Effects
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
@@ -44,17 +46,22 @@ def semantic_map(tmp_path: Path):
 @pytest.fixture
 def door(semantic_map):
     answers = {
-        "commit": semantic_map.commit,
+        "commit": lambda transaction: _effects(semantic_map.commit(transaction)),
+        "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))
             if isinstance(result, errors.SemmapError)
-            else Outcome(commit=result)
+            else Outcome(commit=_effects(result))
             for result in semantic_map.commit_together(several.transactions)
         ),
-        "star": lambda query: semantic_map.stars(query.names, together=query.together),
-        "undo": lambda command: undo(semantic_map, semantic_map._journal, command),
+        "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
+        "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
     }
-    door = Door(lambda verb, message: answers[verb](message))
+    door = Door(lambda call: answers[call.VERB](call))
     door.classes = ClassNames(semantic_map.class_table())
     door.begin(semantic_map.snapshot())
     return door
+
+
+def _effects(commit):
+    return None if commit is None else Effects.of(commit)

@@ -10,7 +10,7 @@ from nodes import bus
 from nodes.coordinator.bridge import Bridge
 from nodes.runtime.loop import Node
 from schemas import errors, keys
-from schemas.commits import Commit, Transaction
+from schemas.commits import Commit, Effects, Transaction
 from tests.conftest import free_endpoint, handling
 
 TRANSACTION = Transaction(id="42", source="operator")
@@ -43,18 +43,18 @@ def serve(kb):
 def test_a_change_waits_for_the_knowledge_base_and_nothing_stands_still_meanwhile(network, how):
     bridge, kb = network
     start_s = time.monotonic()
-    answer = getattr(bridge, how)("commit", TRANSACTION)
+    answer = getattr(bridge, how)(TRANSACTION)
     assert time.monotonic() - start_s < bus.PATIENCE_S / 2
     time.sleep(0.3)
     assert not answer.done()
     serve(kb)
-    assert answer.result(timeout=20) == COMMIT
+    assert answer.result(timeout=20) == Effects.of(COMMIT)
 
 
 @pytest.mark.parametrize("how", ["change", "change_later"])
 def test_it_is_told_who_is_missing(network, how, monkeypatch):
     monkeypatch.setattr(bus, "RESTART_S", 0.2)
-    answer = getattr(network[0], how)("commit", TRANSACTION)
+    answer = getattr(network[0], how)(TRANSACTION)
     with pytest.raises(errors.NoAnswer, match="kb_node does not run, or is just starting"):
         answer.result(timeout=20)
 
@@ -63,4 +63,4 @@ def test_a_refusal_is_an_answer(network):
     bridge, kb = network
     bus.serve(kb, keys.BRIDGE, lambda request: request.refuse(errors.Refused("no")))
     with pytest.raises(errors.Refused, match="no"):
-        bridge.change("commit", TRANSACTION).result(timeout=20)
+        bridge.change(TRANSACTION).result(timeout=20)

@@ -233,6 +233,23 @@ def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
     assert door.entity("chair1").pose_provenance.source == "operator"
 
 
+def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first(door, monkeypatch):
+    add(door, name="chair1", at=(1.0, 1.0, 0.0))
+    door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
+    rests = Pose(position_m=(3.0, 1.0, 0.0))
+    with monkeypatch.context() as away:
+        away.setattr(door, "_ask", lambda call: raise_(errors.NoAnswer("it is being restarted")))
+        with pytest.raises(errors.NoAnswer):
+            door.follow("chair1", rests)
+    door.follow("chair1", rests)
+    assert door.entity("chair1").pose_provenance.agent == "ann"
+    assert door.change(c.Undo()).text == "took back commit 2"
+
+
+def raise_(error):
+    raise error
+
+
 def test_an_undo_sent_again_is_answered_with_its_result(door):
     add(door, name="chair1")
     add(door, name="chair2")
@@ -243,9 +260,9 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
-    def ask_later(verb, message):
+    def ask_later(call):
         future: Future = Future()
-        settle(future, lambda: door._ask(verb, message))
+        settle(future, lambda: door._ask(call))
         return future
 
     turns = Turns(lambda group: hold_later(door.together(group), ask_later))
@@ -284,13 +301,12 @@ def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map)
 def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, semantic_map):
     for name in ("a", "b"):
         add(door, name=name, at=(1.0, 2.0, 0.0), ref="seat")
-    (star,) = semantic_map.stars(["a"])
-    (seat,) = star.preferred
+    seat, hers = (v.entity_iri(f"{name}_preferred_reference") for name in ("a", "b"))
     other = semantic_map.stars(["b"])[0]
     shared = Transaction(
         id="share",
         source="operator",
-        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] in other.preferred),
+        retract=tuple(t for t in other.own if t[1] == v.HAS_PREFERRED_REFERENCE or t[0] == hers),
         insert=((other.iri, v.HAS_PREFERRED_REFERENCE, seat),),
     )
     door.take(semantic_map.commit(shared))
@@ -304,3 +320,16 @@ def test_the_entities_of_a_class_are_those_of_the_map(door, semantic_map):
     for name, iri in semantic_map.classes.iris.items():
         assert door.entities_of(name) == tuple(semantic_map.entities(iri))
     assert door.entities_of(None) == tuple(semantic_map.entities())
+
+
+def test_a_change_too_large_to_be_passed_on_is_known_to_the_next_command(door, monkeypatch):
+    monkeypatch.setattr("schemas.commits.MANY_ENTITIES", 2)
+    monkeypatch.setattr("nodes.runtime.map_replica.PAGE", 2)
+    entities = b",".join(b'{"class": "Chair", "name": "seat%d"}' % i for i in range(5))
+    loaded = door.change(c.Load(content=b'{"entities": [' + entities + b"]}", filename="five.json"))
+    assert len(loaded.names) == 5
+    assert door.seq == loaded.commit
+    assert not door.is_behind
+    assert {f"seat{i}" for i in range(5)} <= set(door.entities)
+    door.change(c.Remove(names=("seat3",)))
+    assert "seat3" not in door.entities

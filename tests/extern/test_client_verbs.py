@@ -39,9 +39,10 @@ def test_a_verb_that_reads_its_reply_says_what_it_gives():
 
 def test_each_command_says_what_it_is_answered_with():
     for verb, kind in commands.COMMANDS.items():
-        assert kind.verb == verb
+        assert verb == kind.VERB
         assert calls.reply_type(kind) is not None
     assert calls.reply_type(commands.Get) is Entity
+    assert calls.reply_type(type("Take", (commands.Get,), {})) is Entity
     with pytest.raises(TypeError, match="Call does not say what it is answered with"):
         calls.reply_type(calls.Call)
 

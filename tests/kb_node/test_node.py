@@ -13,8 +13,10 @@ from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import Settings
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, LoadDocument, LoadTBox, SnapshotQuery, StarQuery
-from schemas.commands import Check, Export, Get, Infer, LastSeen, List, Sparql
+from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
+from schemas.calls import reply_type
+from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
+from schemas.commits import Effects, NewEntity
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -74,7 +76,7 @@ def session(bench):
 
 
 def ask(session, verb, message, **limits):
-    return bus.ask(session, keys.BRIDGE, verb, message, BRIDGE[verb][1], **limits)
+    return bus.ask(session, keys.BRIDGE, verb, message, reply_type(BRIDGE[verb]), **limits)
 
 
 def await_answer(session):
@@ -106,7 +108,7 @@ def test_a_commit_is_replied_and_published(session):
     assert ask(session, "commit", transaction("a", chair("x"))) == first
     assert ask(session, "commit", transaction("c", chair("b"))) is None
     third = ask(session, "commit", transaction("d", retract=chair("b")))
-    assert [message for _, message in until(commits, 3)] == [first, second, third]
+    assert [Effects.of(message) for _, message in until(commits, 3)] == [first, second, third]
     assert third.seq == second.seq + 1 == first.seq + 2
     subscriber.undeclare()
 
@@ -141,7 +143,8 @@ def test_the_tbox_that_holds_is_no_change(session):
     assert commit.tbox
     assert load(2, text) is None
     assert load(1, text) == commit
-    more = load(4, text + "dm:Chair rdfs:comment 'to sit on' .")
+    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").seq
+    (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
     assert load(3, TBOX_TURTLE).seq == commit.seq + 2
 
@@ -151,7 +154,11 @@ def test_two_clients_see_one_map(bench, session):
     with bench.client() as other:
         assert ask(other, "get", Get(name="two")) == ask(session, "get", Get(name="two"))
         with pytest.raises(errors.NameTaken, match="the name 'two' is taken"):
-            ask(other, "commit", transaction("again", chair("two"), vacant=[v.entity_iri("two")]))
+            ask(
+                other,
+                "commit",
+                transaction("again", add=[NewEntity(name="two", class_iri=v.bare(v.dm("Chair")))]),
+            )
         ask(other, "commit", transaction("gone", retract=chair("two")))
     with pytest.raises(errors.UnknownName, match="no entity is named 'two'"):
         ask(session, "get", Get(name="two"))
@@ -159,7 +166,7 @@ def test_two_clients_see_one_map(bench, session):
 
 def test_questions_are_answered(session):
     ask(session, "commit", transaction("q", chair("q", preferred="queen")))
-    assert [e.name for e in ask(session, "list", List(class_="Chair")) if e.name == "q"] == ["q"]
+    assert [e.name for e in ask(session, "list", Entities(class_="Chair")) if e.name == "q"] == ["q"]
     (star,) = ask(session, "star", StarQuery(names=("q",)))
     assert set(star.own) == set(chair("q", preferred="queen"))
     assert "q type Seat" in ask(session, "infer", Infer(name="q")).text
@@ -178,7 +185,7 @@ def load(number, content, **fields):
 def test_look_ups_are_answered_without_anybody_between(session):
     commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
     query = Sparql(query="SELECT ?class { :looked_up a ?class }")
-    result = bus.ask(session, keys.CMD, "sparql", query, BRIDGE["sparql"][1])
+    result = bus.ask(session, keys.CMD, "sparql", query, reply_type(BRIDGE["sparql"]))
     assert result.rows == ((v.dm("Chair"),),)
     assert result.seq == commit.seq
 

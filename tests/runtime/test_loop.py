@@ -10,13 +10,23 @@ from concurrent.futures import Future
 import pytest
 
 from nodes import bus
-from nodes.runtime.loop import Node, Relay
+from nodes.runtime.loop import Node
 from schemas import codec, commands, errors, keys, replies
+from schemas.calls import Call, Handler, Relay
 from schemas.health import Health
 from schemas.scenes import Poses
 from tests.conftest import free_endpoint, handling, until
 
 PREFIX = "semmap/test"
+
+
+class Get(Call[replies.Done]):
+    VERB = "get"
+    name: str
+
+
+class Fly(Get):
+    VERB = "fly"
 
 
 def fail(_):
@@ -25,7 +35,7 @@ def fail(_):
 
 def relay(m):
     """To the verb that is named, of this node or of nobody."""
-    return Relay(m.predicate, m.value, commands.Get(name=m.name), replies.Done, 1.0)
+    return Relay(m.predicate, {"get": Get, "fly": Fly}[m.value](name=m.name), 1.0)
 
 
 @pytest.fixture
@@ -70,14 +80,14 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
     away = threading.Event()
 
     def done(text):
-        return commands.Get, lambda _: replies.Done(text=text)
+        return Handler(commands.Get, lambda _: replies.Done(text=text))
 
     def get(client, verb, **how):
         return bus.ask(client, PREFIX, verb, commands.Get(name="x"), replies.Done, **how).text
 
     with bus.open_session(other) as there, bus.open_session(first) as here:
         nodes = Node("first", here), Node("other", there)
-        nodes[0].serve_one(PREFIX, "get", *done("first"))
+        nodes[0].serve_one(PREFIX, done("first"))
         handlers = {"get": done("other"), "list": done("other")}
         nodes[1].serve(PREFIX, handlers, leave=lambda verb: verb == "get" and not away.is_set())
         threads = [threading.Thread(target=node.run) for node in nodes]
@@ -240,11 +250,7 @@ def test_who_is_to_reply_may_come_late(network):
 def test_somebody_who_comes_late_is_waited_for(network):
     node, client = network
     served: list[Future] = []
-    node._events.put(
-        lambda: served.append(
-            node.ask_later("semmap/late", "get", commands.Get(name="x"), replies.Done, patience_s=5.0)
-        )
-    )
+    node._events.put(lambda: served.append(node.ask_later("semmap/late", Get(name="x"), patience_s=5.0)))
     until(lambda: served, "the question")
     time.sleep(0.3)
     assert not served[0].done()

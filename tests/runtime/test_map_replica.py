@@ -1,5 +1,7 @@
+import msgspec
+
 from nodes.runtime.map_replica import MapReplica
-from schemas.commits import Snapshot
+from schemas.commits import Extent, Snapshot
 from tests.recorder.messages import commit, entity
 
 
@@ -55,3 +57,38 @@ def test_another_knowledge_base_may_know_less():
     view.doubt()
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
     assert not view.is_behind
+
+
+def test_an_abridged_commit_needs_a_snapshot():
+    view = begun()
+    left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)
+    assert not view.take(msgspec.structs.replace(commit(2), abridged=left_out))
+    assert view.is_behind
+    assert (view.seq, set(view.entities)) == (1, {"cup1", "table1"})
+    view.begin(Snapshot(seq=2, entities=(entity("sink1", "Sink"),)))
+    assert not view.is_behind
+
+
+def test_commits_between_two_pages_of_a_snapshot_are_taken_in_order():
+    view = MapReplica()
+    pages = view.begin_pages()
+    pages.take(Snapshot(seq=1, entities=(entity("a", "Cup"), entity("b", "Cup")), more=True))
+    assert pages.query.after == "b"
+    view.take(commit(2, entity("a", "Bowl"), entity("z", "Cup"), removed=("b",)))
+    view.take(commit(3, entity("z", "Bowl")))
+    pages.take(Snapshot(seq=3, entities=(entity("z", "Bowl"),)))
+    assert pages.are_complete
+    view.begin(pages.snapshot)
+    assert view.seq == 3
+    assert {name: e.class_ for name, e in view.entities.items()} == {"a": "Bowl", "z": "Bowl"}
+
+
+def test_entities_of_a_page_share_what_they_have_in_common():
+    pages = MapReplica().begin_pages()
+    said = msgspec.msgpack.encode(Snapshot(seq=1, entities=(entity("a", "Cup"), entity("b", "Cup"))))
+    before = msgspec.msgpack.decode(said, type=Snapshot)
+    pages.take(before)
+    a, b = pages.snapshot.entities
+    assert (a, b) == before.entities
+    assert a.types is b.types
+    assert a.provenance is b.provenance is b.pose_provenance

@@ -43,6 +43,12 @@ def test_a_moment_is_a_commit_or_a_time_as_long_as_it_is_written(when, moment):
     assert read_moment(when) == moment
 
 
+@pytest.mark.parametrize("time_of_day", ["05:31", "05:31:07", "05:31:07.25", "05:31Z", "05:31+02:00"])
+def test_a_time_without_a_date_is_today_s(time_of_day):
+    today = f"{datetime.now():%Y-%m-%d}T{time_of_day}"
+    assert read_moment(time_of_day) == read_moment(with_offset(time_of_day)) == read_moment(today)
+
+
 @pytest.mark.parametrize("stamp_ns", [NOON_NS, NOON_NS + 499, NOON_NS + 999_998_999, NOON_NS + 123_456_501])
 def test_a_stamp_is_found_again_however_it_is_written(stamp_ns):
     then = datetime.fromtimestamp(stamp_ns / 1e9)
@@ -83,7 +89,7 @@ def test_what_is_no_time_of_day_stays(when):
 )
 def test_what_is_no_moment_is_refused(when):
     with pytest.raises(
-        errors.BadRequest, match="is neither a commit's number nor a time like 2026-03-01T12:30"
+        errors.BadRequest, match="is neither a commit number nor a time like 2026-03-01T12:30"
     ):
         read_moment(when)
 

@@ -145,13 +145,14 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
 
 
 def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
-        status, line = up(tmp_path)
+    data = tmp_path / "my map"
+    with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
+        status, line = up(data)
         assert status == 1
-        assert f"semmap down --data {tmp_path}" in line
+        assert f"semmap down --data '{data}'" in line
         status, line = down("--data", tmp_path / "other")
         assert status == 3
-        assert f"{tmp_path} ({system.endpoint})" in line
+        assert f"{data} ({system.endpoint})" in line
         assert down("--connect", system.endpoint) == (0, "stopped")
     assert down("--connect", system.endpoint)[0] == 3
-    assert down("--data", tmp_path)[0] == 3
+    assert down("--data", data)[0] == 3

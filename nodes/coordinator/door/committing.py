@@ -1,4 +1,4 @@
-"""What every command that changes the map does: commit, again if need be, and only once."""
+"""What every command that changes the map does: commit, and only once."""
 
 from __future__ import annotations
 
@@ -9,16 +9,14 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
-from schemas import errors
-from schemas.bridge import StarQuery
+from schemas.bridge import MadeBy
 from schemas.commands import Classes, Command
-from schemas.commits import Commit, Star, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.replies import Changed
 
-_ATTEMPTS = 5
 C = TypeVar("C", bound=Command)
 Change = Callable[[KnownMap, C], Talk[Changed]]
 
@@ -38,55 +36,33 @@ def once(change: Change[C]) -> Change[C]:
 
 def _done_before(command: Command) -> Talk[Changed | None]:
     """The result of the command with this id, if there was one."""
-    nothing = Transaction(id=command.id, source=command.source)
-    commit: Commit | None = yield Question("commit", nothing)
+    (commit,) = yield from ask(MadeBy(ids=(command.id,)))
     if commit is None:
         return None
     names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
     return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
 
 
-def commit(view: KnownMap, transaction: Transaction) -> Talk[Commit | None]:
+def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
     """Commit it; None if it changes nothing."""
-    made: Commit | None = yield Question("commit", transaction)
-    return taken(view, made)
+    return (yield from taken(view, (yield from ask(transaction))))
 
 
-def commit_built(view: KnownMap, build: Callable[[str], Talk[Transaction]]) -> Talk[Commit | None]:
-    """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
-    suffix = ""
-    for attempt in range(_ATTEMPTS):
-        transaction = yield from build(suffix)
-        try:
-            return (yield from commit(view, transaction))
-        except errors.PreconditionFailed:
-            if attempt == _ATTEMPTS - 1:
-                raise
-        except errors.NameTaken:
-            if suffix:
-                raise
-            suffix = f"_{view.seq + 1}"
-    raise AssertionError("the last attempt returns or raises")
-
-
-def taken(view: KnownMap, commit: Commit | None) -> Commit | None:
-    """The commit, shown in the view so that the next command sees it."""
-    if commit is not None:
-        view.take(commit)
+def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
+    """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
+    if commit is not None and not view.take(commit) and commit.abridged is not None:
+        pages = view.begin_pages()
+        while not pages.are_complete:
+            pages.take((yield from ask(pages.query)))
+        view.begin(pages.snapshot)
     return commit
 
 
-def taken_with_classes(view: KnownMap, commit: Commit) -> Talk[None]:
+def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
-    taken(view, commit)
+    yield from taken(view, commit)
     if commit.tbox:
-        view.classes = ClassNames((yield Question("classes", Classes())))
-
-
-def stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
-    """The triples about some entities."""
-    found: tuple[Star, ...] = yield Question("star", StarQuery(names=names))
-    return found
+        view.classes = ClassNames((yield from ask(Classes())))
 
 
 def new_id() -> str:
@@ -94,6 +70,6 @@ def new_id() -> str:
     return uuid.uuid4().hex
 
 
-def seq(commit: Commit | None) -> int | None:
+def seq(commit: Effects | None) -> int | None:
     """Its number."""
     return None if commit is None else commit.seq

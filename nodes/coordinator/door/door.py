@@ -33,7 +33,7 @@ class Door(KnownMap):
     """
 
     def __init__(self, ask: Ask) -> None:
-        """`ask(verb, message)` asks the knowledge base."""
+        """`ask(call)` asks the knowledge base."""
         super().__init__()
         self._ask = ask
         self.hands = Hands()
@@ -51,4 +51,5 @@ class Door(KnownMap):
 
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest."""
-        hold(changing.follow(self, name, pose, self.hands.that_moved(name)), self._ask)
+        with self.hands.that_moved(name) as hand:
+            hold(changing.follow(self, name, pose, hand), self._ask)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Effects, Snapshot
 from schemas.entities import Entity
 
 
-class KnownMap(map_replica.MapReplica):
+class KnownMap(map_replica.MapReplica[Effects]):
     """Besides the entities the classes, and whether another knowledge base may know less."""
 
     def __init__(self) -> None:
@@ -39,6 +39,6 @@ class KnownMap(map_replica.MapReplica):
             self.doubted = False
             super().begin(snapshot)
 
-    def take(self, commit: Commit) -> bool:
+    def take(self, commit: Effects) -> bool:
         """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
         return super().take(commit) and not self.doubted

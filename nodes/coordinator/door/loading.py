@@ -8,18 +8,17 @@ from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
-from nodes.coordinator.dialogues import Question, Talk
-from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
+from nodes.coordinator.dialogues import Talk, ask
+from nodes.coordinator.door.committing import commit, once, seq, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.runtime.class_names import ClassNames
 from schemas import errors, scene_files, wording
-from schemas.bridge import LoadDocument, Loaded, LoadTBox
+from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
-from schemas.commits import Commit, Transaction
+from schemas.commits import Effects, NewEntity
 from schemas.entities import ClassInfo, free_name
-from schemas.explanations import Triple
 from schemas.replies import Changed
 from schemas.scene_files import Described
 
@@ -47,7 +46,7 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
 def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:
     known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
     taken_names = set() if command.replace else set(view.entities)
-    insert: dict[Triple, None] = {}
+    new: list[NewEntity] = []
     names: dict[str, None] = {}
     for item, found in known:
         name = item.name or free_name(found.name, taken_names)
@@ -57,20 +56,11 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
             raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
         taken_names.add(name)
         names[name] = None
-        insert.update(dict.fromkeys(transactions.describe(name, found, item)))
-    gone = (yield from stars(tuple(view.entities))) if command.replace and view.entities else ()
-
-    def build(_: str) -> Talk[Transaction]:
-        return transactions.transaction(
-            command,
-            f"load {command.filename}",
-            retract=[t for star in gone for t in (*star.own, *star.incoming)],
-            insert=insert,
-        )
-        yield  # nothing to ask
-
-    commit = yield from commit_built(view, build)
-    return _loaded(command, commit, tuple(names), skipped, notes)
+        new.append(transactions.described(name, found, item))
+    leaving = tuple(view.entities) if command.replace else ()
+    change = transactions.transaction(command, f"load {command.filename}", remove=leaving, add=new)
+    made = yield from commit(view, change)
+    return _loaded(command, made, tuple(names), skipped, notes)
 
 
 def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
@@ -84,9 +74,9 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         replace=command.replace,
         skip_unknown=command.skip_unknown,
     )
-    loaded: Loaded = yield Question("load", document)
-    names = tuple(e.name for e in loaded.commit.changed) if loaded.commit else ()
-    return _loaded(command, taken(view, loaded.commit), names, loaded.skipped, loaded.notes)
+    loaded = yield from ask(document)
+    commit = yield from taken(view, loaded.commit)
+    return _loaded(command, commit, loaded.names, loaded.skipped, loaded.notes)
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
@@ -101,7 +91,7 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit: Commit | None = yield Question("load-tbox", order)
+    commit = yield from ask(order)
     if commit is None:
         return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
     yield from taken_with_classes(view, commit)
@@ -132,7 +122,7 @@ def _sort_out(
 
 def _loaded(
     command: Load,
-    commit: Commit | None,
+    commit: Effects | None,
     names: tuple[str, ...],
     skipped: tuple[str, ...],
     notes: tuple[str, ...],

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from nodes.coordinator.dialogues import Question, Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import once, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
+from schemas.bridge import TakeBack
 from schemas.commands import Undo
-from schemas.commits import Commit
 from schemas.replies import Changed
 
 
 @once
 def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
     """Take back a commit."""
-    commit: Commit = yield Question("undo", command)
+    commit = yield from ask(
+        TakeBack(
+            id=command.id,
+            source=command.source,
+            agent=command.agent,
+            reason=command.reason,
+            commit=command.commit,
+        )
+    )
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
     text = f"took back commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from schemas.commands import Move
+from schemas.errors import NoAnswer
 
 _RESTS_WITHIN_S = 10.0
 
@@ -19,7 +22,7 @@ class Hand(NamedTuple):
 
 
 class Hands:
-    """The bodies that hands let go of and that have not come to rest yet."""
+    """The bodies that hands let go of and whose resting place the map has not taken over yet."""
 
     def __init__(self) -> None:
         self._released: dict[str, tuple[Hand, float]] = {}
@@ -29,9 +32,19 @@ class Hands:
         hand = Hand("move", command.agent, command.reason or f"{command.name} was moved by hand")
         self._released[command.name] = (hand, time.monotonic() + _RESTS_WITHIN_S)
 
-    def that_moved(self, name: str) -> Hand:
-        """The hand because of which a body rests where it does; it is asked once."""
+    @contextmanager
+    def that_moved(self, name: str) -> Iterator[Hand]:
+        """The hand because of which a body rests where it does.
+
+        It is forgotten when the map has accepted or refused the new place, and kept for the next attempt when
+        the map did not answer (NoAnswer).
+        """
         hand, until_s = self._released.pop(name, (None, 0.0))
-        if hand is not None and time.monotonic() < until_s:
-            return hand
-        return Hand("", "", f"{name} came to rest")
+        if hand is None or time.monotonic() > until_s:
+            yield Hand("", "", f"{name} came to rest")
+            return
+        try:
+            yield hand
+        except NoAnswer:
+            self._released.setdefault(name, (hand, time.monotonic() + _RESTS_WITHIN_S))
+            raise

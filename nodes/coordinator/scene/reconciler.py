@@ -6,11 +6,12 @@ never older than the orders before it.
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
@@ -18,6 +19,7 @@ from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.spawn_batches import batches
 from schemas import errors
+from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
 from schemas.scenes import (
@@ -25,30 +27,41 @@ from schemas.scenes import (
     Body,
     BodyOrder,
     Delete,
-    Deleted,
     MoveBodies,
     Placement,
     Poses,
-    Scene,
     SceneQuery,
     Spawn,
     Spawned,
 )
 
+log = logging.getLogger(__name__)
+
 T = TypeVar("T")
-Ask = Callable[[str, Any, Any], Future[Any]]
 GHOSTLY = "overlaps something, so it does not collide until it is free"
-Step = tuple[str, Any, Any, Callable[[Any], None]]
-"""Verb, message, type of the reply, what to do with it."""
+
+
+class AskSim(Protocol):
+    """`ask(call)` asks the simulator, without waiting."""
+
+    def __call__(self, call: Call[T], /) -> Future[T]:  # noqa: D102
+        ...
+
+
+class Step(NamedTuple, Generic[T]):
+    """What is asked of the simulator, and what is done with the answer."""
+
+    call: Call[T]
+    handle: Callable[[T], None]
 
 
 class Keeping:
     """Keeps the scene and the door's map the same. Owned by the coordinator's thread."""
 
     def __init__(
-        self, config: CoordinatorConfig, door: Door, ask: Ask, report: Callable[[str], None]
+        self, config: CoordinatorConfig, door: Door, ask: AskSim, report: Callable[[str], None]
     ) -> None:
-        """`ask(verb, message, kind)` asks the simulator, without waiting."""
+        """`ask(call)` asks the simulator, without waiting."""
         self._config = config
         self._door = door
         self._ask = ask
@@ -56,7 +69,7 @@ class Keeping:
         self.scene = SceneView()
         self._failed: dict[str, tuple[int, str]] = {}
         self._foreign: dict[str, str] = {}
-        self._steps: deque[Step] = deque()
+        self._steps: deque[Step[Any]] = deque()
         self._busy = False
         self._later: set[str] = set()  # what changed while orders were under way
 
@@ -124,7 +137,7 @@ class Keeping:
             for e in self._door.entities.values()
             if e.pose is not None and e.name in self.scene.bodies
         )
-        return self._ask("move", MoveBodies(placements=placements), BodiesMoved)
+        return self._ask(MoveBodies(placements=placements))
 
     def body_state(self, entity: Entity) -> BodyState:
         """What has become of the body of `entity`."""
@@ -155,25 +168,26 @@ class Keeping:
             if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
         ]
         seen = [f"{name}: perception: {entity.conflict}" for name, entity in entities if entity.conflict]
-        return amiss + seen + [f"{name}: {reason}" for name, reason in sorted(self._foreign.items())]
+        foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
+        return amiss + seen + [f"{name}: {why}" for name, why in foreign]
 
-    def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step]:
-        steps: list[Step] = []
+    def _orders(self, actions: Actions, refused: list[Placement]) -> list[Step[Any]]:
+        steps: list[Step[Any]] = []
         if actions.delete:
-            steps.append(("delete", Delete(names=actions.delete), Deleted, lambda _: None))
+            steps.append(Step(Delete(names=actions.delete), lambda _: None))
         steps.extend(self._spawning(batch) for batch in batches(actions.spawn))
         placements = (*actions.place, *refused)
         if placements:
-            steps.append(("move", MoveBodies(placements=placements), BodiesMoved, self._placed))
+            steps.append(Step(MoveBodies(placements=placements), self._placed))
         return steps
 
-    def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step:
+    def _spawning(self, batch: tuple[BodyOrder, ...]) -> Step[Spawned]:
         tried = {order.name: order.commit for order in batch}
-        return "spawn", Spawn(bodies=batch), Spawned, partial(self._spawned, tried)
+        return Step(Spawn(bodies=batch), partial(self._spawned, tried))
 
-    def _start(self, steps: list[Step]) -> None:
+    def _start(self, steps: list[Step[Any]]) -> None:
         self._busy = True
-        self._steps = deque([*steps, ("snapshot", SceneQuery(), Scene, self.scene.take)])
+        self._steps = deque([*steps, Step(SceneQuery(), self.scene.take)])
         self._next()
 
     def _next(self) -> None:
@@ -181,7 +195,7 @@ class Keeping:
             self._busy = False
             self._keep_rest()
             return
-        verb, message, kind, handle = self._steps.popleft()
+        call, handle = self._steps.popleft()
 
         def on_done(future: Future[Any]) -> None:
             error = future.exception()
@@ -190,9 +204,9 @@ class Keeping:
                 self._next()
             else:
                 self._busy = False
-                self._report(f"the simulator did not {verb}: {error}")
+                self._report(f"the simulator did not {call.VERB}: {error}")
 
-        self._ask(verb, message, kind).add_done_callback(on_done)
+        self._ask(call).add_done_callback(on_done)
 
     def _spawned(self, tried: dict[str, int], reply: Spawned) -> None:
         for name in tried:
@@ -200,7 +214,7 @@ class Keeping:
         self.scene.add(reply.bodies)
         for name, reason in reply.failed.items():
             self._failed[name] = (tried[name], reason)
-            self._report(f"{name} has no body: {reason}")
+            log.warning("%s has no body: %s", name, reason)  # `problems` says so as long as it is true
 
     def _placed(self, reply: BodiesMoved) -> None:
         """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
@@ -212,7 +226,7 @@ class Keeping:
         )
         if anew:
             gone = Delete(names=tuple(order.name for order in anew))
-            self._steps.extendleft([self._spawning(anew), ("delete", gone, Deleted, lambda _: None)])
+            self._steps.extendleft([self._spawning(anew), Step(gone, lambda _: None)])
 
     def _follow(self, placement: Placement) -> Placement | None:
         """Let the map follow a body; if the map refuses, the body has to go back."""
@@ -249,8 +263,8 @@ class Keeping:
                 )
             )
         except (errors.Refused, errors.BadRequest) as error:
-            self._foreign[body.name] = f"a body of the scene that is no entity: {error.text}"
-            self._report(f"{body.name} did not become an entity: {error.text}")
+            self._foreign[body.name] = f"a scene body without a map entity: {error.text}"
+            log.warning("%s did not become an entity: %s", body.name, error.text)
 
 
 def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:

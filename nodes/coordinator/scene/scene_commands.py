@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from typing import TypeVar
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
-from nodes.coordinator.scene.reconciler import GHOSTLY, Keeping
+from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
 from nodes.runtime.futures import then
 from schemas import commands as c
 from schemas import errors, wording
+from schemas.calls import Call
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.replies import Done, Moved
 from schemas.scenes import BodiesMoved, Body, MoveBodies, Picture, PictureQuery, Placement
+
+R = TypeVar("R")
 
 _LIFTED_M = 0.02
 
@@ -22,16 +24,14 @@ _LIFTED_M = 0.02
 class Running:
     """Passes them on to the simulator. Raises NoAnswer when none runs."""
 
-    def __init__(
-        self, truth: Truth, door: Door, keeping: Keeping, ask: Callable[[str, Any, Any], Future[Any]]
-    ) -> None:
-        """`ask(verb, message, kind)` asks the simulator, without waiting."""
+    def __init__(self, truth: Truth, door: Door, keeping: Keeping, ask: AskSim) -> None:
+        """`ask(call)` asks the simulator, without waiting."""
         self._truth = truth
         self._door = door
         self._keeping = keeping
         self._ask = ask
 
-    def move(self, command: c.Move) -> Future[Any]:
+    def move(self, command: c.Move) -> Future[Moved]:
         """Take a body and put it elsewhere, as a hand would."""
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
@@ -47,34 +47,34 @@ class Running:
             self._door.hands.let_go(command)
             return Moved(name=command.name, text=_let_go(command, reply.bodies[0]))
 
-        return then(self._ask("move", order, BodiesMoved), moved)
+        return then(self._ask(order), moved)
 
-    def pause(self, command: c.Pause) -> Future[Any]:
+    def pause(self, command: c.Pause) -> Future[Done]:
         """Stop or start time."""
-        return self._ask_scene("pause", command, Done)
+        return self._ask_scene(command)
 
-    def step(self, command: c.StepOnce) -> Future[Any]:
+    def step(self, command: c.StepOnce) -> Future[Done]:
         """Let a little time pass."""
-        return self._ask_scene("step", command, Done)
+        return self._ask_scene(command)
 
-    def reset(self, command: c.Reset) -> Future[Any]:
+    def reset(self, command: c.Reset) -> Future[Done]:
         """Put every body back to where the map says, or, when the map only perceives, to where it began."""
         if self._truth == "perceived":
-            return self._ask_scene("reset", command, Done)
+            return self._ask_scene(command)
         return then(
             self._keeping.place_all(),
             lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.bodies))}"),
         )
 
-    def picture(self, command: c.TakePicture) -> Future[Any]:
+    def picture(self, command: c.TakePicture) -> Future[Picture]:
         """What a camera sees."""
         query = PictureQuery(camera=command.camera or "", width=command.width, height=command.height)
-        return self._ask_scene("picture", query, Picture)
+        return self._ask_scene(query)
 
-    def _ask_scene(self, verb: str, message: Any, kind: Any) -> Future[Any]:
+    def _ask_scene(self, call: Call[R]) -> Future[R]:
         if not self._keeping.scene.known:
             raise errors.NoAnswer("no simulator runs")
-        return self._ask(verb, message, kind)
+        return self._ask(call)
 
 
 def _let_go(command: c.Move, body: Body) -> str:

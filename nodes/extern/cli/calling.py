@@ -17,25 +17,29 @@ from nodes.extern.connection import CONNECT_VARIABLE
 from schemas import codec, errors
 
 TIME = (
-    "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and as long as it is written: that whole"
-    " second, 12:30 the minute, the date alone the day. Or seconds since 1970, or a stamp_ns of the JSON."
+    "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and denotes its written precision: that"
+    " whole second, 12:30 the minute (of today, without a date), the date alone the day. Or seconds since"
+    " 1970, or a stamp_ns of the JSON."
 )
 """For the help of options that take one."""
+
+connect_option = click.option(
+    "--connect",
+    "where",
+    envvar=CONNECT_VARIABLE,
+    default=bus.DEFAULT_ENDPOINT,
+    show_default=True,
+    show_envvar=True,
+    metavar="EP",
+    help="Zenoh endpoint of the system.",
+)
+"""Which running system is meant."""
 
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""
 
-    @click.option(
-        "--connect",
-        "where",
-        envvar=CONNECT_VARIABLE,
-        default=bus.DEFAULT_ENDPOINT,
-        show_default=True,
-        show_envvar=True,
-        metavar="EP",
-        help="Zenoh endpoint of the system.",
-    )
+    @connect_option
     @functools.wraps(function)
     def with_client(where: str, **arguments: Any) -> None:
         shared = click.get_current_context().obj
@@ -60,6 +64,9 @@ def run_words(app: click.Command, words: list[str], client: Client | None = None
         return error.exit_status
     except click.exceptions.NoArgsIsHelpError as error:
         print(error.format_message())
+    except click.NoSuchOption as error:
+        complain(f"{where}{_no_such_option(error)}")
+        return 2
     except click.ClickException as error:
         complain(f"{where}{error.format_message()}")
         return 2
@@ -107,3 +114,15 @@ def complain(text: str) -> None:
 def _plainly(text: str) -> str:
     """A user knows of no message."""
     return text.removeprefix("malformed message: ")
+
+
+def _no_such_option(error: click.NoSuchOption) -> str:
+    """Which option may have been meant: `--format json` for `--json`."""
+    text = f"there is no option '{error.option_name}'"
+    options = [p for p in error.ctx.command.params if isinstance(p, click.Option)] if error.ctx else []
+    word = error.option_name.lstrip("-")
+    for option in options:
+        if isinstance(option.type, click.Choice) and word in option.type.choices:
+            return f"{text}; did you mean {option.opts[0]} {word}?"
+    names = [name for option in options for name in (*option.opts, *option.secondary_opts)]
+    return text + (errors.did_you_mean(error.option_name, names) or "; see: --help")

@@ -1,6 +1,7 @@
-"""RDF documents in and out, in every syntax; terms are strings in N-Triples form.
+"""Documents in and out, in every syntax of RDF, and in those of OWL; terms are strings in N-Triples form.
 
-Oxigraph reads and writes: strict, fast, never on the network, and every literal comes back as it went.
+Oxigraph reads and writes RDF: strict, fast, never on the network, and every literal comes back as it went.
+OWL's own syntaxes are only read (`owl/`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from xml.parsers import expat
 
 import pyoxigraph
 
+from nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
+from nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import RdfFormat
@@ -23,7 +26,15 @@ _SYNTAX = {
     "ntriples": pyoxigraph.RdfFormat.N_TRIPLES,
     "jsonld": pyoxigraph.RdfFormat.JSON_LD,
 }
-_SPOKEN = {"rdfxml": "RDF/XML", "turtle": "Turtle", "ntriples": "N-Triples", "jsonld": "JSON-LD"}
+_SPOKEN: dict[RdfFormat | OwlSyntax, str] = {
+    "rdfxml": "RDF/XML",
+    "turtle": "Turtle",
+    "ntriples": "N-Triples",
+    "jsonld": "JSON-LD",
+    "functional": "OWL functional syntax",
+    "manchester": "Manchester syntax",
+    "owlxml": "OWL/XML",
+}
 MEDIA_TYPES: dict[str, str] = {
     "rdfxml": "application/rdf+xml",
     "turtle": "text/turtle",
@@ -37,11 +48,11 @@ _JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
-def syntax_of(content: bytes) -> RdfFormat:
-    """The syntax that `content` begins like: XML, JSON, or else Turtle (of which N-Triples is a part)."""
+def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
+    """The syntax that `content` begins like: Turtle (of which N-Triples is a part) when like no other."""
     if _XML.match(content):
-        return "rdfxml"
-    return "jsonld" if _JSON.match(content) else "turtle"
+        return "owlxml" if owl_syntaxes.is_owl_xml(content) else "rdfxml"
+    return "jsonld" if _JSON.match(content) else owl_syntaxes.owl_syntax_of(content) or "turtle"
 
 
 def parse(
@@ -56,14 +67,16 @@ def parse(
     if not content.strip():
         raise errors.BadFile(f"{name} is empty")
     try:
-        content.decode()
+        text = content.decode()
     except UnicodeDecodeError as error:
         where = content.count(b"\n", 0, error.start) + 1
         raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
     syntax = syntax_of(content)
     try:
-        if syntax == "rdfxml":
+        if syntax in ("rdfxml", "owlxml"):
             _require_well_formed(content)
+        if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
+            return [_labelled(triple, label_prefix) for triple in owl_syntaxes.parse(text, syntax)]
         quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
         return _triples(quads, label_prefix, progress)
     except (SyntaxError, ValueError) as error:
@@ -82,6 +95,11 @@ def _triples(
         if len(triples) % _TOLD_EVERY == 0:
             progress(len(triples))
     return triples
+
+
+def _labelled(triple: Triple, label_prefix: str) -> Triple:
+    s, p, o = (f"_:{label_prefix}{t[2:]}" if t.startswith("_:") else t for t in triple)
+    return s, p, o
 
 
 def _term(term: object, label_prefix: str) -> str:

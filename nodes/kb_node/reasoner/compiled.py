@@ -60,6 +60,8 @@ class CompiledEngine:
         self._view = View(self._abox)
         self._told_by = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
+        self._abox.run()
+        self._abox.settle()
         self.apply((), [triple for triple in triples if triple not in self._schema_triples])
 
     def __len__(self) -> int:

@@ -10,7 +10,7 @@ import base64
 import binascii
 import re
 import struct
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Collection, Hashable
 from datetime import UTC, date, datetime, time, timedelta, timezone
 from decimal import Decimal
 from fractions import Fraction
@@ -60,6 +60,13 @@ _STRINGS: Final = {
     "NCName": re.compile(f"[{_NAME_START.replace(':', '', 1)}][{_NAME_CHAR.replace(':', '', 1)}]*"),
 }
 """The values of the string types."""
+_WIDER: Final = {
+    "normalizedString": ("string",),
+    "token": ("string", "normalizedString"),
+    **dict.fromkeys(("language", "NMTOKEN", "Name"), ("string", "normalizedString", "token")),
+    "NCName": ("string", "normalizedString", "token", "NMTOKEN", "Name"),
+}
+"""The string types that hold all values of another."""
 
 _FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
 _DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
@@ -192,6 +199,47 @@ def contains(datatype: Term, term: Term) -> bool:
     if kind == "dateTime":
         return name == "dateTime" or (name == "dateTimeStamp" and key[0] == "zoned")
     return kind == name
+
+
+def known() -> frozenset[Term]:
+    """The datatypes whose values are known here."""
+    return _KNOWN
+
+
+def includes(wide: Term, narrow: Term) -> bool:
+    """Whether every value of one known datatype is a value of another; False if that is not known."""
+    if wide in (narrow, LITERAL):
+        return True
+    one, other = (term[1:-1].removeprefix(_XSD) for term in (wide, narrow))
+    if one == "decimal":
+        return other in _INTEGERS
+    if one in _INTEGERS and other in _INTEGERS:
+        (low, high), (lowest, highest) = _INTEGERS[one], _INTEGERS[other]
+        return _is_within(lowest, highest, low, high)
+    if one == _RDF + "PlainLiteral":
+        return other in _STRINGS or narrow == iri("rdf:langString")
+    return one in _WIDER.get(other, ()) or (one, other) == ("dateTime", "dateTimeStamp")
+
+
+def includes_common(wide: Term, narrow: Collection[Term]) -> bool:
+    """Whether every value that some known datatypes have in common is one of another."""
+    if any(includes(wide, datatype) for datatype in narrow):
+        return True
+    names = [datatype[1:-1].removeprefix(_XSD) for datatype in (wide, *narrow)]
+    bounds = [_INTEGERS[name] for name in names[1:] if name in _INTEGERS]
+    if names[0] not in _INTEGERS or not bounds:
+        return False
+    low, high = _INTEGERS[names[0]]
+    lowest = max((least for least, _ in bounds if least is not None), default=None)
+    highest = min((most for _, most in bounds if most is not None), default=None)
+    return _is_within(lowest, highest, low, high)
+
+
+def _is_within(lowest: int | None, highest: int | None, low: int | None, high: int | None) -> bool:
+    """Whether the integers from `lowest` to `highest` are all from `low` to `high`; None is no bound."""
+    return (low is None or (lowest is not None and lowest >= low)) and (
+        high is None or (highest is not None and highest <= high)
+    )
 
 
 def excludes(datatype: Term, term: Term) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
+from contextlib import contextmanager
 
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
@@ -82,6 +83,40 @@ class Reasoner:
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
         touched |= {term for term in individuals if old.types(term) != engine.types(term)}
         return Change(frozenset(term for term in touched if not is_literal(term)))
+
+    @contextmanager
+    def supposing(self, triples: Iterable[Triple], *, anew: bool = True) -> Iterator[None]:
+        """For the length of a `with`, what would be with some more triples; then all is as before.
+
+        Unless `anew`, only what the compiled engine can try and take back at once is supposed.
+
+        Raises:
+            Inconsistent: they contradict the rest.
+            NotCompilable: everything would have to be worked out anew, and that was not wanted.
+        """
+        new = [triple for triple in dict.fromkeys(triples) if next(self.asserted(*triple), None) is None]
+        engine = self._engine
+        if isinstance(engine, CompiledEngine):
+            try:
+                engine.apply((), new)
+            except Refused as refused:
+                raise Inconsistent(refused.explanation) from None
+            except NotCompilable:
+                if not anew:
+                    raise
+            else:
+                try:
+                    yield
+                finally:
+                    engine.apply(new, ())
+                return
+        elif not anew:
+            raise NotCompilable("the engine works everything out anew")
+        self._engine = _engine_for([*self.asserted(), *new])
+        try:
+            yield
+        finally:
+            self._engine = engine
 
     def asserted(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from itertools import count
 from multiprocessing.connection import Connection, Pipe
-from typing import Any
+from typing import Any, overload
 
 from msgspec import msgpack
 
@@ -22,10 +22,12 @@ from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.lanes import Lanes
 from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, News, from_worker
 from schemas import codec, errors
-from schemas.bridge import BRIDGE
+from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
 from schemas.commits import Commit
 from schemas.explanations import Triple
+from schemas.replies import Done
+from schemas.sparql import SparqlResult, Watching
 
 
 class SparqlService:
@@ -37,6 +39,12 @@ class SparqlService:
         self._worker: _Worker | None = None
         self._infers = False
 
+    @overload
+    def ask(self, command: Sparql, seq: int) -> Future[SparqlResult]: ...
+    @overload
+    def ask(self, command: Watch, seq: int) -> Future[Watching]: ...
+    @overload
+    def ask(self, command: Renew, seq: int) -> Future[Done]: ...
     def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
         """The reply to a command about the map as it is now, after commit `seq`."""
         if self._worker is None or not self._worker.is_alive:
@@ -77,7 +85,7 @@ class _Worker:
         self._publish = publish
         self._numbers = count()
         self._outbox: queue.SimpleQueue[tuple[Connection, Any] | None] = queue.SimpleQueue()
-        self._waiting: dict[int, tuple[str, Future[Any]]] = {}
+        self._waiting: dict[int, tuple[type[Call], Future[Any]]] = {}
         self._lock = threading.Lock()
         self.is_alive = True
         self._connection, there = Pipe()
@@ -107,7 +115,7 @@ class _Worker:
                 if isinstance(command, Sparql):
                     return self._lanes.ask(command, seq)
                 number, future = next(self._numbers), Future[Any]()
-                self._waiting[number] = (str(command.__struct_config__.tag), future)
+                self._waiting[number] = (type(command), future)
                 self.send(Asked(number=number, command=command))
                 return future
         future = Future()
@@ -159,11 +167,11 @@ class _Worker:
 
     def _answer(self, message: Answered) -> None:
         with self._lock:
-            verb, future = self._waiting.pop(message.number)
+            kind, future = self._waiting.pop(message.number)
         if message.error is not None:
             future.set_exception(errors.from_message(message.error))
         else:
-            future.set_result(codec.decode(bytes(message.reply), BRIDGE[verb][1]))
+            future.set_result(codec.decode(bytes(message.reply), reply_type(kind)))
 
 
 def _ended() -> errors.Refused:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sqlite3
 import threading
 from collections.abc import Iterator
@@ -90,6 +91,5 @@ def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
 
 def mend(path: Path) -> str:
     """How one goes on after damage."""
-    return (
-        f"go on from the last good commit with: semmap repair --data {path.parent} (the damaged file is kept)"
-    )
+    repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
+    return f"go on from the last good commit with: {repair} (the damaged file is kept)"

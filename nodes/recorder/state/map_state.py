@@ -32,7 +32,7 @@ def missed(seq: int, snapshot_seq: int, heard: Iterable[Commit]) -> list[int]:
     return sorted(set(range(seq + 1, snapshot_seq + 1)) - {commit.seq for commit in heard})
 
 
-class MapState(MapReplica):
+class MapState(MapReplica[Commit]):
     """Besides the entities the relations asserted between individuals."""
 
     def __init__(self) -> None:

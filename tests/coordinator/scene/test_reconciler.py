@@ -10,6 +10,7 @@ from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.spawn_batches import BATCH
 from schemas import commands as c
 from schemas import errors
+from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
 
 
@@ -39,13 +40,13 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     """A model file may have been mended meanwhile."""
     spawns = []
 
-    def ask(verb, message, kind):
+    def ask(message):
         answer = {
             "spawn": Spawned(bodies=(), failed={"chair1": "its model file is broken"}),
             "snapshot": Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=()),
             "move": BodiesMoved(bodies=(), failed={}),
-        }[verb]
-        spawns.extend([message] if verb == "spawn" else [])
+        }[message.VERB]
+        spawns.extend([message] if message.VERB == "spawn" else [])
         future = Future()
         future.set_result(answer)
         return future
@@ -61,17 +62,51 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     assert len(spawns) == 2
 
 
+def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_there(door):
+    said = []
+
+    def ask(verb, message, kind):
+        answer = {
+            "spawn": Spawned(bodies=(), failed={"chair1": "its model file is broken"}),
+            "snapshot": Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=()),
+        }[verb]
+        future = Future()
+        future.set_result(answer)
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, ask, said.append)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.keep()
+    assert keeping.problems() == ["chair1: failed: its model file is broken"]
+    door.change(c.Remove(names=("chair1",)))
+    keeping.keep()
+    assert (keeping.problems(), said) == ([], [])  # and no heartbeat says it for an hour
+
+
+def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(door):
+    keeping = Keeping(CoordinatorConfig("scene"), door, lambda *_: Future(), print)
+    gizmo = standing(BodyOrder(name="gizmo", class_="Gizmo", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
+    keeping.scene.known = True
+    keeping.scene.bodies["gizmo"] = gizmo
+    keeping.keep()
+    (problem,) = keeping.problems()
+    assert problem.startswith("gizmo: a scene body without a map entity: unknown class 'Gizmo'")
+    del keeping.scene.bodies["gizmo"]
+    assert keeping.problems() == []
+
+
 def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
     orders = []
 
-    def ask(verb, message, kind):
+    def ask(message):
         future = Future()
-        orders.append((verb, message, future))
+        orders.append((message, future))
         return future
 
     def answer():
-        verb, message, future = orders.pop()
-        if verb == "spawn":
+        message, future = orders.pop()
+        if message.VERB == "spawn":
             future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
         else:
             bodies = tuple(keeping.scene.bodies.values())
@@ -85,8 +120,8 @@ def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
     keeping.keep({"chair2"})
     answer()
     answer()
-    ((verb, message, _),) = orders
-    assert (verb, [order.name for order in message.bodies]) == ("spawn", ["chair2"])
+    ((message, _),) = orders
+    assert (message.VERB, [order.name for order in message.bodies]) == ("spawn", ["chair2"])
 
 
 def test_a_reset_without_a_simulator_is_refused(door):
@@ -98,10 +133,10 @@ def test_a_reset_without_a_simulator_is_refused(door):
 def test_bodies_are_told_of_batch_by_batch(door):
     told = []
 
-    def ask(verb, message, kind):
+    def ask(message):
         told.append(len(keeping.scene.bodies))
         future = Future()
-        if verb == "spawn":
+        if message.VERB == "spawn":
             future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
         return future
 
@@ -116,17 +151,17 @@ def test_bodies_are_told_of_batch_by_batch(door):
 def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_nowhere(door):
     bodies, asked, moments = {}, [], count(1)
 
-    def ask(verb, message, kind):
-        asked.append(verb)
+    def ask(message):
+        asked.append(message.VERB)
         reason = "it is too far"
-        if verb == "spawn":
+        if message.VERB == "spawn":
             far = {o.name: reason for o in message.bodies if o.pose.position_m[0] > 1000.0}
             made = {o.name: standing(o) for o in message.bodies if o.name not in far}
             bodies.update(made)
             answer = Spawned(bodies=tuple(made.values()), failed=far)
-        elif verb == "delete":
+        elif message.VERB == "delete":
             answer = Deleted(names=tuple(name for name in message.names if bodies.pop(name, None)))
-        elif verb == "move":
+        elif message.VERB == "move":
             answer = BodiesMoved(bodies=(), failed={p.name: reason for p in message.placements})
         else:
             answer = Scene(

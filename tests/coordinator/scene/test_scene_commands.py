@@ -28,7 +28,7 @@ def cup(z: float, *, ghost: bool = False) -> Body:
 def said_of_a_move(z: float, put: Body) -> str:
     """What is said of a hand's move to (1, 2, z) when the simulator answers that it `put` the cup so."""
 
-    def ask(verb, message, kind):
+    def ask(_):
         future = Future()
         future.set_result(BodiesMoved(bodies=(put,), failed={}))
         return future

@@ -5,6 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from nodes.extern.cli.app import execute
+
 # Ctrl-C while the verbs are being imported.
 INTERRUPTED = """
 import sys, importlib.abc
@@ -26,6 +30,27 @@ def test_ctrl_c_while_it_starts_is_quiet():
 def test_it_starts_without_numpy():
     code = "import sys, nodes.extern.cli.all_verbs; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("list", "--json"), "there is no option '--json'; did you mean --format json?"),
+        (("sparql", "ASK {}", "--csv"), "there is no option '--csv'; did you mean --format csv?"),
+        (("list", "--clas"), "there is no option '--clas'; did you mean --class?"),
+        (("status", "--xyz"), "there is no option '--xyz'; see: --help"),
+    ],
+)
+def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):
+    assert execute([*words]) == 2
+    assert capsys.readouterr().err == f"semmap: {said}\n"
+
+
+def test_each_verb_that_talks_to_a_system_says_how_it_is_told_which(capsys):
+    assert execute(["run", "--help"]) == 0
+    said = capsys.readouterr().out
+    assert "Zenoh endpoint of the system." in said
+    assert "SEMMAP_CONNECT" in said
 
 
 def test_it_says_its_version():

@@ -176,6 +176,70 @@ def test_how_an_inferred_value_is_spelled_does_not_depend_on_who_came_first():
         check_same(reasoner, [*asserted_in(BASE), *facts], BASE)
 
 
+CHARGING = """
+:OurDock rdfs:subClassOf :Device, [ owl:onProperty :hasAffordance ; owl:hasValue :charging ] ;
+    owl:equivalentClass [ owl:oneOf ( :dock1 ) ] .
+"""
+
+
+def test_an_individual_that_a_class_lists_has_the_values_of_the_class():
+    tbox, fact = triples(CHARGING), triple(":dock1 a :Device")
+    reasoner = Reasoner(tbox)
+    has_it = triple(":dock1 :hasAffordance :charging")
+    assert has_it in set(reasoner.inferred())
+    reasoner.apply(insert=[fact])
+    assert has_it in set(reasoner.inferred(has_it[0]))
+    reasoner.apply(delete=[fact])
+    assert has_it in set(reasoner.inferred(None, has_it[1]))
+    proofs.check(reasoner.explain(has_it), tbox)
+
+
+def test_what_such_a_value_contradicts_is_refused():
+    tbox = triples(
+        CHARGING + ":hasAffordance rdfs:range :Affordance . :Affordance owl:disjointWith :Device ."
+    )
+    reasoner = Reasoner(tbox)
+    with pytest.raises(Inconsistent):
+        reasoner.apply(insert=triples(":charging a :Device ."))
+    assert set(reasoner.types("<http://example.org/charging>")) == {"<http://example.org/Affordance>"}
+
+
+SPELLINGS = [
+    ('"1"^^xsd:integer', '"01"^^xsd:integer'),
+    ('"1"^^xsd:integer', '"1.0"^^xsd:decimal'),
+    ('"1"^^xsd:byte', '"+1"^^xsd:integer'),
+    ('"1.5"^^xsd:float', '"1.50"^^xsd:float'),
+    ('"a"', '"a"^^xsd:token'),
+]
+
+
+@pytest.mark.parametrize("keys", [":d", ":d :e", ":e :d"])
+@pytest.mark.parametrize("spellings", SPELLINGS)
+def test_a_key_is_the_same_in_another_spelling(spellings, keys):
+    one, other = spellings
+    key = triples(f":C owl:hasKey ( {keys} ) .")
+    facts = triples(f":a a :C ; :d {one} ; :e {other} . :b a :C ; :d {other} ; :e {one} .")
+    same = triple(":a owl:sameAs :b")
+    for order in (facts, facts[::-1]):
+        reasoner = Reasoner(key)
+        for fact in order:
+            reasoner.apply(insert=[fact])
+        assert reasoner.holds(same)
+        proofs.check(reasoner.explain(same), [*key, *facts])
+        with pytest.raises(Inconsistent):
+            reasoner.apply(insert=[triple(":a owl:differentFrom :b")])
+        reasoner.apply(delete=[facts[1]])
+        assert reasoner.holds(same) == (":d" not in keys)
+    together = Reasoner(key)
+    together.apply(insert=facts)
+    assert together.holds(same)
+
+
+def test_a_key_needs_every_value_of_both():
+    reasoner = Reasoner(triples(":C owl:hasKey ( :d :e ) . :a a :C ; :d 1 ; :e 1 . :b a :C ; :d 1 ."))
+    assert not reasoner.holds(triple(":a owl:sameAs :b"))
+
+
 def test_a_literal_of_an_unknown_datatype_that_is_a_number():
     """It is as all spellings of that number are, whichever came first."""
     facts = [

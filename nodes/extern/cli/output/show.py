@@ -141,8 +141,11 @@ def explanation(e: Explanation) -> Iterable[str]:
 def commit_line(commit: Commit) -> str:
     """A commit in one line."""
     stamp = time.strftime("%H:%M:%S", time.localtime(commit.stamp_ns / 1e9))
-    counts = f"+{len(commit.inserted)} -{len(commit.retracted)} triples"
+    extent = commit.extent
+    counts = f"+{extent.inserted} -{extent.retracted} triples"
     names = [e.name for e in commit.changed] + [f"-{gone.name}" for gone in commit.removed]
+    if commit.abridged is not None:
+        names = [wording.entities(extent.changed + extent.removed)]
     shown = " ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     line = f"{stamp}  commit {commit.seq}  {author(commit)}: {commit.reason}  [{counts}]  {shown}"
     return printable(line).plain

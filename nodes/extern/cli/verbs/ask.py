@@ -11,7 +11,8 @@ from typing import Any
 import click
 
 from nodes import bus
-from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
+from nodes.extern import availability
+from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
@@ -147,10 +148,16 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 @talks
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
     """Print what is published on a key expression, as it happens; without one, the commits."""
-    if query is not None:
-        if keyexpr != keys.COMMIT.key:
-            raise errors.BadRequest("watch takes a key expression or --sparql, not both")
-        sparql_answers.watch(client, query, inferred=inferred)
+    if query is not None and keyexpr != keys.COMMIT.key:
+        raise errors.BadRequest("watch takes a key expression or --sparql, not both")
+    with availability.told(client, complain):
+        if query is not None:
+            sparql_answers.watch(client, query, inferred=inferred)
+        else:
+            _watch_key(client, keyexpr)
+
+
+def _watch_key(client: Client, keyexpr: str) -> None:
     if sys.stderr.isatty():
         print(f"watching {keyexpr}; Ctrl-C ends it", file=sys.stderr)
     if keyexpr == keys.COMMIT.key:

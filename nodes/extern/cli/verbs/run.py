@@ -8,11 +8,9 @@ from typing import Any
 
 import click
 
-from nodes import bus
-from nodes.extern.cli.calling import complain, print_lines, run_words
+from nodes.extern.cli.calling import complain, connect_option, print_lines, run_words
 from nodes.extern.cli.output import show
 from nodes.extern.client import Client, connect
-from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
 
@@ -22,14 +20,7 @@ _BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "wa
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--keep-going", is_flag=True, help="Go on after a request that fails.")
-@click.option(
-    "--connect",
-    "where",
-    envvar=CONNECT_VARIABLE,
-    default=bus.DEFAULT_ENDPOINT,
-    metavar="EP",
-    show_default=True,
-)
+@connect_option
 def run(file: Path, keep_going: bool, where: str) -> None:
     """Send a file of requests, one a line: words of this command line, or a JSON message with its verb."""
     lines = _decode_lines(file)

@@ -55,7 +55,7 @@ class Individuals:
         self.dirty: dict[int, None] = {}
         for term in schema.nominals:
             if not is_literal(term):
-                self.store.node(term)
+                self.dirty[self.store.node(term)] = None  # the schema alone may say what they are and have
 
     def members(self, node: int) -> list[int]:
         """All nodes that are the same as one, itself included."""

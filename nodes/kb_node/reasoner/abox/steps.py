@@ -165,7 +165,7 @@ class Steps:
             tails += [(not backwards, chain) for chain in schema.chains if chain.second == q]
             by_value |= bool(axioms.keys or axioms.exclusive)
         by_value |= bool(heads or tails)
-        others = irreflexive or exclusive or heads or tails
+        others = by_value or irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
         of_values = not others and self._are_of_values(prop, limits)

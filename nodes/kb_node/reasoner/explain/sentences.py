@@ -148,7 +148,7 @@ class _Speaker:
             return f"one of {self.each(head, 'and')}"
         if negated := self._get(node, "owl:complementOf"):
             return f"something that is not {self.a(negated)}"
-        return node
+        return "something unnamed"
 
     def _restriction(self, node: Term, prop: str) -> str:
         if filler := self._get(node, "owl:someValuesFrom"):

@@ -27,6 +27,11 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     edges = None if is_doubtful else _edges_of(abox, going, wanted)
     if edges is None or not _concern_nobody(abox, going, edges):
         return None
+    values = {store.object[edge] for edge in edges} if abox.spellings else ()
+    literals = [node for node in values if abox.is_literal(node)]
+    last = [node for node in literals if all(store.subject[e] in going for e in store.into.all(node))]
+    for node in last:
+        abox.forget_spelling(node)
     store.erase(going, edges)
     return {triple[0] for triple in triples}
 
@@ -55,13 +60,15 @@ def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | N
 def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
     """Whether nothing is otherwise for anybody else without nodes and the edges that leave from them."""
     store, kinds = abox.store, abox.store.kind
-    if abox.spellings or not abox.equals.keys().isdisjoint(nodes):
+    if not abox.equals.keys().isdisjoint(nodes):
         return False
     if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
         return False
     for edge in edges:
         node = store.object[edge]
         if store.source[edge] == DERIVED or (node not in nodes and kinds[node].base is not kinds[node]):
+            return False
+        if abox.spellings and node in abox.equals:
             return False
     return all(store.subject[edge] in nodes for node in nodes for edge in store.into.all(node))
 
@@ -71,7 +78,7 @@ def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> 
 
     Whose values they are; None, with nothing done, where it is not plain.
     """
-    if len(delete) != len(insert) or abox.spellings:
+    if len(delete) != len(insert) or abox.is_mixed:
         return None
     store = abox.store
     found: dict[int, Term] = {}
@@ -100,6 +107,8 @@ def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
     if edge == NONE or store.source[edge] != ASSERTED or not store.out.is_alone(edge):
         return NONE
     if subject in abox.equals or literal in abox.equals or edge in abox.rest_on_edge:
+        return NONE
+    if abox.spellings and abox.value(literal) in abox.spellings:
         return NONE
     kind = store.kind[literal]
     comes_back = store.kind[subject].values or abox.steps.made_by(predicate)

@@ -70,16 +70,30 @@ class GeneralEngine:
 
     def holds(self, triple: Triple) -> bool:
         """Whether a triple is asserted or follows."""
-        return self._closure.holds(triple)
+        return self._fact(triple) is not None
+
+    def _fact(self, triple: Triple) -> Triple | None:
+        """The fact that a triple states, a value perhaps in another spelling; None if it does not hold."""
+        if self._closure.holds(triple):
+            return triple
+        s, p, o = triple
+        if not is_literal(o):
+            return None
+        wanted = datatypes.canonical(o)
+        return next(
+            (fact for fact in self._closure.match(s, p) if datatypes.canonical(fact[2]) == wanted), None
+        )
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual."""
-        return frozenset(o for _, _, o in self._closure.match(individual, TYPE) if is_named(o))
+        facts = self._closure.match(individual, TYPE)
+        return frozenset(fact[2] for fact in facts if is_named(fact[2]) and not is_schema(fact))
 
     def instances(self, cls: Term) -> Iterator[Term]:
         """The individuals of a class."""
-        return (s for s, _, _ in self._closure.match(None, TYPE, cls))
+        facts = self._closure.match(None, TYPE, cls)
+        return (fact[0] for fact in facts if not is_literal(fact[0]) and not is_schema(fact))
 
     def explain(self, triple: Triple) -> Explanation:
         """Why a triple follows that holds."""
-        return Prover().prove(self._closure.leaves(triple), triple)
+        return Prover().prove(self._closure.leaves(self._fact(triple)), triple)

@@ -1,0 +1,76 @@
+"""Files that describe very many things, 14 triples each: Turtle, and the same as a JSON scene."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from ontology import stars
+from ontology import vocabulary as v
+from schemas.entities import Pose, Size
+from schemas.explanations import Term
+
+CLASSES = ("Chair", "Bottle", "Book", "Lamp", "Cup")
+"""About a fifth of the things is of each."""
+RARE_CLASS = "Fridge"
+RARE_EVERY = 100
+"""One thing in so many is of the rare class instead."""
+_PREFIXES = {"": v.ABOX, "dm": v.TBOX, "xsd": v.XSD}
+
+
+class Thing(NamedTuple):
+    """A thing of a made-up building; its size [m] along its own axes."""
+
+    name: str
+    class_name: str
+    pose: Pose
+    size_m: Size
+    ref: str
+
+
+def things(count: int) -> Iterator[Thing]:
+    """So many, on a grid of one metre that is a thousand wide."""
+    random_ = random.Random(count)
+
+    def number(low: float, high: float) -> float:
+        return round(random_.uniform(low, high), 3)
+
+    for i in range(count):
+        class_name = RARE_CLASS if i % RARE_EVERY == 0 else CLASSES[i % len(CLASSES)]
+        at = (i % 1000 + number(0, 1), i // 1000 + number(0, 1), number(0, 2))
+        size_m = (number(0.1, 1), number(0.1, 1), number(0.1, 1))
+        yield Thing(f"thing{i}", class_name, Pose(position_m=at), size_m, class_name.lower())
+
+
+def write_turtle(path: Path, count: int) -> None:
+    """`count` things, a line a triple."""
+    with path.open("w") as file:
+        file.writelines(f"@prefix {prefix}: <{iri}> .\n" for prefix, iri in _PREFIXES.items())
+        for name, class_name, pose, size_m, ref in things(count):
+            star = stars.star(name, v.dm(class_name), pose=pose, size_m=size_m, preferred=ref)
+            file.writelines(f"{_short(s)} {_short(p)} {_short(o)} .\n" for s, p, o in star)
+
+
+def write_json(path: Path, count: int) -> None:
+    """`count` things as a scene."""
+    entities = [
+        {"name": name, "class": class_name, "at": pose.position_m, "size": size_m, "ref": ref}
+        for name, class_name, pose, size_m, ref in things(count)
+    ]
+    path.write_text(json.dumps({"entities": entities}))
+
+
+def _short(term: Term) -> str:
+    """A term as Turtle writes it with the prefixes."""
+    if term.startswith('"'):
+        text, caret, datatype = term.partition("^^")
+        return f"{text}{caret}{_short(datatype)}" if caret else term
+    if term == v.RDF_TYPE:
+        return "a"
+    for prefix, iri in _PREFIXES.items():
+        if term.startswith(f"<{iri}"):
+            return f"{prefix}:{term[len(iri) + 1 : -1]}"
+    return term

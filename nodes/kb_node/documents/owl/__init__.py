@@ -1,0 +1,1 @@
+"""OWL's own syntaxes, and its axioms as RDF."""

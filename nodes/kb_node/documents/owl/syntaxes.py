@@ -1,0 +1,157 @@
+"""Functional and Manchester syntax and OWL/XML, as py-horned-owl reads them; a fault comes with its line."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from typing import Literal
+from xml.parsers import expat
+
+import pyhornedowl
+
+from nodes.kb_node.documents.owl.axioms import triples_of
+from ontology import vocabulary as v
+from schemas.explanations import Triple
+
+OwlSyntax = Literal["functional", "manchester", "owlxml"]
+
+_HORNED: dict[OwlSyntax, Literal["ofn", "omn", "owx"]] = {
+    "functional": "ofn",
+    "manchester": "omn",
+    "owlxml": "owx",
+}
+_CHUNK = 1 << 16
+_IRI = re.compile(r"<[A-Za-z][A-Za-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*>")
+_COMMENTS = rb"(?:\s|#[^\n]*(?:\n|\Z))*"
+_FUNCTIONAL = re.compile(_COMMENTS + rb"(Prefix|Ontology)\s*\(")
+_MANCHESTER = re.compile(
+    _COMMENTS + rb"(Prefix:\s+[^\s<]*:\s*<|Ontology:\s*(<|[A-Za-z]+:\s*(\n|\Z)|\w*:\w+\s*\n|\Z))"
+)
+_STANDARD = {"owl": v.OWL, "rdf": v.RDF, "rdfs": v.RDFS, "xsd": v.XSD}
+_DECLARED: dict[OwlSyntax, str] = {
+    "functional": r"Prefix\s*\(\s*{}:\s*=",
+    "manchester": r"Prefix:\s+{}:\s",
+}
+_DECLARE: dict[OwlSyntax, str] = {"functional": "Prefix({}:=<{}>) ", "manchester": "Prefix: {}: <{}> "}
+_LINE = re.compile(r"line_col: \w+\(\((\d+), (\d+)\)")
+_BYTE = re.compile(r"Byte(?:Position|Span)\((\d+)")
+_EXPECTED = re.compile(r"positives: \[([^\]]*)\]")
+_VALIDITY = re.compile(r'ValidityError\("([^"]*)"')
+_THAT = re.compile(r'("(?:\\.|[^"\\])*"|<[^>\s]*>|(?:^|(?<=\s))#[^\n]*)|(?<=\s)that(?=[\s(])', re.DOTALL)
+_REFERENCE = re.compile(r"&(\w[\w.-]*);")
+_OF_XML = frozenset({"lt", "gt", "amp", "apos", "quot"})
+_DOCTYPE = re.compile(r"<!DOCTYPE[^\[>]*(\[.*?\]\s*)?>", re.DOTALL)
+
+
+def owl_syntax_of(content: bytes) -> OwlSyntax | None:
+    """The syntax of OWL's own that `content` begins like, if it does."""
+    if _FUNCTIONAL.match(content):
+        return "functional"
+    if _MANCHESTER.match(content):
+        return "manchester"
+    return None
+
+
+def is_owl_xml(content: bytes) -> bool:
+    """Is it OWL/XML? RDF/XML may begin with an ontology, too, but then has an attribute of RDF's there."""
+    root: list[str] = []
+
+    def note(name: str, attributes: dict[str, str]) -> None:
+        if not root:
+            root.extend((name, *attributes))
+
+    parser = expat.ParserCreate(namespace_separator=" ")
+    parser.StartElementHandler = note
+    with suppress(expat.ExpatError):
+        for start in range(0, len(content), _CHUNK):
+            parser.Parse(content[start : start + _CHUNK], False)
+            if root:
+                break
+    return root[:1] == [f"{v.OWL} Ontology"] and not any(name.startswith(v.RDF) for name in root)
+
+
+def parse(text: str, syntax: OwlSyntax) -> list[Triple]:
+    """The triples of an ontology. Raises ValueError with the line of the fault."""
+    prepared = _prepared_xml(text) if syntax == "owlxml" else _with_prefixes(text, syntax)
+    try:
+        ontology = pyhornedowl.open_ontology_from_string(prepared, serialization=_HORNED[syntax])
+    except ValueError as error:
+        raise ValueError(_spoken(str(error), text, prepared)) from None
+    triples = triples_of(ontology.get_components())
+    for term in {term for triple in triples for term in triple}:
+        if term.startswith("<") and not _IRI.fullmatch(term):
+            at = max(text.find(term), text.find(f'"{term[1:-1]}"'))
+            line = f"line {text.count(chr(10), 0, at) + 1}: " if at >= 0 else ""
+            raise ValueError(f"{line}{term} is no absolute IRI")
+    return triples
+
+
+def _with_prefixes(text: str, syntax: OwlSyntax) -> str:
+    """Every document may use the four standard prefixes undeclared. What is added is no line."""
+    if syntax == "manchester":
+        text = _THAT.sub(lambda found: found[1] or "and", text)
+    missing = [name for name in _STANDARD if not re.search(_DECLARED[syntax].format(name), text)]
+    return "".join(_DECLARE[syntax].format(name, _STANDARD[name]) for name in missing) + text
+
+
+def _prepared_xml(text: str) -> str:
+    """OWL/XML with its entities written out, on the same lines. Raises ValueError for an unknown prefix."""
+    entities: dict[str, str] = {}
+    prefixes = set(_STANDARD)
+    parser = expat.ParserCreate(namespace_separator=" ")
+
+    def see(element: str, attributes: dict[str, str]) -> None:
+        if element == f"{v.OWL} Prefix":
+            prefixes.add(attributes.get("name", ""))
+        name = attributes.get("abbreviatedIRI", ":")
+        if name != ":" and name.partition(":")[0] not in prefixes:
+            raise ValueError(f"line {parser.CurrentLineNumber}: undefined prefix ({name})")
+
+    parser.EntityDeclHandler = lambda name, _, value, *where: entities.setdefault(name, value or "")
+    parser.StartElementHandler = see
+    parser.Parse(text.encode(), True)
+    if not entities:
+        return text
+
+    def written_out(found: re.Match[str]) -> str:
+        name = found[1]
+        if name in _OF_XML or name not in entities:
+            return found[0]
+        return _REFERENCE.sub(written_out, entities[name])
+
+    body = _DOCTYPE.sub(lambda found: "\n" * found[0].count("\n"), text, count=1)
+    return _REFERENCE.sub(written_out, body)
+
+
+def _spoken(fault: str, text: str, prepared: str) -> str:
+    """The complaint about a text, as it was prepared on the same lines, for people and with the line."""
+    if place := _LINE.search(fault):
+        line, shown = int(place[1]), text.splitlines()[int(place[1]) - 1 :][:1]
+        expected = _EXPECTED.search(fault)
+        kinds = expected[1].split(", ") if expected and expected[1] else []
+        return f"line {line} cannot be read{_hint(kinds)}: {_short(shown[0] if shown else '')}"
+    if place := _BYTE.search(fault):
+        at = int(place[1])
+        line = prepared.encode()[:at].count(b"\n") + 1
+        said = _VALIDITY.search(fault)
+        token = prepared.encode()[at : at + 60].decode(errors="ignore").split()
+        what = said[1] if said else fault
+        return f"line {line}: {what}" + (f" ({token[0]})" if what == "undefined prefix" and token else "")
+    return fault.removeprefix("Failed to open ontology: ")
+
+
+def _hint(kinds: list[str]) -> str:
+    """What could stand there, where that is one or two things."""
+    if not 0 < len(kinds) <= 3 or "EOI" in kinds:
+        return ""
+    words = dict.fromkeys("absolute IRI" if kind.startswith("RFC3987") else _in_words(kind) for kind in kinds)
+    return f", where {' or '.join(words)} is expected"
+
+
+def _in_words(kind: str) -> str:
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind.removesuffix("Kw")).lower()
+
+
+def _short(line: str) -> str:
+    line = line.strip()
+    return f"'{line[:77]}...'" if len(line) > 80 else f"'{line}'"

@@ -1,0 +1,291 @@
+"""Class expressions as values: read from the RDF that says them, negated, and written as RDF again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import count
+
+from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_literal, is_named, literal
+from schemas.explanations import Term, Triple
+
+Match = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
+"""The triples of a pattern, in which None is a wildcard."""
+
+
+@dataclass(frozen=True)
+class Role:
+    """A property, read from its subject or, `backwards`, from its object."""
+
+    property: Term
+    backwards: bool = False
+
+    def edge(self, x: Term, y: Term) -> Triple:
+        """That the role leads from x to y."""
+        return (y, self.property, x) if self.backwards else (x, self.property, y)
+
+
+@dataclass(frozen=True)
+class Named:
+    """A class or datatype by its name."""
+
+    term: Term
+
+
+@dataclass(frozen=True)
+class Not:
+    """What is not in a class."""
+
+    part: Expression
+
+
+@dataclass(frozen=True)
+class And:
+    """What is in all of some classes."""
+
+    parts: tuple[Expression, ...]
+
+
+@dataclass(frozen=True)
+class Or:
+    """What is in at least one of some classes."""
+
+    parts: tuple[Expression, ...]
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """An enumeration of individuals or of literals."""
+
+    terms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
+class Only:
+    """What a role leads from to members of a class only (allValuesFrom)."""
+
+    role: Role
+    filler: Expression
+
+
+@dataclass(frozen=True)
+class AtLeast:
+    """What a role leads from to `number` members of a class or more; someValuesFrom is one or more."""
+
+    number: int
+    role: Role
+    filler: Expression
+
+
+@dataclass(frozen=True)
+class AtMost:
+    """What a role leads from to `number` members of a class or fewer."""
+
+    number: int
+    role: Role
+    filler: Expression
+
+
+@dataclass(frozen=True)
+class Has:
+    """What a role leads from to one individual or literal (hasValue)."""
+
+    role: Role
+    value: Term
+
+
+@dataclass(frozen=True)
+class Self:
+    """What a role leads from to itself (hasSelf)."""
+
+    role: Role
+
+
+Expression = Named | Not | And | Or | OneOf | Only | AtLeast | AtMost | Has | Self
+
+ANYTHING = Named(THING)
+
+
+class Unreadable(Exception):
+    """A node is no class expression of OWL 2, or one with facets of datatypes."""
+
+
+def negated(expression: Expression) -> Expression:
+    """The complement, with the negation as far inside as it goes."""
+    match expression:
+        case Not(part):
+            return part
+        case And(parts):
+            return Or(tuple(map(negated, parts)))
+        case Or(parts):
+            return And(tuple(map(negated, parts)))
+        case OneOf(terms) if len(terms) != 1:
+            return And(tuple(Not(OneOf((term,))) for term in terms))
+        case Only(role, filler):
+            return AtLeast(1, role, negated(filler))
+        case AtLeast(number, role, filler):
+            return AtMost(number - 1, role, filler) if number > 0 else Not(ANYTHING)
+        case AtMost(number, role, filler):
+            return AtLeast(number + 1, role, filler)
+        case _:
+            return Not(expression)
+
+
+class Reader:
+    """Reads expressions out of a graph."""
+
+    def __init__(self, match: Match) -> None:
+        self._match = match
+
+    def expression(self, node: Term) -> Expression:
+        """What a node of the graph stands for. Raises Unreadable."""
+        if is_named(node):
+            return Named(node)
+        found = next(self.definitions(node), None)
+        if found is None:
+            raise Unreadable(node)
+        return found
+
+    def definitions(self, node: Term) -> Iterator[Expression]:
+        """The expressions that a node, with a name or without, is defined as. Raises Unreadable."""
+        for name, build in (("owl:intersectionOf", And), ("owl:unionOf", Or)):
+            for head in self._objects(node, name):
+                yield build(tuple(map(self.expression, self.members(head))))
+        for head in self._objects(node, "owl:oneOf"):
+            yield OneOf(tuple(self.members(head)))
+        for name in ("owl:complementOf", "owl:datatypeComplementOf"):
+            for part in self._objects(node, name):
+                yield negated(self.expression(part))
+        for prop in self._objects(node, "owl:onProperty"):
+            yield from self._restrictions(node, self.role(prop))
+
+    def role(self, node: Term) -> Role:
+        """A property or the inverse of one. Raises Unreadable."""
+        if is_named(node):
+            return Role(node)
+        for inverse in self._objects(node, "owl:inverseOf"):
+            role = self.role(inverse)
+            return Role(role.property, not role.backwards)
+        raise Unreadable(node)
+
+    def members(self, head: Term) -> list[Term]:
+        """The members of a list. Raises Unreadable for one that is cut off, branches or runs in a circle."""
+        found: list[Term] = []
+        seen: set[Term] = set()
+        while head != NIL:
+            first, rest = list(self._match(head, FIRST, None)), list(self._match(head, REST, None))
+            if len(first) != 1 or len(rest) != 1 or head in seen:
+                raise Unreadable(head)
+            seen.add(head)
+            found.append(first[0][2])
+            head = rest[0][2]
+        return found
+
+    def _restrictions(self, node: Term, role: Role) -> Iterator[Expression]:
+        for filler in self._objects(node, "owl:someValuesFrom"):
+            yield AtLeast(1, role, self.expression(filler))
+        for filler in self._objects(node, "owl:allValuesFrom"):
+            yield Only(role, self.expression(filler))
+        for value in self._objects(node, "owl:hasValue"):
+            yield Has(role, value)
+        if self._objects(node, "owl:hasSelf"):
+            yield Self(role)
+        kinds = [*self._objects(node, "owl:onClass"), *self._objects(node, "owl:onDataRange")]
+        filler_of = self.expression(kinds[0]) if kinds else ANYTHING
+        for name, bounds in _BOUNDS.items():
+            for number in self._objects(node, name):
+                yield _bounded(bounds, _number(number), role, filler_of)
+
+    def _objects(self, node: Term, name: str) -> list[Term]:
+        return [o for _, _, o in self._match(node, iri(name), None)]
+
+
+_BOUNDS: dict[str, tuple[type[AtLeast] | type[AtMost], ...]] = {
+    "owl:minCardinality": (AtLeast,),
+    "owl:minQualifiedCardinality": (AtLeast,),
+    "owl:maxCardinality": (AtMost,),
+    "owl:maxQualifiedCardinality": (AtMost,),
+    "owl:cardinality": (AtLeast, AtMost),
+    "owl:qualifiedCardinality": (AtLeast, AtMost),
+}
+
+
+def _bounded(
+    bounds: tuple[type[AtLeast] | type[AtMost], ...], number: int, role: Role, filler: Expression
+) -> Expression:
+    parts = tuple(bound(number, role, filler) for bound in bounds)
+    return parts[0] if len(parts) == 1 else And(parts)
+
+
+def _number(term: Term) -> int:
+    try:
+        return int(literal(term).text) if is_literal(term) else -1
+    except ValueError:
+        raise Unreadable(term) from None
+
+
+class Writer:
+    """Writes expressions as RDF, with nodes that no graph has."""
+
+    def __init__(self) -> None:
+        self._numbers = count()
+
+    def fresh(self) -> Term:
+        """A node that is nowhere yet."""
+        return f"_:supposed.{next(self._numbers)}"
+
+    def write(self, expression: Expression, into: list[Triple]) -> Term:
+        """Add the triples of an expression; the node that stands for it. Raises Unreadable for hasSelf."""
+        if isinstance(expression, Named):
+            return expression.term
+        node = self.fresh()
+        match expression:
+            case Not(part):
+                into.append((node, iri("owl:complementOf"), self.write(part, into)))
+            case And(parts):
+                into.append((node, iri("owl:intersectionOf"), self._list(parts, into)))
+            case Or(parts):
+                into.append((node, iri("owl:unionOf"), self._list(parts, into)))
+            case OneOf(terms):
+                into.append((node, iri("owl:oneOf"), self._cells(terms, into)))
+            case Only(role, filler):
+                self._on(node, role, into)
+                into.append((node, iri("owl:allValuesFrom"), self.write(filler, into)))
+            case Has(role, value):
+                self._on(node, role, into)
+                into.append((node, iri("owl:hasValue"), value))
+            case AtLeast(1, role, filler):
+                self._on(node, role, into)
+                into.append((node, iri("owl:someValuesFrom"), self.write(filler, into)))
+            case AtLeast(number, role, filler) | AtMost(number, role, filler):
+                self._on(node, role, into)
+                bound = "min" if isinstance(expression, AtLeast) else "max"
+                into += [
+                    (node, iri(f"owl:{bound}QualifiedCardinality"), _literal(number)),
+                    (node, iri("owl:onClass"), self.write(filler, into)),
+                ]
+            case _:
+                raise Unreadable(str(expression))
+        return node
+
+    def _on(self, node: Term, role: Role, into: list[Triple]) -> None:
+        prop = role.property
+        if role.backwards:
+            prop = self.fresh()
+            into.append((prop, iri("owl:inverseOf"), role.property))
+        into += [(node, TYPE, iri("owl:Restriction")), (node, iri("owl:onProperty"), prop)]
+
+    def _list(self, parts: Iterable[Expression], into: list[Triple]) -> Term:
+        return self._cells([self.write(part, into) for part in parts], into)
+
+    def _cells(self, members: Iterable[Term], into: list[Triple]) -> Term:
+        head = NIL
+        for member in reversed(list(members)):
+            cell = self.fresh()
+            into += [(cell, FIRST, member), (cell, REST, head)]
+            head = cell
+        return head
+
+
+def _literal(number: int) -> Term:
+    return f'"{number}"^^{iri("xsd:nonNegativeInteger")}'

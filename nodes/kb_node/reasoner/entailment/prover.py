@@ -1,0 +1,389 @@
+"""Whether facts follow: by the rules first, then by refutation and by what generic individuals must be.
+
+Every method answers True only for what holds in all models (OWL 2 RDF-Based Semantics), and False when it has
+found no proof. Three arguments carry all of it. *Refutation*: what contradicts the graph is false in all its
+models. *Generalisation*: what follows for an individual that is nowhere mentioned holds for every one.
+*Witnesses*: to name what must exist adds nothing but the name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from itertools import combinations, islice, product
+
+from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.entailment.expressions import (
+    ANYTHING,
+    And,
+    AtLeast,
+    AtMost,
+    Expression,
+    Has,
+    Named,
+    Not,
+    OneOf,
+    Only,
+    Or,
+    Reader,
+    Role,
+    Self,
+    Unreadable,
+    Writer,
+    negated,
+)
+from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import (
+    DIFFERENT_FROM,
+    NOTHING,
+    SAME_AS,
+    THING,
+    TYPE,
+    iri,
+    is_literal,
+    is_named,
+    is_reserved,
+)
+from schemas.explanations import Term, Triple
+
+_DEEPEST = 6
+"""Expressions, definitions and case distinctions one inside the other."""
+_MOST = 3000
+"""Suppositions in one proof."""
+_WIDEST = 24
+"""Alternatives, neighbours or members of an enumeration that are tried."""
+_INDIVIDUALS = 300
+"""Individuals for whom witnesses are named."""
+_TOPS = (iri("owl:topObjectProperty"), iri("owl:topDataProperty"))
+_BOTTOMS = (iri("owl:bottomObjectProperty"), iri("owl:bottomDataProperty"))
+
+Alternatives = list[list[Triple]]
+"""Sets of triples of which one holds; none at all is a contradiction."""
+
+
+class Prover:
+    """Proves facts about the graph of a reasoner, which is as before after every question."""
+
+    def __init__(self, reasoner: Reasoner) -> None:
+        self._reasoner = reasoner
+        self._writer = Writer()
+        self._depth = 0
+        self._left = _MOST
+        self._open: set[tuple[Term, Term]] = set()
+        self.asserted = reasoner.asserted
+        self.holds = reasoner.holds
+        self.reader = Reader(reasoner.asserted)
+        self.fresh = self._writer.fresh
+
+    # Suppositions
+
+    def refutes(self, *supposed: Triple) -> bool:
+        """Whether some triples contradict the graph, so that not all of them can hold."""
+        return self.follows(supposed, lambda: False)
+
+    def follows(self, supposed: Iterable[Triple], goal: Callable[[], bool]) -> bool:
+        """Whether a goal is reached supposing some triples. From a contradiction everything follows."""
+        supposed = [triple for triple in supposed if not is_literal(triple[0])]  # to suppose less is sound
+        things = {triple[0]: None for triple in supposed if not is_schema(triple)}
+        supposed += [(x, TYPE, THING) for x in things]
+        supposed += [(x, p, x) for p in self._reflexive() for x in things]
+        if any(p in _BOTTOMS for _, p, _ in supposed):
+            return True
+        if self._left <= 0:
+            return False
+        self._left -= 1
+        try:
+            with self._reasoner.supposing(supposed):
+                return goal()
+        except Inconsistent:
+            return True
+
+    def follows_from_each(self, alternatives: Alternatives, goal: Callable[[], bool]) -> bool:
+        """Whether a goal is reached whichever of the alternatives holds."""
+        return all(self.follows(supposed, goal) for supposed in alternatives)
+
+    def given(self, x: Term, expression: Expression) -> Alternatives:
+        """What it says of x to be a member of a class, with names for what must exist."""
+        match expression:
+            case Named(term):
+                return [[]] if term == THING else [[(x, TYPE, term)]]
+            case And(parts):
+                choices = islice(product(*(self.given(x, part) for part in parts)), _WIDEST + 1)
+                whole = [[triple for part in choice for triple in part] for choice in choices]
+                return whole if len(whole) <= _WIDEST else [[]]
+            case Or(parts):
+                whole = [one for part in parts for one in self.given(x, part)]
+                return whole if len(whole) <= _WIDEST else [[]]
+            case OneOf(terms):
+                return [[(x, SAME_AS, term)] for term in terms] if len(terms) <= _WIDEST else [[]]
+            case AtLeast(number, role, filler) if number <= _WIDEST:
+                return self._given_values(x, number, role, filler)
+            case Has(role, value):
+                return [[role.edge(x, value)]]
+            case Self(role):
+                return [[role.edge(x, x)]]
+            case Not(OneOf((term,))):
+                return [[(x, DIFFERENT_FROM, term)]]
+            case Not(Has(role, value)):
+                return [self._never(role.edge(x, value))]
+            case Not(Self(role)):
+                return [self._never(role.edge(x, x))]
+            case Not(Named(term)) if term == THING:
+                return []
+        triples: list[Triple] = []
+        try:
+            node = self._writer.write(expression, triples)
+        except Unreadable:
+            return [[]]
+        return [[*triples, (x, TYPE, node)]]
+
+    # Facts
+
+    def fact(self, triple: Triple) -> bool:
+        """Whether a triple about individuals follows."""
+        s, p, o = triple
+        if self._reasoner.holds(triple) or p in _TOPS:
+            return True
+        if p == TYPE:
+            try:
+                return self.member(s, self.reader.expression(o))
+            except Unreadable:
+                return False
+        if p == DIFFERENT_FROM:
+            return self.different(s, o)
+        if p == SAME_AS:
+            return self.refutes((s, DIFFERENT_FROM, o))
+        return s == o and self._is_reflexive(s, p)
+
+    def different(self, x: Term, y: Term) -> bool:
+        """Whether two are different: literals of two values, or whose being the same is a contradiction."""
+        if is_literal(x) and is_literal(y):
+            one, other = datatypes.value(x), datatypes.value(y)
+            return one is not None and other is not None and one != other
+        if is_literal(x):
+            x, y = y, x
+        return self._reasoner.holds((x, DIFFERENT_FROM, y)) or self.refutes((x, SAME_AS, y))
+
+    def member(self, x: Term, expression: Expression) -> bool:
+        """Whether x is in a class."""
+        if self._depth >= _DEEPEST:
+            return False
+        self._depth += 1
+        try:
+            return self._member(x, expression) or self._by_cases(x, expression)
+        finally:
+            self._depth -= 1
+
+    def _member(self, x: Term, expression: Expression) -> bool:
+        match expression:
+            case Named(term):
+                return self._in_named(x, term)
+            case And(parts):
+                return all(self.member(x, part) for part in parts)
+            case Or(parts):
+                if any(self.member(x, part) for part in parts):
+                    return True
+                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+            case OneOf(terms):
+                return any(self._reasoner.holds((x, SAME_AS, term)) for term in terms)
+            case Has(role, value):
+                return self._edge(role, x, value)
+            case Self(role):
+                return self._edge(role, x, x)
+            case Only(role, filler):
+                y = self.fresh()  # generalisation: any value of x
+                return self.follows([role.edge(x, y)], lambda: self.member(y, filler))
+            case AtLeast(number, role, filler):
+                return self._has_values(x, number, role, filler)
+            case Not() | AtMost():
+                return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
+
+    def _in_named(self, x: Term, cls: Term) -> bool:
+        """By the rules, or by a definition that is a subclass: what is in that is in the class, too."""
+        if cls == THING or self._reasoner.holds((x, TYPE, cls)):
+            return True
+        if datatypes.is_datatype(cls):
+            return self._has_datatype(x, cls)
+        if (x, cls) in self._open:
+            return False
+        self._open.add((x, cls))
+        try:
+            return any(self.member(x, definition) for definition in self._sufficient(cls))
+        finally:
+            self._open.remove((x, cls))
+
+    def _has_datatype(self, x: Term, datatype: Term) -> bool:
+        if is_literal(x):
+            return datatypes.contains(datatype, x)
+        held = [known for known in datatypes.known() if self._reasoner.holds((x, TYPE, known))]
+        return datatypes.includes_common(datatype, held)
+
+    def _sufficient(self, cls: Term) -> Iterator[Expression]:
+        """Expressions whose members are all in a class."""
+        nodes = {cls: None}
+        for name in ("rdfs:subClassOf", "owl:equivalentClass"):
+            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.asserted(None, iri(name), cls)))
+            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.inferred(None, iri(name), cls)))
+        for _, _, o in list(self._reasoner.asserted(cls, iri("owl:equivalentClass"), None)):
+            nodes[o] = None
+        for node in nodes:
+            if node != cls and is_named(node) and node != NOTHING:
+                yield Named(node)
+            try:
+                yield from list(self.reader.definitions(node))
+            except Unreadable:
+                continue
+
+    def _has_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
+        """So many values that are in a class and differ from one another, or at least one that must exist."""
+        if number <= 0 or self._has_known_values(x, number, role, filler):
+            return True
+        new = list(self._must_exist([x]))
+        return bool(new) and self.follows(new, lambda: self._has_known_values(x, number, role, filler))
+
+    def _has_known_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
+        found = [y for y in self.values(x, role) if self.member(y, filler)]
+        if number == 1 and found:
+            return True
+        return any(
+            all(self.different(one, other) for one, other in combinations(chosen, 2))
+            for chosen in islice(combinations(found, number), 200)
+        )
+
+    def values(self, x: Term, role: Role) -> list[Term]:
+        """The known values of a role at x, at most as many as are tried."""
+        s, o = (None, x) if role.backwards else (x, None)
+        found: dict[Term, None] = {}
+        for source in (self._reasoner.asserted, self._reasoner.inferred):
+            for triple in islice(source(s, role.property, o), _WIDEST):
+                found[triple[0 if role.backwards else 2]] = None
+        return list(found)
+
+    def _edge(self, role: Role, x: Term, y: Term) -> bool:
+        edge = role.edge(x, y)
+        return not is_literal(edge[0]) and self.fact(edge)
+
+    def _is_reflexive(self, x: Term, prop: Term) -> bool:
+        """Whether the property, or one below it, relates everything, or all of a class of x, to itself."""
+        below = {prop}
+        for source in (self._reasoner.asserted, self._reasoner.inferred):
+            below |= {s for s, _, _ in source(None, iri("rdfs:subPropertyOf"), prop)}
+        reflexive = iri("owl:ReflexiveProperty")
+        if any(self._reasoner.holds((narrow, TYPE, reflexive)) for narrow in below):
+            return True
+        return any(
+            on in below and self._reasoner.holds((x, TYPE, node))
+            for node, _, _ in self._reasoner.asserted(None, iri("owl:hasSelf"), None)
+            for _, _, on in self._reasoner.asserted(node, iri("owl:onProperty"), None)
+        )
+
+    # Cases
+
+    def _by_cases(self, x: Term, goal: Expression) -> bool:
+        """Whether x is in a class in each case of a union, or enumeration, that x is known to be in."""
+        if self._depth > 2 or is_literal(x):
+            return False
+        for expression in self._disjunctions(x):
+            if self.follows_from_each(self.given(x, expression), lambda: self.member(x, goal)):
+                return True
+        return False
+
+    def _disjunctions(self, x: Term) -> Iterator[Expression]:
+        """The unions and enumerations that x is in, without being known to be in one of their parts."""
+        for name in ("owl:unionOf", "owl:oneOf"):
+            for node, _, head in list(self._reasoner.asserted(None, iri(name), None)):
+                if not self._reasoner.holds((x, TYPE, node)):
+                    continue
+                try:
+                    members = self.reader.members(head)
+                    decided = TYPE if name == "owl:unionOf" else SAME_AS
+                    if not any(self._reasoner.holds((x, decided, member)) for member in members):
+                        yield from list(self.reader.definitions(node))
+                except Unreadable:
+                    continue
+
+    # Witnesses
+
+    def with_witnesses(self, mentioned: Iterable[Term], goal: Callable[[], bool]) -> bool:
+        """Whether a goal is reached once what must exist, for two steps, has names."""
+        with ExitStack() as stack:
+            individuals = list(dict.fromkeys([*self._individuals(), *mentioned]))
+            try:
+                for _ in range(2):
+                    new = list(self._must_exist(individuals))
+                    stack.enter_context(self._reasoner.supposing(new))
+                    individuals = [
+                        term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
+                    ]
+            except Inconsistent:
+                return True
+            return goal()
+
+    def _individuals(self) -> list[Term]:
+        schema = {s for s, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:Class"))}
+        found: dict[Term, None] = {}
+        for s, p, o in self._reasoner.asserted():
+            if not is_reserved(p):
+                found.update({s: None, o: None})
+            elif p == TYPE and not is_reserved(o):
+                found[s] = None
+            if len(found) > _INDIVIDUALS:
+                break
+        return [term for term in found if term not in schema and not is_literal(term)]
+
+    def _must_exist(self, individuals: Sequence[Term]) -> Iterator[Triple]:
+        """Values of existential restrictions under fresh names, edges to itself, and that all are things."""
+        wanted = list(self._existential())
+        reflexive = self._reflexive()
+        for x in individuals:
+            for node, expression in wanted:
+                if node == THING or self._reasoner.holds((x, TYPE, node)):
+                    alternatives = self.given(x, expression)
+                    if len(alternatives) == 1:
+                        yield from alternatives[0]
+            yield from ((x, p, x) for p in reflexive)
+            yield (x, TYPE, THING)
+
+    def _reflexive(self) -> list[Term]:
+        return [p for p, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:ReflexiveProperty"))]
+
+    def _existential(self) -> Iterator[tuple[Term, Expression]]:
+        nodes: dict[Term, None] = {}
+        for name in _EXISTENTIAL:
+            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.asserted(None, iri(name), None)))
+        for node in nodes:
+            try:
+                for expression in self.reader.definitions(node):
+                    positive = expression.parts if isinstance(expression, And) else (expression,)
+                    yield from ((node, part) for part in positive if isinstance(part, AtLeast | Self | OneOf))
+            except Unreadable:
+                continue
+
+    def _given_values(self, x: Term, number: int, role: Role, filler: Expression) -> Alternatives:
+        values = [self.fresh() for _ in range(number)]
+        triples = [role.edge(x, y) for y in values]
+        triples += [(one, DIFFERENT_FROM, other) for one, other in combinations(values, 2)]
+        if filler == ANYTHING:
+            return [triples]
+        choices = list(islice(product(*(self.given(y, filler) for y in values)), _WIDEST + 1))
+        if len(choices) > _WIDEST:
+            return [triples]
+        return [[*triples, *(triple for part in choice for triple in part)] for choice in choices]
+
+    def _never(self, edge: Triple) -> list[Triple]:
+        s, p, o = edge
+        node = self.fresh()
+        target = "owl:targetValue" if is_literal(o) else "owl:targetIndividual"
+        return [
+            (node, TYPE, iri("owl:NegativePropertyAssertion")),
+            (node, iri("owl:sourceIndividual"), s),
+            (node, iri("owl:assertionProperty"), p),
+            (node, iri(target), o),
+        ]
+
+
+_EXISTENTIAL = (
+    "owl:someValuesFrom", "owl:minCardinality", "owl:minQualifiedCardinality", "owl:cardinality",
+    "owl:qualifiedCardinality", "owl:hasSelf", "owl:oneOf",
+)  # fmt: skip

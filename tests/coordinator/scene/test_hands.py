@@ -1,0 +1,71 @@
+import pytest
+
+from nodes.coordinator.scene import hands
+from nodes.coordinator.scene.hands import Hand, Hands
+from schemas import errors
+from schemas.commands import Move
+
+MOVE = Move(name="cup1", at=(1.0, 2.0, 0.0), agent="ann")
+ANN = Hand("move", "ann", "cup1 was moved by hand")
+NOBODY = Hand("", "", "cup1 came to rest")
+
+
+def mover(released: Hands) -> Hand:
+    with released.that_moved("cup1") as hand:
+        return hand
+
+
+class Clock:
+    now_s = 0.0
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(hands, "time", clock)
+    return clock
+
+
+@pytest.fixture
+def released():
+    released = Hands()
+    released.let_go(MOVE)
+    return released
+
+
+def test_the_hand_is_forgotten_when_the_map_has_followed(released):
+    assert mover(released) == ANN
+    assert mover(released) == NOBODY
+
+
+def test_the_hand_is_kept_while_the_map_does_not_answer_however_long(released, clock):
+    for _ in range(3):
+        clock.now_s += 8.0
+        with pytest.raises(errors.NoAnswer), released.that_moved("cup1"):
+            raise errors.NoAnswer("it is being restarted")
+    assert mover(released) == ANN
+    assert mover(released) == NOBODY
+
+
+def test_the_hand_is_forgotten_when_the_map_refuses_the_place(released):
+    with pytest.raises(errors.Refused), released.that_moved("cup1"):
+        raise errors.Refused("it may not stand there")
+    assert mover(released) == NOBODY
+
+
+def test_a_body_that_goes_on_for_too_long_came_to_rest_by_itself(released, clock):
+    clock.now_s += 11.0
+    assert mover(released) == NOBODY
+
+
+def test_a_new_hand_counts_more_than_one_whose_move_is_still_to_be_told(released):
+    def while_it_is_told():
+        released.let_go(Move(name="cup1", at=(1.0, 2.0, 0.0), agent="bob"))
+        raise errors.NoAnswer("it is being restarted")
+
+    with pytest.raises(errors.NoAnswer), released.that_moved("cup1"):
+        while_it_is_told()
+    assert mover(released).agent == "bob"

@@ -1,0 +1,191 @@
+"""Random worlds: a schema of any constructs of OWL 2 RL, facts, and changes of both."""
+
+import random
+from typing import NamedTuple
+
+from tests.kb_node.reasoner.graphs import triple, triples
+
+CLASSES = [f":C{n}" for n in range(7)]
+OBJECT_PROPERTIES = [f":p{n}" for n in range(5)]
+DATA_PROPERTIES = [f":d{n}" for n in range(4)]
+INDIVIDUALS = [f":i{n}" for n in range(6)]
+LITERALS = (
+    '"1"^^xsd:integer', '"01"^^xsd:integer', '"1.0"^^xsd:decimal', '"1"^^xsd:byte', '"2"^^xsd:integer',
+    '"1.50"^^xsd:float', '"1.5"^^xsd:float', '"-0.0"^^xsd:float', '"300"^^xsd:integer', '"a"', '"a"@en',
+    '"a"^^xsd:token', '"a"@EN', '"true"^^xsd:boolean', '"x"^^:unknown',
+)  # fmt: skip
+DATATYPES = [
+    f"xsd:{name}" for name in ("integer", "decimal", "byte", "float", "string", "nonNegativeInteger")
+] + ["rdfs:Literal"]
+AXIOMS = (
+    "{c} rdfs:subClassOf {c}",
+    "{c} rdfs:subClassOf {c}",
+    "{c} rdfs:subClassOf {e}",
+    "{e} rdfs:subClassOf {c}",
+    "{c} owl:equivalentClass {c}",
+    "{c} owl:equivalentClass {e}",
+    "{c} owl:equivalentClass [ owl:oneOf ( {i} ) ]",
+    "{c} owl:oneOf ( {i} {i} )",
+    "{c} owl:disjointWith {c}",
+    "{c} owl:complementOf {c}",
+    "[] a owl:AllDisjointClasses ; owl:members ( {c} {c} {c} )",
+    "{c} owl:hasKey ( {d} )",
+    "{c} owl:hasKey ( {d} {d} )",
+    "{c} owl:hasKey ( {p} {d} )",
+    "{p} rdfs:domain {c}",
+    "{p} rdfs:range {c}",
+    "{d} rdfs:domain {c}",
+    "{d} rdfs:range {t}",
+    "{p} rdfs:subPropertyOf {p}",
+    "{d} rdfs:subPropertyOf {d}",
+    "{p} owl:equivalentProperty {p}",
+    "{p} owl:inverseOf {p}",
+    "{p} owl:propertyDisjointWith {p}",
+    "{d} owl:propertyDisjointWith {d}",
+    "[] a owl:AllDisjointProperties ; owl:members ( {p} {p} )",
+    "{p} owl:propertyChainAxiom ( {p} {p} )",
+    "{p} owl:propertyChainAxiom ( {p} {p} {p} )",
+    "{p} a owl:FunctionalProperty",
+    "{d} a owl:FunctionalProperty",
+    "{p} a owl:InverseFunctionalProperty",
+    "{d} a owl:InverseFunctionalProperty",
+    "{p} a owl:TransitiveProperty",
+    "{p} a owl:SymmetricProperty",
+    "{p} a owl:AsymmetricProperty",
+    "{p} a owl:IrreflexiveProperty",
+    "[] a owl:NegativePropertyAssertion ; owl:sourceIndividual {i} ; owl:assertionProperty {p} ;"
+    " owl:targetIndividual {i}",
+    "[] a owl:NegativePropertyAssertion ; owl:sourceIndividual {i} ; owl:assertionProperty {d} ;"
+    " owl:targetValue {l}",
+    "[] a owl:AllDifferent ; owl:members ( {i} {i} )",
+    "[] a owl:AllDifferent ; owl:distinctMembers ( {i} {i} )",
+    "{c} a owl:Class",
+    "{p} a owl:ObjectProperty",
+)
+EXPRESSIONS = (
+    "[ owl:unionOf ( {c} {c} ) ]",
+    "[ owl:intersectionOf ( {c} {c} ) ]",
+    "[ owl:intersectionOf ( {c} {r} ) ]",
+    "[ owl:oneOf ( {i} {i} ) ]",
+    "{r}",
+    "{r}",
+    "{r}",
+)
+RESTRICTIONS = (
+    "owl:onProperty {p} ; owl:hasValue {i}",
+    "owl:onProperty {d} ; owl:hasValue {l}",
+    "owl:onProperty {p} ; owl:someValuesFrom {c}",
+    "owl:onProperty {p} ; owl:someValuesFrom owl:Thing",
+    "owl:onProperty {d} ; owl:someValuesFrom {t}",
+    "owl:onProperty {p} ; owl:allValuesFrom {c}",
+    "owl:onProperty {d} ; owl:allValuesFrom {t}",
+    'owl:onProperty {p} ; owl:maxCardinality "{n}"^^xsd:nonNegativeInteger',
+    'owl:onProperty {d} ; owl:maxCardinality "{n}"^^xsd:nonNegativeInteger',
+    'owl:onProperty {p} ; owl:maxQualifiedCardinality "{n}"^^xsd:nonNegativeInteger ; owl:onClass {c}',
+    'owl:onProperty {d} ; owl:maxQualifiedCardinality "{n}"^^xsd:nonNegativeInteger ; owl:onDataRange {t}',
+    'owl:onProperty {p} ; owl:qualifiedCardinality "1"^^xsd:nonNegativeInteger ; owl:onClass {c}',
+    'owl:onProperty {p} ; owl:cardinality "1"^^xsd:nonNegativeInteger',
+)
+KEYS = [text for text in AXIOMS if "hasKey" in text] * 4 + [
+    text for text in AXIOMS if text.startswith(("{d}", "{c} rdfs:subClassOf", "[] a owl:AllDifferent"))
+]
+NOMINALS = [text for text in AXIOMS if "oneOf" in text] * 3 + [
+    text
+    for text in AXIOMS
+    if "{e}" in text or "range" in text or "Functional" in text or "disjointWith" in text
+]
+
+FACTS = (
+    *(["{i} a {c}", "{i} {p} {i}", "{i} {d} {l}"] * 4),
+    "{i} owl:sameAs {i}",
+    "{i} owl:differentFrom {i}",
+)
+
+
+class Change(NamedTuple):
+    """One transaction."""
+
+    delete: list
+    insert: list
+
+
+class World:
+    """What is asserted, and where it may go from here."""
+
+    def __init__(self, seed, templates=AXIOMS, without=()):
+        """`without` are words of templates that are not to be used."""
+
+        def used(texts):
+            return [text for text in texts if not any(word in text for word in without)]
+
+        self.random = random.Random(seed)
+        few = self.random.random() < 0.7  # names, so that the axioms meet more often
+        self._names = {
+            "c": CLASSES[: 3 if few else None],
+            "p": OBJECT_PROPERTIES[: 2 if few else None],
+            "d": DATA_PROPERTIES[: 2 if few else None],
+            "i": INDIVIDUALS[: 4 if few else None],
+            "l": self.random.choice((LITERALS, LITERALS[:5])),
+            "t": DATATYPES,
+            "n": "01",
+            "e": EXPRESSIONS,
+            "r": [f"[ a owl:Restriction ; {text} ]" for text in used(RESTRICTIONS)],
+        }
+        self._templates = self.random.choices(used(templates), k=10)
+        self._facts = used(FACTS)
+        self.axioms = [self._axiom() for _ in range(self.random.randint(1, 10))]
+        self.asserted = dict.fromkeys(fact for axiom in self.axioms for fact in axiom)
+
+    def change(self):
+        """Some facts go, some come; now and then axioms do, by themselves or together with facts."""
+        chance = self.random.random
+        gone, new = [], []
+        if chance() < 0.12:
+            if self.axioms and chance() < 0.5:
+                gone.append(self.random.choice(self.axioms))
+            if not gone or chance() < 0.3:
+                new.append(self._axiom())
+        schema = {fact for axiom in self.axioms for fact in axiom}
+        facts = [fact for fact in self.asserted if fact not in schema]
+        delete = [fact for axiom in gone for fact in axiom]
+        insert = [fact for axiom in new for fact in axiom]
+        if not (gone or new) or chance() < 0.3:
+            delete += self.random.sample(facts, min(len(facts), self.random.choice((0, 0, 1, 1, 2, 4))))
+            insert += [self._fact() for _ in range(self.random.choice((0, 1, 1, 2, 3, 6)))]
+        return Change(delete, insert)
+
+    def after(self, change):
+        """What is asserted after a change."""
+        left = dict.fromkeys(fact for fact in self.asserted if fact not in change.delete)
+        return left | dict.fromkeys(change.insert)
+
+    def accept(self, change):
+        """The change was made: go on from there."""
+        self.asserted = self.after(change)
+        self.axioms = [axiom for axiom in self.axioms if all(fact in self.asserted for fact in axiom)]
+        known = {fact for axiom in self.axioms for fact in axiom}
+        if new := [fact for fact in change.insert if _is_of_an_axiom(fact) and fact not in known]:
+            self.axioms.append(new)
+
+    def _axiom(self):
+        return triples(self._fill(self.random.choice(self._templates)) + " .")
+
+    def _fact(self):
+        return triple(self._fill(self.random.choice(self._facts)))
+
+    def _fill(self, text):
+        choose = self.random.choice
+        while "{" in text:
+            start = text.index("{")
+            word = choose(self._names[text[start + 1]])
+            text = text[:start] + word + text[start + 3 :]
+        return text
+
+
+def _is_of_an_axiom(fact):
+    _, p, o = fact
+    return (
+        not p.startswith("<http://example.org/")
+        and (p.endswith("#type>") <= ("example.org" not in o))
+        and ("sameAs" not in p and "differentFrom" not in p)
+    )

@@ -1,0 +1,50 @@
+import pytest
+
+from nodes.kb_node.pages import Pages
+from schemas.bridge import SnapshotQuery
+from tests.kb_node.home import chair, close, new_map, transaction
+
+NAMES = tuple(f"chair{i}" for i in range(1, 6))
+
+
+@pytest.fixture
+def semantic_map(tmp_path):
+    semantic_map = new_map(tmp_path)
+    for i, name in enumerate(NAMES):
+        semantic_map.commit(transaction(i, chair(name)))
+    yield semantic_map
+    close(semantic_map)
+
+
+def names(snapshot):
+    return tuple(entity.name for entity in snapshot.entities)
+
+
+def test_without_a_limit_it_is_all_of_the_map(semantic_map):
+    snapshot = Pages(semantic_map).snapshot(SnapshotQuery())
+    assert (snapshot.seq, names(snapshot), snapshot.more) == (5, NAMES, False)
+
+
+def test_pages_follow_one_another_by_name(semantic_map):
+    pages = Pages(semantic_map)
+    first = pages.snapshot(SnapshotQuery(limit=2))
+    second = pages.snapshot(SnapshotQuery(limit=2, after="chair2"))
+    last = pages.snapshot(SnapshotQuery(limit=2, after="chair4"))
+    assert [names(page) for page in (first, second, last)] == [NAMES[:2], NAMES[2:4], NAMES[4:]]
+    assert (first.more, second.more, last.more) == (True, True, False)
+
+
+def test_what_goes_between_two_pages_is_in_neither(semantic_map):
+    pages = Pages(semantic_map)
+    pages.snapshot(SnapshotQuery(limit=2))
+    semantic_map.commit(transaction("gone", retract=chair("chair3")))
+    page = pages.snapshot(SnapshotQuery(limit=2, after="chair2"))
+    assert (page.seq, names(page), page.more) == (6, ("chair4", "chair5"), False)
+
+
+def test_a_page_may_be_the_last_because_the_rest_has_gone(semantic_map):
+    pages = Pages(semantic_map)
+    pages.snapshot(SnapshotQuery(limit=4))
+    semantic_map.commit(transaction("gone", retract=chair("chair5")))
+    page = pages.snapshot(SnapshotQuery(limit=4, after="chair4"))
+    assert (names(page), page.more) == ((), False)
