@@ -30,7 +30,7 @@ class Surface(Struct, frozen=True, kw_only=True):
 
 
 class Interior(Struct, frozen=True, kw_only=True):
-    """A hollow that holds things: the box around it, in the model's frame [m]; `open` at the top, or closed."""
+    """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed."""
 
     low: Corner
     high: Corner

@@ -1,1 +1,1 @@
-"""Spatial relations: against MuJoCo's contacts, against what a person said of the flat, and how quick they are."""
+"""Spatial relations against MuJoCo's contacts, and against what a person said of the flat."""

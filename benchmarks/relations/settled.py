@@ -1,4 +1,4 @@
-"""Random settled scenes of the library's models, and who rests on whom in them, by MuJoCo's contact forces."""
+"""Random settled scenes of the library's models, and who rests on whom by MuJoCo's contact forces."""
 
 from __future__ import annotations
 
@@ -16,10 +16,12 @@ from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 from schemas.scenes import BodyOrder
 
 SUPPORTS = (
-    "table", "desk", "counter", "bench", "bed", "couch", "stool", "chair", "bedstand", "bookshelf", "cabinet", "washing_machine",
+    "table", "desk", "counter", "bench", "bed", "couch", "stool", "chair", "bedstand",
+    "bookshelf", "cabinet", "washing_machine",
 )  # fmt: skip
 THINGS = (
-    "book", "cup", "can", "bottle", "bowl", "plate", "apple", "box", "lamp", "laptop", "phone", "glass", "pan", "pot",
+    "book", "cup", "can", "bottle", "bowl", "plate", "apple", "box", "lamp", "laptop", "phone", "glass",
+    "pan", "pot",
     "basket", "cushion", "keyboard", "remote", "orange", "lemon", "clock", "newspaper", "tray",
 )  # fmt: skip
 STEEPEST = math.cos(math.radians(30.0))
@@ -95,7 +97,7 @@ def _looked_at(world: World) -> Settled:
     data.qpos[:] = world.data.qpos
     mujoco.mj_forward(model, data)
     owner = world.body_names()
-    weight = {name: 0.0 for name in known}
+    weight = dict.fromkeys(known, 0.0)
     for geom, name in enumerate(owner):
         if name in weight:
             weight[name] = float(model.body_subtreemass[model.geom_bodyid[geom]]) * 9.81

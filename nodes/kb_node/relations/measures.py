@@ -1,4 +1,4 @@
-"""What is measured between two solids, relation by relation. Pure functions; None where nothing can be measured.
+"""What is measured between two solids, relation by relation. None where nothing can be measured.
 
 *On* and *in* are grounded in support and containment, not in overlapping boxes (Richard-Bollans et al. 2019).
 """
@@ -42,7 +42,9 @@ def on(upper: Solid, lower: Solid, limits: Thresholds, *, far: bool = False) -> 
             continue
         share = _covered(upper, support.outline)
         if share > 0.0:
-            made = Measure(is_near and share >= limits.base_share, gap, share, support.height, limits.base_share)
+            made = Measure(
+                is_near and share >= limits.base_share, gap, share, support.height, limits.base_share
+            )
             if best is None or preferred(made) > preferred(best):
                 best = made
     return best
@@ -104,7 +106,7 @@ def gap(one: Solid, other: Solid) -> float:
 
 
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
-    """A gap that is small beside the sizes of both (Gapp 1994: distance scaled by the extent of the things)."""
+    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances."""
     if one is other or one.is_place or other.is_place:
         return None
     limit = min(limits.near_most_m, limits.near_share * (max(one.size) + max(other.size)) / 2.0)
@@ -113,7 +115,7 @@ def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
 
 
 def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
-    """Whether one is below some part of the other, as a box is under a table. None where nothing is over it."""
+    """Whether one is below a part of the other, as a box is under a table; None if nothing is over it."""
     if lower is upper or lower.is_place or upper.is_place or not (lower.is_measured and upper.is_measured):
         return None
     if not overlap(lower.bounds, upper.bounds):

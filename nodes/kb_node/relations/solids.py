@@ -1,4 +1,4 @@
-"""An entity as a solid: an oriented box in the map, with the surfaces that carry and the hollows that hold."""
+"""An entity as a solid: an oriented box in the map, its supporting surfaces and its hollows."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Solid:
 
     @cached_property
     def base(self) -> list[Point]:
-        """What it stands on: its base, or, of a thing that leans or lies, the shadow of its lowest corners."""
+        """What it stands on: its base; of a thing that leans or lies, the shadow of its lowest corners."""
         if self.is_upright:
             return hull([(x, y) for x, y, _ in self.corners[:4]])
         reach = self.bottom + LOWEST * (self.top - self.bottom)
@@ -220,12 +220,11 @@ def _quarter_turned(shape: ModelShape) -> ModelShape:
         shape,
         size_m=(y, x, z),
         surfaces=tuple(
-            structs.replace(s, low=(s.low[1], -s.high[0]), high=(s.high[1], -s.low[0])) for s in shape.surfaces
+            structs.replace(s, low=(s.low[1], -s.high[0]), high=(s.high[1], -s.low[0]))
+            for s in shape.surfaces
         ),
         interiors=tuple(
-            structs.replace(
-                i, low=(i.low[1], -i.high[0], i.low[2]), high=(i.high[1], -i.low[0], i.high[2])
-            )
+            structs.replace(i, low=(i.low[1], -i.high[0], i.low[2]), high=(i.high[1], -i.low[0], i.high[2]))
             for i in shape.interiors
         ),
     )

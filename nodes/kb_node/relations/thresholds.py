@@ -9,9 +9,9 @@ class Thresholds(Struct, frozen=True, kw_only=True):
     """The margins of all relations. Lengths in metres, shares from 0 to 1."""
 
     gap_m: float = 0.05
-    """Between a bottom and the surface it stands on; the map's pose may be off the body's by as much."""
+    """Between a bottom and the surface it stands on; the map may be as far off the body."""
     base_share: float = 0.3
-    """Of the base that is over the surface. A body whose centre is over it, and so does not fall, has half."""
+    """Of the base that is over the surface; a body that does not fall has about half."""
     inside_share: float = 0.5
     """Of the volume that is within the hollow."""
     place_share: float = 0.5

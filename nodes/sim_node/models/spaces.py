@@ -1,9 +1,10 @@
-"""Where a model carries things and where it holds them: its support surfaces and its interiors, read off its geometry.
+"""A model's support surfaces and interiors, read off its geometry.
 
-Vertical lines through a grid over the footprint are cut with every part, which gives the solid intervals above each
-cell. A *support surface* is a patch of neighbouring cells whose solids end at one height with room above. An
-*interior* is a body of free cells with a floor below and walls on all four sides; its top may be open, as a bowl's is.
-What collides counts for surfaces, what is seen for interiors: a cup is solid to the physics and hollow to the eye.
+Vertical lines through a grid over the footprint are cut with every part, which gives the solid intervals
+above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height with
+room above. An *interior* is a body of free cells with a floor below and walls on all four sides; its top may
+be open, as a bowl's is. What collides counts for surfaces, what is seen for interiors: a cup is solid to the
+physics and hollow to the eye.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from nodes.sim_node.models.library import Model
@@ -28,11 +28,13 @@ LEVEL_M = 0.006
 """Neighbouring cells whose heights differ by less belong to one surface."""
 LEAST_AREA = 0.02
 """Of the footprint; smaller patches are edges and handles."""
+LEAST_FILL = 0.25
+"""Of the rectangle around a patch; what is thinner is a rim, which carries things only at the model's top."""
 LEAST_VOLUME = 0.03
 """Of the bounding box."""
 
 Intervals = list[tuple[Floats, Floats]]
-"""For each part the lower and upper end of its cut with the vertical line of each cell: (nx, ny), nan for none."""
+"""For each part both ends of its cut with each cell's vertical line: (nx, ny), nan for none."""
 
 
 def shape_of(model: Model) -> ModelShape:
@@ -61,6 +63,7 @@ def _surfaces(cuts: Intervals, xs: Floats, ys: Floats, step: float) -> list[Surf
     tops = _tops(cuts)
     owner: dict[tuple[int, int, int], int] = {}
     surfaces: list[Surface] = []
+    highest = max(top.height for here in tops.values() for top in here)
     least = max(LEAST_AREA * len(xs) * len(ys), 4.0)
     for (i, j), here in sorted(tops.items()):
         for k, top in enumerate(here):
@@ -72,19 +75,24 @@ def _surfaces(cuts: Intervals, xs: Floats, ys: Floats, step: float) -> list[Surf
             cells = np.array([(a, b) for a, b, _ in patch])
             height = float(np.median([tops[a, b][c].height for a, b, c in patch]))
             (x0, y0), (x1, y1) = cells.min(axis=0), cells.max(axis=0)
+            fill = len(patch) / float((x1 - x0 + 1) * (y1 - y0 + 1))
+            if fill < LEAST_FILL and height < 0.95 * highest:
+                continue
             surfaces.append(
                 Surface(
                     height=height,
                     low=(float(xs[x0] - step / 2), float(ys[y0] - step / 2)),
                     high=(float(xs[x1] + step / 2), float(ys[y1] + step / 2)),
-                    fill=len(patch) / float((x1 - x0 + 1) * (y1 - y0 + 1)),
+                    fill=fill,
                 )
             )
     return sorted(surfaces, key=lambda surface: -surface.height)
 
 
 def _patch(
-    tops: dict[tuple[int, int], list[_Top]], start: tuple[int, int, int], owner: dict[tuple[int, int, int], int]
+    tops: dict[tuple[int, int], list[_Top]],
+    start: tuple[int, int, int],
+    owner: dict[tuple[int, int, int], int],
 ) -> list[tuple[int, int, int]]:
     """The tops that are level with the first and joined to it."""
     level = tops[start[0], start[1]][start[2]].height
@@ -144,7 +152,11 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
         covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
         found.append(
             Interior(
-                low=(float(xs[0] + (low[0] - 0.5) * step), float(ys[0] + (low[1] - 0.5) * step), float(low[2] * rise)),
+                low=(
+                    float(xs[0] + (low[0] - 0.5) * step),
+                    float(ys[0] + (low[1] - 0.5) * step),
+                    float(low[2] * rise),
+                ),
                 high=(
                     float(xs[0] + (high[0] - 0.5) * step),
                     float(ys[0] + (high[1] - 0.5) * step),
@@ -158,7 +170,7 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
 
 
 def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:
-    """Where vertical lines through (x, y) enter and leave a part: two arrays (nx, ny), nan where they miss it."""
+    """Where the vertical lines enter and leave a part: two arrays (nx, ny), nan where they miss it."""
     rotation = rotation_matrix(part.turn)
     grid = np.stack(np.broadcast_arrays(xs[:, None], ys[None, :], 0.0), axis=-1) - np.asarray(part.centre)
     origin, up = grid @ rotation, rotation[2]  # in the part's own axes
@@ -196,8 +208,14 @@ def _slabs(origin: Floats, up: Floats, half: Floats) -> tuple[Floats, Floats]:
             outside = np.abs(origin[..., axis]) > half[axis]
             enter[outside] = np.inf
         else:
-            one, other = (-half[axis] - origin[..., axis]) / up[axis], (half[axis] - origin[..., axis]) / up[axis]
-            enter, leave = np.maximum(enter, np.minimum(one, other)), np.minimum(leave, np.maximum(one, other))
+            one, other = (
+                (-half[axis] - origin[..., axis]) / up[axis],
+                (half[axis] - origin[..., axis]) / up[axis],
+            )
+            enter, leave = (
+                np.maximum(enter, np.minimum(one, other)),
+                np.minimum(leave, np.maximum(one, other)),
+            )
     return _ends(enter, leave)
 
 
@@ -240,5 +258,3 @@ def _hull(part: Part, origin: Floats, up: Floats) -> tuple[Floats, Floats]:
         else:
             leave = np.minimum(leave, -height / slope)
     return _ends(enter, leave)
-
-

@@ -22,7 +22,10 @@ def library_shapes() -> dict[str, ModelShape]:
 
 def as_json(shapes: dict[str, ModelShape]) -> str:
     """The file's text: a line for each model."""
-    rows = (f"  {json.dumps(name)}: {json.dumps(_rounded(msgspec.to_builtins(shape)))}" for name, shape in shapes.items())
+    rows = (
+        f"  {json.dumps(name)}: {json.dumps(_rounded(msgspec.to_builtins(shape)))}"
+        for name, shape in shapes.items()
+    )
     return "{\n" + ",\n".join(rows) + "\n}\n"
 
 
