@@ -13,6 +13,7 @@ import click
 from nodes import bus
 from nodes.extern import availability
 from nodes.extern.cli.calling import TIME, command, complain, print_json, print_lines, talks
+from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
@@ -27,13 +28,27 @@ _STATUS_S = 20.0
 
 
 @click.command("list")
-@click.option("--class", "class_", metavar="CLASS", help="Only those of this class, also by inference.")
-@click.option("--on", metavar="THING", help="Only what stands on it, or on what is on it.")
-@click.option("--in", "in_", metavar="PLACE", help="Only what is in that place, or inside that container.")
-@click.option("--near", metavar="THING", help="Only what is near it.")
+@click.option(
+    "--class",
+    "class_",
+    metavar="CLASS",
+    shell_complete=class_names,
+    help="Only those of this class, also by inference.",
+)
+@click.option(
+    "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
+)
+@click.option(
+    "--in",
+    "in_",
+    metavar="PLACE",
+    shell_complete=entity_names,
+    help="Only what is in that place, or inside that container.",
+)
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="Only what is near it.")
 @click.option("--within", type=float, metavar="M", help="With --near: at most so far from it [m].")
 @click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
-@click.option("--to", metavar="THING", help="See --nearest.")
+@click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
@@ -53,7 +68,7 @@ def list_(client: Client, class_: str | None, format: str, as_of: str | None, **
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
 @talks
@@ -78,7 +93,7 @@ def check(client: Client, engine: Any) -> None:
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=entity_names)
 @talks
 def infer(client: Client, name: str | None) -> None:
     """What follows that was not said, about one entity or all."""
@@ -86,7 +101,7 @@ def infer(client: Client, name: str | None) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
 @talks
@@ -96,8 +111,8 @@ def explain(client: Client, name: str, predicate: str, value: str) -> None:
 
 
 @click.command()
-@click.argument("name")
-@click.argument("other", required=False)
+@click.argument("name", shell_complete=entity_names)
+@click.argument("other", required=False, shell_complete=entity_names)
 @click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
 @click.option(
     "--from-pose", "viewpoint", nargs=4, type=float, metavar="X Y Z YAW", help="The same, from a pose."
