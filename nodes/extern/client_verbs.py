@@ -136,13 +136,28 @@ def _load(
     )
 
 
-def _list(class_: str | None = None, *, as_of: When | None = None) -> commands.List:
+def _list(
+    class_: str | None = None,
+    *,
+    as_of: When | None = None,
+    on: str | None = None,
+    in_: str | None = None,
+    near: str | None = None,
+    within: float | None = None,
+    nearest: int | None = None,
+    to: str | None = None,
+) -> commands.List:
     """The entities of a class, over inferred types; all of them without one.
+
+    Of these those `on` a thing, `in_` a place or container, `near` a thing (`within` so many metres of it),
+    or the `nearest` so many `to` a thing; each is given by name, reference or class.
 
     `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
     or a reply's `stamp_ns`. A time denotes its written precision (see `schemas.moments.When`).
     """
-    return commands.List(class_=class_, as_of=as_of)
+    return commands.List(
+        class_=class_, as_of=as_of, on=on, in_=in_, near=near, within=within, nearest=nearest, to=to
+    )
 
 
 def _list_as(
@@ -188,6 +203,7 @@ class Verbs:
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
+    relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
     status = Verb(commands.Status)
