@@ -117,7 +117,7 @@ REFUSED = {
         errors.Inconsistent,
         "the TBox is inconsistent: x cannot be",
     ),
-    "no TBox": ("<urn:a> <urn:b> <urn:c> .", errors.BadFile, "has no classes: is it a TBox"),
+    "no TBox": ("<urn:a> <urn:b> <urn:c> .", errors.BadFile, "has no class: is it a TBox"),
 }
 
 

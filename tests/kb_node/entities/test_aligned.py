@@ -158,8 +158,10 @@ def test_what_is_new_is_said_in_semmaps_words_and_read_again(kitchen, tmp_path):
 
 
 def test_semmaps_words_win_over_the_others(kitchen):
-    star = home.turtle("<http://lab.org/kitchen.owl#drawer1> dm:hasPosition :p . :p dm:float_coordinates_x 3.0 ;"
-                       " dm:float_coordinates_y 3.0 ; dm:float_coordinates_z 3.0 .")  # fmt: skip
+    star = home.turtle(
+        "<http://lab.org/kitchen.owl#drawer1> dm:hasPosition :p ."
+        " :p dm:float_coordinates_x 3.0 ; dm:float_coordinates_y 3.0 ; dm:float_coordinates_z 3.0 ."
+    )
     kitchen.commit(home.transaction(2, star))
     assert kitchen.entity("drawer1").pose.position_m == (3.0, 3.0, 3.0)
     edited(kitchen, at=(4.0, 4.0, 4.0))
