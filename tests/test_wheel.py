@@ -31,8 +31,8 @@ CLIENT = """
 import sys, semmap
 assert "site-packages" in semmap.__file__, semmap.__file__
 with semmap.connect(sys.argv[1]) as client:
-    print(client.add("Cup", "cup1", at=(8.0, 2.2, 0.76), wait="--no-sim" not in sys.argv).text)
-    print(sorted(client.get("cup1").types))
+    print(client.add("Cup", "cup77", at=(8.0, 2.2, 0.76), wait="--no-sim" not in sys.argv).text)
+    print(sorted(client.get("cup77").types))
 """
 
 
@@ -109,7 +109,7 @@ def run_a_system(python: Path, folder: Path, *words: str) -> str:
 def test_the_knowledge_base_runs_from_it_with_its_extra_alone(wheel, tmp_path):
     python = environment(tmp_path / "env", f"semmap[kb] @ {wheel.as_uri()}")
     said = run_a_system(python, tmp_path, "--no-sim", "--no-record")
-    assert "added Cup cup1" in said
+    assert "added Cup cup77" in said
     assert "Dishware" in said
     refused = subprocess.run([python.with_name("semmap"), "up"], cwd=tmp_path, capture_output=True, text=True)
     assert refused.returncode == 2
