@@ -44,10 +44,11 @@ class Answers:
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
         class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
-        if query.as_of is not None:
-            asked = bridge.Entities(class_=class_, as_of=query.as_of)
+        if query.as_of is not None or query.where is not None:
+            asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
             found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
-            return then(found, lambda then_there: self._formatted(map(with_size, then_there), query.format))
+            seen = with_size if query.as_of is not None else self._with_body
+            return then(found, lambda there: self._formatted(map(seen, there), query.format))
         entities = self._door.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
