@@ -11,6 +11,7 @@ SemmapError
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
@@ -148,9 +149,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Up to three of `known` that are spelled most like `word`, the nearest first."""
-    from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
-
+    """Up to three of `known`, nearest first. A client, which knows few names, may be without RapidFuzz."""
+    try:
+        from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
+    except ImportError:
+        return difflib.get_close_matches(word, list(known))
     near = process.extract(
         word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
     )
