@@ -18,7 +18,7 @@ import psutil  # type: ignore[import-untyped]
 from benchmarks.kb import big_files
 from benchmarks.kb.made import timed
 from nodes.extern.client import Client
-from nodes.extern.testing import system_at
+from nodes.extern.testing import free_endpoint, own_system
 from ontology import vocabulary as v
 from schemas import errors
 
@@ -105,7 +105,8 @@ def measure(folder: Path, size: int) -> Scale:
 @contextmanager
 def _running(data: Path) -> Iterator[tuple[Client, str]]:
     """A client of a system on `data`, and its endpoint. The map that is there already wins."""
-    with system_at(data, *_UP) as (client, endpoint):
+    endpoint = free_endpoint()
+    with own_system(data, *_UP, endpoint=endpoint) as client:
         yield client, endpoint
 
 

@@ -7,10 +7,8 @@ import os
 import time
 from collections.abc import Iterator
 
-import zenoh
-
 from nodes import bus
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from schemas import errors
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
@@ -20,12 +18,26 @@ _AGAIN_S = 0.1
 
 
 def endpoint() -> str:
-    """The system that is meant when nothing else is said: `SEMMAP_CONNECT`, or the usual one."""
-    return os.environ.get(CONNECT_VARIABLE) or bus.DEFAULT_ENDPOINT
+    """The system that is meant when nothing else is said.
+
+    That is `SEMMAP_CONNECT`; or the one at the usual endpoint; or the only one that this user runs on this
+    machine. Raises BadRequest when it could be any of several.
+    """
+    if said := os.environ.get(CONNECT_VARIABLE):
+        return said
+    running = registry.systems()
+    if not running or any(system.reachable == bus.DEFAULT_ENDPOINT for system in running):
+        return bus.DEFAULT_ENDPOINT
+    if len(running) > 1:
+        which = ", ".join(f"{system.reachable} ({system.data})" for system in running)
+        raise errors.BadRequest(
+            f"{len(running)} systems run here, choose one with --connect or {CONNECT_VARIABLE}: {which}"
+        )
+    return running[0].reachable
 
 
 @contextlib.contextmanager
-def open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
+def open_session(where: str, namespace: str) -> Iterator[bus.Session]:
     """A session with whoever listens at `where`, or will do so when the system has started.
 
     On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.

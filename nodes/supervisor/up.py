@@ -13,11 +13,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-import zenoh
 from msgspec import structs
 
 from nodes import bus
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
 from nodes.supervisor.watchdog import Watchdog
@@ -48,7 +47,10 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
         process = supervisor.start(settings)
         try:
-            _Foreground(supervisor, settings, process, say).run()
+            with registry.entered(
+                data=supervisor.data, listen=settings.listen, reachable=settings.reachable, pid=process.pid
+            ):
+                _Foreground(supervisor, settings, process, say).run()
         finally:
             _stop(process)
             say("stopped")
@@ -97,7 +99,7 @@ class _Foreground:
     def _on_signal(self, *_: object) -> None:
         self._stopping = True
 
-    def _follow(self, stack: contextlib.ExitStack) -> zenoh.Session | None:
+    def _follow(self, stack: contextlib.ExitStack) -> bus.Session | None:
         """Join the network as soon as the coordinator listens."""
         try:
             session = stack.enter_context(bus.open_session(bus.Network(connect=(self._settings.reachable,))))
@@ -116,6 +118,8 @@ class _Foreground:
                 again = " again" if health.node in self._pids else ""
                 self._pids[health.node] = health.pid
                 self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
+                for note in health.notes:
+                    self._say(f"{'TBox':<{_COLUMN}} {note}")
 
     def _require_alive(self) -> None:
         """A node that ended with an error which no restart mends ends the start, with its last words."""
@@ -132,7 +136,7 @@ class _Foreground:
             self._say(f"{node:<{_COLUMN}} {reason}: restarting it")
             self._supervisor.restart(node)
 
-    def _tell_of_models(self, session: zenoh.Session) -> None:
+    def _tell_of_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""
         if self._settings.models is None or not self._settings.sim:
             return

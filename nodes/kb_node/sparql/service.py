@@ -23,6 +23,7 @@ from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.lanes import Lanes
 from nodes.kb_node.sparql.large_map import Filled, LargeMap, delta_of
 from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
+from nodes.runtime.futures import settle
 from schemas import codec, errors
 from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
@@ -57,6 +58,8 @@ class SparqlService:
         self._seq = 0
         self._since_filling: list[Delta] | None = None
         """While a store is made: the commits since it was begun."""
+        self._later: list[Callable[[], None]] = []
+        """Commands about standing queries that came meanwhile."""
 
     @overload
     def ask(self, command: Sparql, seq: int) -> Future[SparqlResult]: ...
@@ -76,7 +79,11 @@ class SparqlService:
         elif not isinstance(command, Renew) and command.inferred and not self._infers:
             self._infers = True
             self._load()
-        return self._worker.ask(command, seq)
+        if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
+            return self._worker.ask(command, seq)
+        worker, future = self._worker, Future[Any]()
+        self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
+        return future
 
     def follow(self, commit: Commit) -> None:
         """Every commit, in order."""
@@ -126,12 +133,20 @@ class SparqlService:
 
     def _load_into_memory(self, worker: _Worker) -> None:
         worker.send(Load(seq=self._seq, asserted=tuple(self._asserted()), infers=self._infers))
+        self._go_on()
 
     def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
         if self._worker is not None:
             self._worker.send(LoadKept(path=str(store.path), seq=store.seq, settled=store.settled))
             for delta in since:
                 self._worker.send(Committed(delta=delta))
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """The triples are on their way: now for what had to wait for them."""
+        later, self._later = self._later, []
+        for ask in later:
+            ask()
 
     def close(self) -> None:
         """End the process."""

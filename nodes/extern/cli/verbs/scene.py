@@ -8,13 +8,15 @@ from typing import Any
 import click
 
 from nodes.extern.cli.calling import given, talks, vector_option
+from nodes.extern.cli.completing import entity_names
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
+from nodes.runtime import extras
 from schemas import errors
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where the hand lets go: bottom centre [m].")
 @click.option("--yaw", type=float, metavar="RAD")
 @talks
@@ -64,6 +66,7 @@ def picture(client: Client, file: Path, camera: str | None, width: int, height: 
 @click.argument("file", type=click.Path(path_type=Path))
 def replay(file: Path) -> None:
     """Open a recording in the Rerun viewer."""
+    extras.require("semmap replay", "record")
     from nodes.recorder.replay import replay as open_viewer
 
     open_viewer(file)
