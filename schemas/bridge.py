@@ -10,6 +10,7 @@ from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -132,7 +133,7 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Sparql, Watch, Renew),
+        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

@@ -173,6 +173,7 @@ class Verbs:
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
+    could = Verb(commands.Could)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
     status = Verb(commands.Status)

@@ -9,11 +9,13 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, gc_pause, undo
+from nodes.kb_node import answers, gc_pause, questions, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
 from nodes.kb_node.pages import Pages
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
@@ -38,6 +40,7 @@ from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -52,11 +55,12 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
 C = TypeVar("C", Commit, Commit | None)
+R = TypeVar("R", Explanation, Possible)
 
 
 class KnowledgeBase:
@@ -92,6 +96,7 @@ class KnowledgeBase:
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
             Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -219,9 +224,22 @@ class KnowledgeBase:
         """What follows."""
         return answers.infer(self.map, query.name)
 
-    def on_explain(self, query: Explain) -> Explanation:
-        """Why it follows."""
-        return answers.explain(self.map, query)
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Why it follows, or cannot."""
+        return self._tried(questions.explain, questions.of_explain(self.map, query))
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Whether it could be."""
+        return self._tried(questions.could, questions.of_could(self.map, query))
+
+    def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
+        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        reasoner = self.map.reasoner
+        if questions.is_quick(reasoner, asked):
+            with suppress(NotCompilable):
+                return answer(reasoner, asked, anew=False)
+        asserted = list(reasoner.asserted())
+        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

@@ -9,7 +9,7 @@ from schemas import errors
 
 _VERBS = (
     *(edit.add, edit.update, edit.remove, edit.clear, edit.load, past.undo, run.run),
-    *(ask.list_, ask.get, ask.check, ask.infer, ask.explain, ask.export, ask.classes, ask.status),
+    *(ask.list_, ask.get, ask.check, ask.infer, ask.explain, ask.could, ask.export, ask.classes, ask.status),
     *(ask.sparql, ask.watch, past.history, past.last_seen),
     perceive.perceive,
     *(scene.move, scene.pause, scene.step, scene.reset, scene.picture, scene.replay),

@@ -1,0 +1,227 @@
+"""Questions about one triple, asked in words: why it holds, why it cannot, and whether it could."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain, islice
+from typing import NamedTuple
+
+from nodes.kb_node.answers import class_iri
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, datatypes
+from nodes.kb_node.reasoner.explain.sentences import said
+from nodes.kb_node.reasoner.refutation import refute, why_different
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.text import PREFIXES
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Could, Explain
+from schemas.explanations import Explanation, Term, Triple
+from schemas.replies import Possible
+
+_QUICK = 2000
+"""Triples about an individual with which supposing something of it still takes milliseconds."""
+_COMPARED = 50
+"""Values that are looked at for what would be the same."""
+_RELATIONS = {
+    "a": v.RDF_TYPE,
+    "type": v.RDF_TYPE,
+    "sameAs": v.OWL_SAME_AS,
+    "differentFrom": v.OWL_DIFFERENT_FROM,
+}
+
+
+class Asked(NamedTuple):
+    """A question as triples: the one that is meant, or several that a word may stand for."""
+
+    triples: tuple[Triple, ...]
+    negated: bool = False
+
+
+def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
+    """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    subject = _subject(semantic_map, question.name)
+    predicate = _predicate(semantic_map, question.predicate)
+    values = _values(semantic_map, subject, predicate, question.value)
+    return Asked(tuple((subject, predicate, value) for value in values), question.negated)
+
+
+def of_could(semantic_map: SemanticMap, question: Could) -> Asked:
+    """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    subject = _subject(semantic_map, question.name)
+    predicate = _predicate(semantic_map, question.predicate)
+    return Asked(((subject, predicate, _new_value(semantic_map, predicate, question)),))
+
+
+def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
+    """Whether supposing it is quick: the reasoner works change by change, and touches few triples."""
+    return reasoner.is_compiled and not any(
+        _has_many(reasoner, term)
+        for s, p, o in asked.triples
+        for term in ((s,) if p == v.RDF_TYPE or o.startswith('"') else (s, o))
+    )
+
+
+def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
+    """Why it holds, or cannot hold.
+
+    Raises:
+        Refused: it does not hold; or it holds, or nothing says that it cannot.
+        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+    """
+    first = asked.triples[0]
+    clause = said(first, reasoner.words)
+    if asked.negated:
+        if (why := refute(reasoner, first, anew=anew)) is not None:
+            return why
+        holds = reasoner.explain(first)
+        raise errors.Refused(
+            f"it does hold: {holds.text}"
+            if holds
+            else f"it is not known that {clause}, but nothing excludes it"
+        )
+    for triple in asked.triples:
+        found = reasoner.explain(triple) or why_different(reasoner, triple, anew=anew)
+        if found is not None:
+            return found
+    why = refute(reasoner, first, anew=anew)
+    if why is None:
+        raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
+    raise errors.Refused(f"it does not hold: {why.text}", explanation=why)
+
+
+def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
+    """Whether it could hold; the reasoner is as before.
+
+    Raises:
+        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+    """
+    triple = asked.triples[0]
+    clause = said(triple, reasoner.words)
+    if reasoner.holds(triple):
+        return Possible(possible=True, text=f"yes: {clause} already")
+    if (why := refute(reasoner, triple, anew=anew)) is not None:
+        return Possible(possible=False, text=f"no: {why.text}", explanation=why)
+    text = f"yes: nothing excludes that {clause}"
+    if same := sorted(_would_be_same(reasoner, triple)):
+        text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
+    return Possible(possible=True, text=text)
+
+
+def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
+    """What a triple would make the same, as where a property has one value at most."""
+    s, p, o = triple
+    if o.startswith('"') or p in _RELATIONS.values():
+        return
+    others = [(o, y) for y in _known(reasoner, s, p, None, 2)] + [
+        (s, x) for x in _known(reasoner, None, p, o, 0)
+    ]
+    pairs = [(x, v.OWL_SAME_AS, y) for x, y in others if x != y and not reasoner.holds((x, v.OWL_SAME_AS, y))]
+    if not pairs:
+        return
+    try:
+        with reasoner.supposing([triple]):
+            same = [pair for pair in pairs if reasoner.holds(pair)]
+    except Inconsistent:
+        return
+    yield from same
+
+
+def _known(reasoner: Reasoner, s: Term | None, p: Term, o: Term | None, place: int) -> list[Term]:
+    both = chain(reasoner.asserted(s, p, o), reasoner.inferred(s, p, o))
+    return list(dict.fromkeys(triple[place] for triple in islice(both, _COMPARED)))
+
+
+def _has_many(reasoner: Reasoner, term: Term) -> bool:
+    about = chain(reasoner.asserted(term, None, None), reasoner.asserted(None, None, term))
+    return next(islice(about, _QUICK, None), None) is not None
+
+
+# Words
+
+
+def _term(word: str) -> Term | None:
+    """A term as it is written, or a name with a prefix that queries know; None for another word."""
+    prefix, colon, name = word.partition(":")
+    if word.startswith(("<", '"', "_:")):
+        return word
+    return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
+
+
+def _subject(semantic_map: SemanticMap, word: str) -> Term:
+    """An entity, or another individual or a class that the map or its TBox names. Raises UnknownName."""
+    if (entity := semantic_map.find(word)) is not None:
+        return v.iri(entity.iri)
+    others = (term,) if (term := _term(word)) is not None else (v.entity_iri(word), v.dm(word))
+    for known in others:
+        if semantic_map.reasoner.mentioned({known}):
+            return known
+    return v.iri(semantic_map.entity(word).iri)
+
+
+def _predicate(semantic_map: SemanticMap, word: str) -> Term:
+    if word in _RELATIONS:
+        return _RELATIONS[word]
+    if (term := _term(word)) is not None:
+        return term
+    kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
+    names = {
+        v.local_name(p): p
+        for kind in kinds
+        for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
+    }
+    if word not in names:
+        hint = errors.did_you_mean(word, (*names, *_RELATIONS))
+        raise errors.BadRequest(
+            f"unknown property '{word}'{hint or '; there are type and the properties of the TBox'}"
+        )
+    return names[word]
+
+
+def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
+    """The terms that `word` may stand for as the object of this subject and predicate."""
+    if (term := _term(word)) is not None:
+        return [term]
+    if predicate == v.RDF_TYPE:
+        return [class_iri(semantic_map, word)]
+    if predicate in _RELATIONS.values():
+        return [_subject(semantic_map, word)]
+    held = (
+        *semantic_map.reasoner.asserted(subject, predicate),
+        *semantic_map.reasoner.inferred(subject, predicate),
+    )
+    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.local_name(o)) == word]
+    return named or [_unheld(semantic_map, predicate, word)]
+
+
+def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+    """A value that the subject does not have: an individual if there is one of that name."""
+    if _is_data(semantic_map.reasoner, predicate):
+        return _literal(semantic_map.reasoner, predicate, word)
+    found = (v.entity_iri(word), v.dm(word))
+    return next((term for term in found if semantic_map.reasoner.mentioned({term})), found[0])
+
+
+def _new_value(semantic_map: SemanticMap, predicate: Term, question: Could) -> Term:
+    word, reasoner = question.value, semantic_map.reasoner
+    if (term := _term(word)) is not None:
+        return term
+    if predicate == v.RDF_TYPE:
+        return class_iri(semantic_map, word)
+    if _is_data(reasoner, predicate):
+        return _literal(reasoner, predicate, word)
+    return _subject(semantic_map, word)
+
+
+def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
+    kinds = (v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
+    return any(reasoner.holds((predicate, v.RDF_TYPE, kind)) for kind in kinds)
+
+
+def _literal(reasoner: Reasoner, predicate: Term, text: str) -> Term:
+    """A value of the datatype that is the property's range, if it is known."""
+    ranges = (o for _, _, o in reasoner.asserted(predicate, v.RDFS_RANGE))
+    datatype = next((o for o in ranges if o.startswith(f"<{v.XSD}")), None)
+    term = v.literal(text, datatype)
+    if datatype is not None and datatypes.is_ill_typed(term):
+        raise errors.BadRequest(f"'{text}' is not a value of {v.local_name(datatype)}")
+    return term
