@@ -17,6 +17,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Relations,
     Renew,
     Sparql,
     Watch,
@@ -25,6 +26,7 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.moments import When
+from schemas.relations import Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -56,13 +58,19 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The stars of these entities; UnknownName if one is not there."""
+    """The stars of these entities, taken together; UnknownName if one is not there."""
 
     VERB: ClassVar[str] = "star"
 
     names: tuple[str, ...]
-    together: bool = True
-    """What only they use counts as their own; if not, only what one of them uses alone is its own."""
+
+
+class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The commits that these commands have made already; None for a command that has made none."""
+
+    VERB: ClassVar[str] = "made-by"
+
+    ids: tuple[CommandId, ...]
 
 
 class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -94,9 +102,10 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     filename: str
     replace: bool
     skip_unknown: bool
+    strict: bool = False
 
 
-class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
 
     VERB: ClassVar[str] = "load-tbox"
@@ -110,11 +119,15 @@ class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then."""
+    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then.
+
+    With `where` only those that are there; by distance if it asks for the nearest.
+    """
 
     VERB: ClassVar[str] = "list"
     class_: str | None = field(name="class", default=None)
     as_of: When | None = None
+    where: Where | None = None
 
 
 class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -132,8 +145,9 @@ BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
-        *(SnapshotQuery, Recall, StarQuery, Entities),
-        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Sparql, Watch, Renew),
+        *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
+        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

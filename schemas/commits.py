@@ -7,17 +7,57 @@ from typing import ClassVar
 from msgspec import Struct, structs
 
 from schemas.calls import Call
-from schemas.entities import Angle, CommandId, Entity, Probability, Provenance, Quaternion, Source, Vector
+from schemas.entities import (
+    Angle,
+    CommandId,
+    Entity,
+    Name,
+    Pose,
+    Probability,
+    Provenance,
+    Quaternion,
+    Remark,
+    Size,
+    Source,
+    Text,
+    Vector,
+)
 from schemas.explanations import Term, Triple
 
 
-class Placed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity is from now on; what is not given stays as it is."""
+class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
+
+    name: Name
+    class_iri: str
+    pose: Pose | None = None
+    size: Size | None = None
+    ref: Text | None = None
+    alt: tuple[Text, ...] = ()
+    affordances: tuple[str, ...] = ()
+    """Individuals of the TBox, by their local names."""
+
+
+class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What an entity is to be from now on; omitted fields keep their values.
+
+    `alt` replaces all alternative references. An empty `conflict` takes the present one back.
+    """
 
     name: str
+    class_iri: str | None = None
     at: Vector | None = None
     yaw: Angle | None = None
     orientation: Quaternion | None = None
+    size: Size | None = None
+    ref: Text | None = None
+    alt: tuple[Text, ...] | None = None
+    conflict: Remark | None = None
+
+    @property
+    def places(self) -> bool:
+        """Does it say where the entity is?"""
+        return not (self.at is None and self.yaw is None and self.orientation is None)
 
 
 class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -124,15 +164,18 @@ class Effects(Struct, frozen=True, kw_only=True):
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
-class Transaction(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Transaction(
+    Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
     """One atomic change with its preconditions.
 
-    It is refused with `PreconditionFailed` unless every triple of `require` is asserted, and with
-    `NameTaken` unless no triple has a term of `vacant` as its subject. `id` is the command's: the same id
-    a second time changes nothing and is answered with the first commit.
+    What is wanted of entities travels as intents: `remove` (names), `edit` and `add`, carried out in this
+    order. The knowledge base turns them into triples, because it knows the ones that are there; it raises
+    `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
 
-    `placed` are entities (`UnknownName` without one) that are somewhere else now; the knowledge base itself
-    says so in triples, because it knows their coordinates.
+    `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
+    triple of `require` is asserted. `id` is the command's: the same id a second time changes nothing and is
+    answered with the first commit.
 
     `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
     settling). `undoes` are the commits that it takes back.
@@ -146,9 +189,10 @@ class Transaction(Call[Effects | None], frozen=True, kw_only=True, forbid_unknow
     reason: str = ""
     confidence: Probability | None = None
     undoes: tuple[int, ...] = ()
-    placed: tuple[Placed, ...] = ()
+    remove: tuple[str, ...] = ()
+    edit: tuple[Edit, ...] = ()
+    add: tuple[NewEntity, ...] = ()
     require: tuple[Triple, ...] = ()
-    vacant: tuple[Term, ...] = ()
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
 
@@ -187,7 +231,3 @@ class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Its own: they go when it goes. A reference that another entity uses too is not among them."""
     incoming: tuple[Triple, ...]
     """What other individuals say of it."""
-    coordinates: Term | None
-    size: Term | None
-    preferred: tuple[Term, ...]
-    alternatives: tuple[Term, ...]

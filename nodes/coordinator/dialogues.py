@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from schemas import errors
-from schemas.bridge import Outcome, StarQuery, Transactions
+from schemas.bridge import MadeBy, Outcome, Transactions
 from schemas.calls import Call
 from schemas.commits import Transaction
 
@@ -114,16 +114,11 @@ def _each(calls: Mapping[int, Call]) -> Talk[dict[int, Answer]]:
     return answers
 
 
-def _stars(queries: Mapping[int, StarQuery]) -> Talk[dict[int, Answer]]:
-    names = tuple(dict.fromkeys(name for query in queries.values() for name in query.names))
-    if any(query.together and len(query.names) > 1 for query in queries.values()):
-        return (yield from _each(queries))
-    try:
-        found = yield from ask(StarQuery(names=names, together=False))
-    except errors.Refused:  # one of them
-        return (yield from _each(queries))
-    stars = {star.name: star for star in found}
-    return {i: tuple(stars[name] for name in query.names) for i, query in queries.items()}
+def _made_by(queries: Mapping[int, MadeBy]) -> Talk[dict[int, Answer]]:
+    ids = tuple(dict.fromkeys(id_ for query in queries.values() for id_ in query.ids))
+    commits = yield from ask(MadeBy(ids=ids))
+    made = dict(zip(ids, commits, strict=True))
+    return {i: tuple(made[id_] for id_ in query.ids) for i, query in queries.items()}
 
 
 def _commits(transactions: Mapping[int, Transaction]) -> Talk[dict[int, Answer]]:
@@ -139,7 +134,7 @@ def _said(outcome: Outcome) -> Answer:
 
 
 _TOGETHER: Mapping[type[Call], Callable[[Mapping[int, Any]], Talk[dict[int, Answer]]]] = {
-    StarQuery: _stars,
+    MadeBy: _made_by,
     Transaction: _commits,
 }
 """The calls that can be asked together."""

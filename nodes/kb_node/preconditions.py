@@ -39,11 +39,8 @@ def held(
     return {t for t in named if t in found or (t[0] in many and any(reasoner.asserted(*t)))}
 
 
-def require(reasoner: Reasoner, transaction: Transaction, held: Container[Triple]) -> None:
-    """Raises PreconditionFailed for a triple that is not `held` any more, NameTaken for a name that is."""
+def require(transaction: Transaction, held: Container[Triple]) -> None:
+    """Raises PreconditionFailed for a required triple that is not `held` any more."""
     for triple in transaction.require:
         if triple not in held:
             raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
-    for term in transaction.vacant:
-        if any(reasoner.asserted(term)):
-            raise errors.NameTaken(f"the name '{v.local_name(term)}' is taken")

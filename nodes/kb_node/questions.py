@@ -61,6 +61,11 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
+def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
+    """Why it holds by the rules; None if it does not."""
+    return next(filter(None, map(reasoner.explain, asked.triples)), None)
+
+
 def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
     """Why it holds, or cannot hold.
 
@@ -71,22 +76,20 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     first = asked.triples[0]
     clause = said(first, reasoner.words)
     if asked.negated:
-        if (why := refute(reasoner, first, anew=anew)) is not None:
-            return why
+        if (found := refute(reasoner, first, anew=anew)) is not None:
+            return found
         holds = reasoner.explain(first)
         raise errors.Refused(
             f"it does hold: {holds.text}"
             if holds
             else f"it is not known that {clause}, but nothing excludes it"
         )
-    for triple in asked.triples:
-        found = reasoner.explain(triple) or why_different(reasoner, triple, anew=anew)
-        if found is not None:
-            return found
-    why = refute(reasoner, first, anew=anew)
-    if why is None:
+    if (found := why(reasoner, asked) or why_different(reasoner, first, anew=anew)) is not None:
+        return found
+    excluded = refute(reasoner, first, anew=anew)
+    if excluded is None:
         raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
-    raise errors.Refused(f"it does not hold: {why.text}", explanation=why)
+    raise errors.Refused(f"it does not hold: {excluded.text}", explanation=excluded)
 
 
 def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
@@ -99,8 +102,8 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
     clause = said(triple, reasoner.words)
     if reasoner.holds(triple):
         return Possible(possible=True, text=f"yes: {clause} already")
-    if (why := refute(reasoner, triple, anew=anew)) is not None:
-        return Possible(possible=False, text=f"no: {why.text}", explanation=why)
+    if (excluded := refute(reasoner, triple, anew=anew)) is not None:
+        return Possible(possible=False, text=f"no: {excluded.text}", explanation=excluded)
     text = f"yes: nothing excludes that {clause}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)

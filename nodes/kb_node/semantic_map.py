@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
-from typing import TypeVar
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
+from typing import NamedTuple, TypeVar
 
 from msgspec import structs
 
 from nodes.kb_node import gc_pause, preconditions
 from nodes.kb_node.documents import rdf, tbox_validation
-from nodes.kb_node.entities import entity_changes, entity_reading, placing
+from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.storage import closure_cache, commit_encoding, fingerprint
+from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
@@ -30,6 +30,14 @@ PART = 250_000
 """Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 
 T = TypeVar("T")
+
+
+class _Memento(NamedTuple):
+    """A commit that is not durable yet, and the entities that it touched as they were before."""
+
+    commit: Commit
+    before: Mapping[str, Entity | None]
+    """By name; None for one that was not there."""
 
 
 class SemanticMap:
@@ -55,8 +63,8 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
-        self._replaced: dict[str, Entity | None] | None = None
-        """While commits are made together: the entities that were there before, None for new names."""
+        self._undo_log: list[_Memento] | None = None
+        """While commits are made together: what takes them back, in their order."""
         self.seq = 0
         self._checkpointed = 0
         self._replay(start)
@@ -92,16 +100,12 @@ class SemanticMap:
         """Every entity, as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()))
 
-    def stars(self, names: Iterable[str], *, together: bool = True) -> tuple[Star, ...]:
-        """The triples about some entities, taken together or each alone.
-
-        Raises UnknownName, Refused for the TBox's.
-        """
+    def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
+        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, iri, self.seq, leaving if together else {iri}, self.tbox)
-            for iri in iris
+            entity_reading.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
@@ -137,9 +141,9 @@ class SemanticMap:
         A command that comes a second time is answered with its first commit. That is looked up only when
         there is nothing to do or something is in the way, as the journal is: it takes no command twice.
 
-        Raises PreconditionFailed, NameTaken, UnknownName for what is placed and is none, Inconsistent (with
-        the explanation), BadRequest for a star that does not make sense, Refused when it takes away from the
-        TBox or the disk does not take the commit.
+        Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; Inconsistent
+        (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
+        from the TBox or the disk does not take the commit.
         """
         try:
             made = self._commit(transaction)
@@ -152,7 +156,7 @@ class SemanticMap:
     def _commit(self, transaction: Transaction) -> Commit | None:
         transaction = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
-        preconditions.require(self.reasoner, transaction, held)
+        preconditions.require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
         retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
         inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
@@ -195,9 +199,7 @@ class SemanticMap:
 
         When the disk does not take them, all are refused and the map is as before.
         """
-        before = self.seq
-        replaced: dict[str, Entity | None] = {}
-        self._replaced = replaced
+        log = self._undo_log = []
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -209,21 +211,25 @@ class SemanticMap:
                     except errors.SemmapError as error:
                         results.append(error)
         except BaseException as error:
-            made = {c.seq: c for c in results if isinstance(c, Commit) and c.seq > before}
-            for _, commit in sorted(made.items(), reverse=True):
-                self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
-            self.seq = before
-            for name, entity in replaced.items():
-                if entity is None:
-                    self._entities.pop(name, None)
-                else:
-                    self._entities[name] = entity
+            for memento in reversed(log):
+                self._take_back(memento)
             if not isinstance(error, NotWritten):
                 raise
             return [error] * len(transactions)
         finally:
-            self._replaced = None
+            self._undo_log = None
         return results
+
+    def _take_back(self, memento: _Memento) -> None:
+        """Undo the last commit, of which the journal keeps nothing."""
+        commit, before = memento
+        self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+        for name, entity in before.items():
+            if entity is None:
+                self._entities.pop(name, None)
+            else:
+                self._entities[name] = entity
+        self.seq = commit.seq - 1
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
@@ -243,28 +249,37 @@ class SemanticMap:
                 seq=self.seq,
                 triples=tuple(self.abox()),
                 entities=tuple(self._entities.values()),
-                read_by=fingerprint.of_code(),
+                read_by=conclusions_format.mark(),
             )
         )
         self._checkpointed = self.seq
 
     def _spelled_out(self, transaction: Transaction) -> Transaction:
-        """The transaction with where entities are placed said in triples, too."""
-        if not transaction.placed:
+        """The transaction with its intents said in triples, too."""
+        remove, edit, add = transaction.remove, transaction.edit, transaction.add
+        if not (remove or edit or add):
             return transaction
-        retract, insert = list(transaction.retract), list(transaction.insert)
-        for placed in transaction.placed:
-            gone, come = placing.place(self.reasoner, self.tbox, self.entity(placed.name), placed)
-            retract += gone
-            insert += come
-        return structs.replace(transaction, retract=tuple(retract), insert=tuple(insert))
+        draft = entity_writing.draft(
+            self.reasoner,
+            self.classes,
+            self.tbox,
+            self.entity,
+            remove=self.steadily(remove),
+            edit=self.steadily(edit),
+            add=self.steadily(add),
+        )
+        return structs.replace(
+            transaction,
+            retract=(*transaction.retract, *draft.retract),
+            insert=(*transaction.insert, *draft.insert),
+        )
 
     def _replay(self, start: Checkpoint) -> None:
         self._change(insert=start.triples)
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == fingerprint.of_code():
+        elif start.read_by == conclusions_format.mark():
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
@@ -364,9 +379,9 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
-        if self._replaced is not None:
-            for name in commit.names:
-                self._replaced.setdefault(name, self._entities.get(name))
+        if self._undo_log is not None:
+            before = {name: self._entities.get(name) for name in commit.names}
+            self._undo_log.append(_Memento(commit, before))
         for gone in commit.removed:
             del self._entities[gone.name]
         self._show(commit.changed)

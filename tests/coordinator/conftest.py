@@ -54,7 +54,7 @@ def door(semantic_map):
             else Outcome(commit=_effects(result))
             for result in semantic_map.commit_together(several.transactions)
         ),
-        "star": lambda query: semantic_map.stars(query.names, together=query.together),
+        "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
     }
     door = Door(lambda call: answers[call.VERB](call))

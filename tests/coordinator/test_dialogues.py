@@ -8,20 +8,8 @@ import pytest
 
 from nodes.coordinator.dialogues import hold, hold_later, in_step
 from schemas import errors
-from schemas.bridge import Outcome, StarQuery, Transactions
-from schemas.commits import Commit, Star, Transaction
-
-
-def star(name):
-    empty = {
-        "own": (),
-        "incoming": (),
-        "coordinates": None,
-        "size": None,
-        "preferred": (),
-        "alternatives": (),
-    }
-    return Star(seq=1, name=name, iri=f"<urn:{name}>", **empty)
+from schemas.bridge import MadeBy, Outcome, Transactions
+from schemas.commits import Commit, Transaction
 
 
 def transaction(name):
@@ -33,24 +21,22 @@ def commit(name):
 
 
 def change(name):
-    """A talk as of a command: the star, then the commit."""
-    (found,) = yield StarQuery(names=(name,))
-    made = yield transaction(found.name)
+    """A talk as of a command with an id: was it done before? If not, the commit."""
+    (made,) = yield MadeBy(ids=(name,))
+    made = made or (yield transaction(name))
     return made.id
 
 
 class KnowledgeBase:
-    """Knows every name but `gone`, refuses to commit `no`, and does not understand `odd`."""
+    """Has done `done` before, refuses to commit `no`, and does not understand `odd`."""
 
     def __init__(self):
         self.asked = []
 
     def __call__(self, message):
         self.asked.append(message)
-        if isinstance(message, StarQuery):
-            if "gone" in message.names:
-                raise errors.UnknownName("no entity is named 'gone'")
-            return tuple(map(star, message.names))
+        if isinstance(message, MadeBy):
+            return tuple(commit(id_) if id_ == "done" else None for id_ in message.ids)
         if isinstance(message, Transactions):
             return tuple(map(self.outcome, message.transactions))
         outcome = self.outcome(message)
@@ -73,20 +59,20 @@ def ask():
 
 def test_one_talk_asks_as_it_is_written(ask):
     assert hold(change("a"), ask) == "a"
-    assert ask.asked == [StarQuery(names=("a",)), transaction("a")]
+    assert ask.asked == [MadeBy(ids=("a",)), transaction("a")]
 
 
 def test_what_is_asked_at_the_same_time_goes_together(ask):
     assert hold(in_step([change("a"), change("b")]), ask) == ["a", "b"]
     assert ask.asked == [
-        StarQuery(names=("a", "b"), together=False),
+        MadeBy(ids=("a", "b")),
         Transactions(transactions=(transaction("a"), transaction("b"))),
     ]
 
 
 @pytest.mark.parametrize(
     ("bad", "error"),
-    [("gone", errors.UnknownName), ("no", errors.PreconditionFailed), ("odd", errors.BadRequest)],
+    [("no", errors.PreconditionFailed), ("odd", errors.BadRequest)],
 )
 def test_an_error_ends_its_own_talk_only(ask, bad, error):
     first, second, third = hold(in_step([change("a"), change(bad), change("c")]), ask)
@@ -103,12 +89,12 @@ def test_a_talk_may_go_on_after_an_error(ask):
     assert hold(in_step([stubborn(), change("a"), stubborn()]), ask) == ["yes", "a", "yes"]
 
 
-def test_the_stars_of_entities_that_leave_together_are_asked_as_such(ask):
-    def leaving(*names):
-        return (yield StarQuery(names=names))
-
-    hold(in_step([leaving("a", "b"), leaving("c")]), ask)
-    assert ask.asked == [StarQuery(names=("a", "b")), StarQuery(names=("c",))]
+def test_who_was_answered_before_does_not_hold_up_the_others(ask):
+    assert hold(in_step([change("a"), change("done"), change("b")]), ask) == ["a", "done", "b"]
+    assert ask.asked == [
+        MadeBy(ids=("a", "done", "b")),
+        Transactions(transactions=(transaction("a"), transaction("b"))),
+    ]
 
 
 def test_without_an_answer_nothing_is_said_to_be_done():
@@ -126,7 +112,7 @@ def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
         asked.append((message, Future()))
         return asked[-1][-1]
 
-    future = hold_later(in_step([change("a"), change("gone")]), ask_later)
+    future = hold_later(in_step([change("a"), change("no")]), ask_later)
     while not future.done():
         message, answer = asked[-1]
         try:
@@ -134,12 +120,12 @@ def test_a_talk_held_later_goes_on_when_the_answer_comes(ask):
         except errors.SemmapError as error:
             answer.set_exception(error)
     first, second = future.result()
-    assert (first, type(second)) == ("a", errors.UnknownName)
+    assert (first, type(second)) == ("a", errors.PreconditionFailed)
 
 
 def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
     def broken():
-        yield StarQuery(names=())
+        yield MadeBy(ids=())
         raise ZeroDivisionError
 
     done: Future = Future()

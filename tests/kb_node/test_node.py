@@ -16,7 +16,7 @@ from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
 from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
-from schemas.commits import Effects
+from schemas.commits import Effects, NewEntity
 from schemas.entities import Entity
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
@@ -139,14 +139,14 @@ def test_the_tbox_that_holds_is_no_change(session):
         return ask(session, "load-tbox", order)
 
     text = TBOX_TURTLE + "dm:Chair rdfs:subClassOf [ owl:unionOf ( dm:Seat dm:Object ) ] ."
-    commit = load(1, text)
+    commit = load(1, text).commit
     assert commit.tbox
-    assert load(2, text) is None
-    assert load(1, text) == commit
-    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").seq
+    assert load(2, text).commit is None
+    assert load(1, text).commit == commit
+    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").commit.seq
     (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
-    assert load(3, TBOX_TURTLE).seq == commit.seq + 2
+    assert load(3, TBOX_TURTLE).commit.seq == commit.seq + 2
 
 
 def test_two_clients_see_one_map(bench, session):
@@ -154,7 +154,11 @@ def test_two_clients_see_one_map(bench, session):
     with bench.client() as other:
         assert ask(other, "get", Get(name="two")) == ask(session, "get", Get(name="two"))
         with pytest.raises(errors.NameTaken, match="the name 'two' is taken"):
-            ask(other, "commit", transaction("again", chair("two"), vacant=[v.entity_iri("two")]))
+            ask(
+                other,
+                "commit",
+                transaction("again", add=[NewEntity(name="two", class_iri=v.bare(v.dm("Chair")))]),
+            )
         ask(other, "commit", transaction("gone", retract=chair("two")))
     with pytest.raises(errors.UnknownName, match="no entity is named 'two'"):
         ask(session, "get", Get(name="two"))

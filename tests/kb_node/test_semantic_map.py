@@ -4,13 +4,13 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import fingerprint
+from nodes.kb_node.storage import conclusions_format
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Commit, Edit, NewEntity, Snapshot
 from schemas.entities import Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
@@ -83,14 +83,22 @@ HIGH = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_x "high"^^xsd:floa
 NAN = ':a a dm:Chair ; dm:hasPosition [ dm:float_coordinates_y "NaN"^^xsd:float ] .'
 TWICE = "<http://a.org/x#b> a dm:Chair . <http://b.org/x#b> a dm:Chair ."
 IN_A_CHAIR = [*chair(), *turtle(":x dm:isLocatedIn :chair1 .")]
+
+
+def new_chair(name):
+    """The intent to add a chair."""
+    return NewEntity(name=name, class_iri=v.bare(v.dm("Chair")))
+
+
 REFUSED = {
     "inconsistent": ([*chair(), (CHAIR1, v.RDF_TYPE, v.LOCATION)], {}, errors.Inconsistent),
     "inferred to be inconsistent": (IN_A_CHAIR, {}, errors.Inconsistent),
     "ill-typed": (turtle(HIGH), {}, errors.Inconsistent),
     "not finite": (turtle(NAN), {}, errors.BadRequest),
     "precondition": (chair(), {"require": [(CHAIR2, v.RDF_TYPE, v.dm("Chair"))]}, errors.PreconditionFailed),
-    "name taken": (chair("chair0"), {"vacant": [v.entity_iri("chair0")]}, errors.NameTaken),
-    "star's name taken": (chair("b"), {"vacant": [v.entity_iri("chair0_coordinates")]}, errors.NameTaken),
+    "name taken": ((), {"add": [new_chair("chair0")]}, errors.NameTaken),
+    "nobody to change": (chair("b"), {"edit": [Edit(name="chair9", ref="x")]}, errors.UnknownName),
+    "nobody to remove": (chair("b"), {"remove": ["chair0", "chair9"]}, errors.UnknownName),
     "name taken elsewhere": (turtle("<http://example.org/x#chair0> a dm:Chair ."), {}, errors.NameTaken),
     "one name twice": (turtle(TWICE), {}, errors.NameTaken),
     "no name": (turtle("<http://a.org/my%20chair> a dm:Chair ."), {}, errors.BadRequest),
@@ -242,7 +250,7 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     before = semantic_map.snapshot()
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
-        other.setattr(fingerprint, "of_code", lambda: b"other")
+        other.setattr(conclusions_format, "mark", lambda: b"other")
         semantic_map._entities = {
             name: structs.replace(entity, class_="Stool") for name, entity in semantic_map._entities.items()
         }

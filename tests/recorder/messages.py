@@ -92,7 +92,4 @@ def commit(seq, *changed, removed=(), inserted=(), retracted=(), **others):
 
 
 def star(name, *own, seq=1):
-    return Star(
-        seq=seq, name=name, iri=v.entity_iri(name), own=own, incoming=(), coordinates=None, size=None,
-        preferred=(), alternatives=(),
-    )  # fmt: skip
+    return Star(seq=seq, name=name, iri=v.entity_iri(name), own=own, incoming=())

@@ -7,13 +7,13 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk
-from nodes.coordinator.door.committing import commit, commit_built, new_id, once, seq, stars
+from nodes.coordinator.door.committing import commit, new_id, once, seq
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.scene.hands import Hand
 from schemas import errors
 from schemas.commands import Add, Clear, Command, Remove, Update
-from schemas.commits import Effects, Transaction
+from schemas.commits import Effects
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -30,11 +30,7 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
     pose = pose_of(at, command.yaw, command.orientation)
     ref = command.ref or (_label(found) if command.default else None)
 
-    def build(suffix: str) -> Talk[Transaction]:
-        return transactions.add(command, name, found, pose, ref, suffix)
-        yield  # nothing to ask
-
-    made = yield from commit_built(view, build)
+    made = yield from commit(view, transactions.add(command, name, found, pose, ref))
     return Changed(
         commit=seq(made),
         text=f"added {found.name} {name} at {_metres(pose)}",
@@ -52,17 +48,10 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     if any(change is not None for change in changes):
         require_authority(command, [entity])
 
-    def build(suffix: str) -> Talk[Transaction]:
-        (star,) = yield from stars((entity.name,))
-        return transactions.update(command, view.entity(entity.name), star, found, suffix)
-
-    if all(change is None for change in (*changes, command.conflict)):
-        made = yield from commit(view, transactions.place(command))
-    else:
-        made = yield from commit_built(view, build)
+    made = yield from commit(view, transactions.update(command, found))
     return Changed(
         commit=seq(made),
-        text=f"updated {entity.name}" if made else f"{entity.name} is like that already",
+        text=f"updated {entity.name}" if made else f"{entity.name} unchanged: already up to date",
         names=(entity.name,),
         notes=view.classes.note(command.class_ or "", found) if found else (),
     )
@@ -96,7 +85,7 @@ def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | 
         at=pose.position_m,
         orientation=pose.orientation_wxyz,
     )
-    return (yield from commit(view, structs.replace(transactions.place(command), verb=hand.verb)))
+    return (yield from commit(view, structs.replace(transactions.update(command), verb=hand.verb)))
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
@@ -104,10 +93,7 @@ def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entit
     if not names:
         return Changed(commit=None, text="the map is empty already")
 
-    def build(_: str) -> Talk[Transaction]:
-        return transactions.remove(command, reason, (yield from stars(names)))
-
-    made = yield from commit_built(view, build)
+    made = yield from commit(view, transactions.remove(command, reason, names))
     return Changed(commit=seq(made), text=f"removed {len(names)}: {_few(names)}", names=names)
 
 

@@ -1,4 +1,4 @@
-"""What every command that changes the map does: commit, again if need be, and only once."""
+"""What every command that changes the map does: commit, and only once."""
 
 from __future__ import annotations
 
@@ -13,33 +13,44 @@ from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from schemas.bridge import StarQuery
+from schemas.bridge import MadeBy
 from schemas.commands import Classes, Command
-from schemas.commits import Effects, Star, Transaction
+from schemas.commits import Effects, Transaction
 from schemas.replies import Changed
 
-_ATTEMPTS = 5
 C = TypeVar("C", bound=Command)
 Change = Callable[[KnownMap, C], Talk[Changed]]
 
 
 def once(change: Change[C]) -> Change[C]:
-    """A command that is sent again under the same id is answered with its first result."""
+    """A command that is sent again under the same id is answered with its first result.
+
+    The knowledge base executes an id once and answers it with the first commit, so the command is simply
+    executed. Only when it fails, changes nothing or comes back with an old commit is it asked whether that id
+    was executed before: a command that comes for the first time costs no additional question.
+    """
 
     @functools.wraps(change)
     def execute(view: KnownMap, command: C) -> Talk[Changed]:
         if not command.id:
             return (yield from change(view, structs.replace(command, id=new_id())))
-        done = yield from _done_before(command)
-        return done or (yield from change(view, command))
+        known_seq = view.seq
+        try:
+            changed = yield from change(view, command)
+        except (errors.Refused, errors.BadRequest):
+            if done := (yield from _done_before(command)):
+                return done
+            raise
+        if changed.commit is not None and changed.commit > known_seq:
+            return changed
+        return (yield from _done_before(command)) or changed
 
     return execute
 
 
 def _done_before(command: Command) -> Talk[Changed | None]:
     """The result of the command with this id, if there was one."""
-    nothing = Transaction(id=command.id, source=command.source)
-    commit = yield from ask(nothing)
+    (commit,) = yield from ask(MadeBy(ids=(command.id,)))
     if commit is None:
         return None
     names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
@@ -49,23 +60,6 @@ def _done_before(command: Command) -> Talk[Changed | None]:
 def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
     """Commit it; None if it changes nothing."""
     return (yield from taken(view, (yield from ask(transaction))))
-
-
-def commit_built(view: KnownMap, build: Callable[[str], Talk[Transaction]]) -> Talk[Effects | None]:
-    """Commit what `build(suffix)` gives; again if somebody was quicker, or has a name it needs."""
-    suffix = ""
-    for attempt in range(_ATTEMPTS):
-        transaction = yield from build(suffix)
-        try:
-            return (yield from commit(view, transaction))
-        except errors.PreconditionFailed:
-            if attempt == _ATTEMPTS - 1:
-                raise
-        except errors.NameTaken:
-            if suffix:
-                raise
-            suffix = f"_{view.seq + 1}"
-    raise AssertionError("the last attempt returns or raises")
 
 
 def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
@@ -83,11 +77,6 @@ def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     yield from taken(view, commit)
     if commit.tbox:
         view.classes = ClassNames((yield from ask(Classes())))
-
-
-def stars(names: tuple[str, ...]) -> Talk[tuple[Star, ...]]:
-    """The triples about some entities."""
-    return (yield from ask(StarQuery(names=names)))
 
 
 def new_id() -> str:

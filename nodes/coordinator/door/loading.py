@@ -9,7 +9,7 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import commit_built, once, seq, stars, taken, taken_with_classes
+from nodes.coordinator.door.committing import commit, once, seq, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
@@ -17,9 +17,8 @@ from nodes.runtime.class_names import ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
-from schemas.commits import Effects, Transaction
+from schemas.commits import Effects, NewEntity
 from schemas.entities import ClassInfo, free_name
-from schemas.explanations import Triple
 from schemas.replies import Changed
 from schemas.scene_files import Described
 
@@ -47,7 +46,7 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
 def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:
     known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
     taken_names = set() if command.replace else set(view.entities)
-    insert: dict[Triple, None] = {}
+    new: list[NewEntity] = []
     names: dict[str, None] = {}
     for item, found in known:
         name = item.name or free_name(found.name, taken_names)
@@ -57,20 +56,11 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
             raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
         taken_names.add(name)
         names[name] = None
-        insert.update(dict.fromkeys(transactions.describe(name, found, item)))
-    gone = (yield from stars(tuple(view.entities))) if command.replace and view.entities else ()
-
-    def build(_: str) -> Talk[Transaction]:
-        return transactions.transaction(
-            command,
-            f"load {command.filename}",
-            retract=[t for star in gone for t in (*star.own, *star.incoming)],
-            insert=insert,
-        )
-        yield  # nothing to ask
-
-    commit = yield from commit_built(view, build)
-    return _loaded(command, commit, tuple(names), skipped, notes)
+        new.append(transactions.described(name, found, item))
+    leaving = tuple(view.entities) if command.replace else ()
+    change = transactions.transaction(command, f"load {command.filename}", remove=leaving, add=new)
+    made = yield from commit(view, change)
+    return _loaded(command, made, tuple(names), skipped, notes)
 
 
 def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
@@ -83,6 +73,7 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         filename=command.filename,
         replace=command.replace,
         skip_unknown=command.skip_unknown,
+        strict=command.strict,
     )
     loaded = yield from ask(document)
     commit = yield from taken(view, loaded.commit)
@@ -90,8 +81,11 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
-    if command.replace or command.skip_unknown:
-        raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+    if command.replace or command.skip_unknown or command.strict:
+        raise errors.BadRequest(
+            "--replace, --skip-unknown and --strict are for maps: a TBox takes the place of the present one,"
+            " and the map stays as it is"
+        )
     require_operator(command, "replace the TBox")
     order = LoadTBox(
         id=command.id,
@@ -101,12 +95,13 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit = yield from ask(order)
-    if commit is None:
-        return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
+    loaded = yield from ask(order)
+    if (commit := loaded.commit) is None:
+        text = f"the TBox is as in {command.filename or 'the file'} already"
+        return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
-    return Changed(commit=commit.seq, text=text, names=commit.names)
+    return Changed(commit=commit.seq, text=text, names=commit.names, notes=loaded.notes)
 
 
 def _sort_out(

@@ -162,44 +162,35 @@ def _name(iri: Term, class_name: str) -> str:
 
 def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
     """The individuals to whose star a triple about `subject` may belong: itself, and who points to it."""
-    return {subject, *_users(reasoner, subject)}
+    return {subject, *users(reasoner, subject)}
 
 
 def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: Set[Term], tbox: frozenset[Triple]) -> Star:
+    """The triples about an entity, as `star_of` has them. Raises Refused."""
+    own, incoming = star_of(reasoner, iri, leaving, tbox)
+    return Star(seq=seq, name=v.local_name(iri), iri=iri, own=tuple(own), incoming=tuple(incoming))
+
+
+def star_of(
+    reasoner: Reasoner, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
+) -> tuple[list[Triple], list[Triple]]:
     """The triples about an entity: its own, and what others say of it.
 
     What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox
     says does not. Raises Refused for an entity that the TBox itself has.
     """
-    said = list(reasoner.asserted(iri))
-    if not tbox.isdisjoint(said):
+    own = list(reasoner.asserted(iri))
+    if not tbox.isdisjoint(own):
         raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
-    own = list(said)
-    nodes: dict[Term, list[Term]] = {}
-    for predicate in stars.STAR_PROPERTIES:
-        objects = sorted({o for _, p, o in said if p == predicate})
-        private = {o for o in objects if all(user in leaving for user in _users(reasoner, o))}
-        about = {o: list(reasoner.asserted(o, None, None)) for o in private - leaving}
-        own += [t for triples in about.values() if tbox.isdisjoint(triples) for t in triples]
-        # A position or size that is somebody else's too is not changed: a change makes a new one.
-        shared = predicate in (v.HAS_POSITION, v.HAS_SIZE) and len(private) < len(objects)
-        nodes[predicate] = [] if shared else objects
-    coordinates, size = nodes[v.HAS_POSITION], nodes[v.HAS_SIZE]
-    return Star(
-        seq=seq,
-        name=v.local_name(iri),
-        iri=iri,
-        own=tuple(dict.fromkeys(own)),
-        incoming=tuple(t for t in reasoner.asserted(None, None, iri) if t[0] != iri),
-        coordinates=coordinates[0] if coordinates else None,
-        size=size[0] if size else None,
-        preferred=tuple(nodes[v.HAS_PREFERRED_REFERENCE]),
-        alternatives=tuple(nodes[v.HAS_ALTERNATIVE_REFERENCE]),
-    )
+    nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
+    for node in sorted(nodes):
+        if all(user in leaving for user in users(reasoner, node)):
+            own += [t for t in reasoner.asserted(node) if t not in tbox]
+    return own, [t for t in reasoner.asserted(None, None, iri) if t[0] != iri]
 
 
-def _users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
-    """The individuals in whose star `node` is."""
+def users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
+    """The individuals in whose star `node` is; one that uses it twice comes twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
         return (s for s, p, _ in incoming if p in stars.STAR_PROPERTIES)

@@ -13,6 +13,7 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.extern.cli.calling import complain
+from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
@@ -28,9 +29,16 @@ _PERCEPTION_HZ = 5.0
 def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     """The options of `up` and `node`; the function gets them as Settings."""
 
-    @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
     @click.option(
-        "--abox", help="ABox file, or none for an empty map. Default: the shipped flat; none if perceived."
+        "--tbox",
+        type=_path,
+        multiple=True,
+        help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
+    )
+    @import_option
+    @click.option(
+        "--abox",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -107,12 +115,14 @@ def up(settings: Settings) -> None:
 @click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a running system of this machine."""
-    from nodes.supervisor.control import Supervisor, running
+    from nodes.supervisor import registry
+    from nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        data = next((s.data for s, said in running() if connect in (said.listen, said.reachable)), None)
-        if data is None:
-            raise errors.NoAnswer(f"no system of this machine listens on {connect}")
+        there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
+        if not there:
+            raise errors.NoAnswer(f"no system of yours on this machine listens on {connect}")
+        (data,) = there
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 
@@ -144,7 +154,8 @@ def node(name: str, settings: Settings) -> None:
 
 
 def _settings(
-    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
+    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], abox: str | None,
+    world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
@@ -154,16 +165,18 @@ def _settings(
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
         complain(f"--abox is for a new map, and the one in {folder} goes on; --fresh begins a new one")
+    of_the_flat = abox is None and not tbox
     if world is None:
-        world = before.world if before is not None else str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+        world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
     if truth is None:
         truth = before.truth if before is not None else "map"
     world = str(EMPTY_WORLD) if world in ("empty", "none") else world
     if abox is None:
-        abox = "none" if truth == "perceived" else str(FLAT_TTL)
+        abox = str(FLAT_TTL) if of_the_flat and truth != "perceived" else "none"
     values = {
         "data": str(folder),
-        "tbox": _existing(tbox),
+        "tbox": tuple(_existing(path, or_folder=True) for path in tbox or (HOUSEHOLD_TTL,)),
+        "imports": {iri: str(file) for iri, file in imports},
         "abox": None if abox == "none" else _existing(Path(abox)),
         "world": _existing(Path(world)),
         "truth": truth,
@@ -221,8 +234,8 @@ def _folder(path: Path) -> str:
     return str(path.resolve())
 
 
-def _existing(path: Path) -> str:
-    if path.is_dir():
+def _existing(path: Path, *, or_folder: bool = False) -> str:
+    if path.is_dir() and not or_folder:
         raise errors.BadFile(f"{path} is a directory, not a file")
     if not path.exists():
         raise errors.BadFile(f"there is no file {path}")

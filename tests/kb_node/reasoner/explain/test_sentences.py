@@ -12,7 +12,8 @@ HOLDS = {
     ":milk1 dm:isLocatedIn :kitchen1": (
         ":milk1 dm:isOn :counter1 . :counter1 dm:isLocatedIn :kitchen1",
         "milk1 is located in kitchen1, because milk1 is on counter1 (asserted), counter1 is located in "
-        "kitchen1 (asserted), and whatever is on something that is located in something is located in the latter.",
+        "kitchen1 (asserted), and whatever is on something that is located in something is located in "
+        "the latter.",
     ),
     ":milk1 a dm:Food": (
         ":milk1 a dm:Milk",

@@ -1,0 +1,215 @@
+"""Entities as triples: what is wanted of them becomes the triples that go and those that come.
+
+The counterpart of `entity_reading`. It runs where the triples are, so an intent needs no look at them
+beforehand, finds free names for the individuals of a star by itself, and cannot be out of date.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from nodes.kb_node.entities import entity_reading
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Edit, NewEntity
+from schemas.entities import Entity, Pose
+from schemas.explanations import Term, Triple
+from schemas.scene_files import pose_of
+
+
+class Draft:
+    """A change of triples in the making. What it takes away counts as gone for what it adds later."""
+
+    def __init__(self, reasoner: Reasoner, classes: ClassTable, tbox: frozenset[Triple]) -> None:
+        self.retract: dict[Triple, None] = {}
+        self.insert: dict[Triple, None] = {}
+        self._reasoner = reasoner
+        self._classes = classes
+        self._tbox = tbox
+        self._new: set[Term] = set()
+
+    def remove(self, leaving: Iterable[Entity]) -> None:
+        """Entities go, with all that is only theirs and all that others say of them.
+
+        Raises Refused for an entity of the TBox.
+        """
+        iris = [v.iri(entity.iri) for entity in leaving]
+        together = frozenset(iris)
+        for iri in iris:
+            own, incoming = entity_reading.star_of(self._reasoner, iri, together, self._tbox)
+            self.retract.update(dict.fromkeys(own))
+            self.retract.update(dict.fromkeys(incoming))
+
+    def add(self, new: NewEntity) -> None:
+        """A new entity. Raises NameTaken, UnknownClass."""
+        self._require_class(new.class_iri)
+        iri = v.entity_iri(new.name)
+        suffix, number = "", 1
+        while True:
+            triples = stars.star(
+                new.name,
+                v.iri(new.class_iri),
+                pose=new.pose,
+                size_m=new.size,
+                preferred=new.ref,
+                alternatives=new.alt,
+                suffix=suffix,
+            )
+            subjects = {s for s, _, _ in triples}
+            taken = self._taken(subjects)
+            if iri in taken and (iri in self._new or self._is_described(iri)):
+                raise errors.NameTaken(f"the name '{new.name}' is taken; see: semmap get {new.name}")
+            if taken <= {iri}:
+                break
+            number += 1
+            suffix = f"_{number}"
+        self._new |= subjects
+        self.insert.update(dict.fromkeys(triples))
+        for word in new.affordances:
+            self.insert[(iri, v.HAS_AFFORDANCE, v.dm(word))] = None
+
+    def edit(self, entity: Entity, edit: Edit) -> None:
+        """What is given of an entity changes, in the individuals of its star unless others use them, too.
+
+        Raises BadRequest for a pose that is none, UnknownClass, Refused for an entity of the TBox.
+        """
+        iri = v.iri(entity.iri)
+        said = self._reasoner.about(iri)
+        if not self._tbox.isdisjoint((iri, p, o) for p, objects in said.items() for o in objects):
+            raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
+        if edit.places:
+            self._place(entity, said.get(v.HAS_POSITION, ()), _pose(entity, edit))
+        if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
+            self._require_class(edit.class_iri)
+            self._go((iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL)
+            self._come([(iri, v.RDF_TYPE, v.iri(edit.class_iri))])
+        if edit.size is not None:
+            node = self._numbers(entity, v.HAS_SIZE, said.get(v.HAS_SIZE, ()), "size", v.SIZE_XYZ)
+            self._come(stars.size(iri, node, edit.size))
+        if edit.ref is not None and edit.ref != entity.preferred_reference:
+            nodes = said.get(v.HAS_PREFERRED_REFERENCE, ())
+            (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
+            self._come(stars.preferred_reference(iri, node, edit.ref))
+        if edit.alt is not None and edit.alt != entity.alternative_references:
+            nodes = said.get(v.HAS_ALTERNATIVE_REFERENCE, ())
+            names = [f"alternative_reference_{i}" for i in range(1, len(edit.alt) + 1)]
+            found = self._references(entity, v.HAS_ALTERNATIVE_REFERENCE, nodes, names)
+            for node, text in zip(found, edit.alt, strict=True):
+                self._come(stars.alternative_reference(iri, node, text))
+        if edit.conflict is not None and edit.conflict != entity.conflict:
+            known = said.get(v.CONFLICTING_OBSERVATION, ())
+            self._go((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
+            if edit.conflict:
+                self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
+
+    def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose) -> None:
+        numbers = stars.COORDINATE_PROPERTIES
+        node = self._numbers(entity, v.HAS_POSITION, nodes, "coordinates", numbers)
+        if list(nodes) == [node]:
+            self._come(stars.coordinates(node, pose))
+        else:
+            self._come(stars.position(v.iri(entity.iri), node, pose))
+
+    def _numbers(
+        self, entity: Entity, edge: Term, nodes: Sequence[Term], word: str, numbers: Sequence[Term]
+    ) -> Term:
+        """The individual for new numbers: the one that is there, if nobody else uses it, or a new one."""
+        iri = v.iri(entity.iri)
+        if len(nodes) == 1 and self._is_own(nodes[0]):
+            said = self._reasoner.about(nodes[0])
+            self._go((nodes[0], p, o) for p in numbers for o in said.get(p, ()))
+            return nodes[0]
+        self._drop(iri, edge, nodes)
+        return self._free(entity.name, word)
+
+    def _references(
+        self, entity: Entity, edge: Term, nodes: Sequence[Term], words: Sequence[str]
+    ) -> list[Term]:
+        """The individuals for new texts, in order: those of which nobody else makes use, then new ones."""
+        own = [node for node in sorted(nodes) if self._is_own(node)]
+        kept = own[: len(words)]
+        for node in kept:
+            texts = self._reasoner.about(node).get(v.LEXICAL_REFERENCE, ())
+            self._go((node, v.LEXICAL_REFERENCE, o) for o in texts)
+        self._drop(v.iri(entity.iri), edge, [node for node in nodes if node not in kept])
+        new = [self._free(entity.name, word) for word in words[len(kept) :]]
+        return sorted((*kept, *new))
+
+    def _drop(self, iri: Term, edge: Term, nodes: Iterable[Term]) -> None:
+        """An entity no longer has these individuals; what only it used goes."""
+        for node in nodes:
+            self._go([(iri, edge, node)])
+            if self._is_own(node):
+                self._go(t for t in self._reasoner.asserted(node) if t not in self._tbox)
+
+    def _is_own(self, node: Term) -> bool:
+        """Is it in the star of one entity only, and once?"""
+        return len(list(entity_reading.users(self._reasoner, node))) == 1
+
+    def _free(self, name: str, word: str) -> Term:
+        """The usual name of an individual of a star, or the next one that is not in use."""
+        node, number = v.entity_iri(f"{name}_{word}"), 1
+        while self._taken({node}):
+            number += 1
+            node = v.entity_iri(f"{name}_{word}_{number}")
+        self._new.add(node)
+        return node
+
+    def _taken(self, terms: set[Term]) -> set[Term]:
+        """Those of which something is said that does not go, or that this change has made up."""
+        made_up = terms & self._new
+        known = self._reasoner.mentioned(terms)
+        return made_up | {term for term in known if any(self._staying(term))} if known else made_up
+
+    def _staying(self, term: Term) -> Iterator[Triple]:
+        for pattern in ((term, None, None), (None, None, term)):
+            yield from (t for t in self._reasoner.asserted(*pattern) if t not in self.retract)
+
+    def _is_described(self, term: Term) -> bool:
+        return any(t not in self.retract for t in self._reasoner.asserted(term))
+
+    def _require_class(self, iri: str) -> None:
+        """Raises UnknownClass. The TBox may have been replaced since the class was looked up."""
+        if v.iri(iri) not in self._classes.spatial:
+            raise errors.UnknownClass(f"the TBox has no class <{iri}> of things in space")
+
+    def _go(self, triples: Iterable[Triple]) -> None:
+        self.retract.update(dict.fromkeys(triples))
+
+    def _come(self, triples: Iterable[Triple]) -> None:
+        self.insert.update(dict.fromkeys(triples))
+
+
+def _pose(entity: Entity, edit: Edit) -> Pose:
+    before = entity.pose
+    at = edit.at or (before.position_m if before is not None else None)
+    if at is None:
+        raise errors.BadRequest(f"{entity.name} has no position yet; give one with --at")
+    return pose_of(at, edit.yaw, edit.orientation, before)
+
+
+Find = Callable[[str], Entity]
+"""The entity of a name. Raises UnknownName."""
+
+
+def draft(
+    reasoner: Reasoner,
+    classes: ClassTable,
+    tbox: frozenset[Triple],
+    find: Find,
+    *,
+    remove: Iterable[str],
+    edit: Iterable[Edit],
+    add: Iterable[NewEntity],
+) -> Draft:
+    """The triples of some intents. Raises UnknownName and whatever `Draft` raises."""
+    made = Draft(reasoner, classes, tbox)
+    made.remove([find(name) for name in remove])
+    for one in edit:
+        made.edit(find(one.name), one)
+    for new in add:
+        made.add(new)
+    return made
