@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, field
+from msgspec import Meta, field, structs
 
 from schemas.calls import Call, R
 from schemas.entities import (
@@ -24,6 +24,7 @@ from schemas.entities import (
     Source,
     Text,
     Vector,
+    composed,
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
@@ -61,6 +62,11 @@ class Command(
     source: Source = "operator"
     agent: str = ""
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Names are compared in composed form, however they were typed."""
+        if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
+            structs.force_setattr(self, "name", composed(name))
 
 
 # To change
@@ -110,6 +116,10 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
     """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
 
     names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """As for `name`."""
+        structs.force_setattr(self, "names", tuple(map(composed, self.names)))
 
 
 class Clear(Command[Changed], frozen=True, tag="clear"):

@@ -21,7 +21,6 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import msgspec
-import zenoh
 
 from nodes import bus
 from nodes.extern.client_verbs import Verbs
@@ -57,7 +56,7 @@ def connect(
 class Client(Verbs):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
-    def __init__(self, session: zenoh.Session, *, source: Source = "operator", agent: str = "") -> None:
+    def __init__(self, session: bus.Session, *, source: Source = "operator", agent: str = "") -> None:
         self.session = session
         self._ask = functools.partial(bus.ask, session, keys.CMD, lifelines=bus.Lifelines(session))
         self._signature: dict[str, Any] = {"source": source, "agent": agent}

@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator
+from types import MappingProxyType
 from typing import NamedTuple
 
+from nodes.kb_node import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
+from ontology import prefixes
 from ontology import vocabulary as v
+from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.commands import RdfFormat
 from schemas.entities import Entity
-from schemas.explanations import Term, Triple
+from schemas.explanations import Triple
 from schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
     """The entities of a class, given by its exact name. Raises UnknownClass."""
-    return tuple(semantic_map.entities(class_iri(semantic_map, class_name) if class_name else None))
+    return tuple(semantic_map.entities(asked_terms.class_(semantic_map, class_name) if class_name else None))
 
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
@@ -46,6 +50,7 @@ class Picture(NamedTuple):
     asserted: list[Triple]
     written: list[Triple]
     seq: int
+    prefixes: Prefixes = MappingProxyType(v.PREFIXES)
 
 
 def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
@@ -56,7 +61,9 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
             following += _worth_saying(semantic_map.reasoner.inferred(individual, None, None))
-    return Picture([*semantic_map.tbox, *abox], abox + following, semantic_map.seq)
+    written = abox + following
+    used = prefixes.used_by(written, semantic_map.classes.prefixes)
+    return Picture([*semantic_map.tbox, *abox], written, semantic_map.seq, used)
 
 
 def export(picture: Picture, syntax: RdfFormat) -> Document:
@@ -65,7 +72,7 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
     return Document(
-        content=rdf.serialise(picture.written, syntax),
+        content=rdf.serialise(picture.written, syntax, picture.prefixes),
         media_type=rdf.MEDIA_TYPES[syntax],
         triples=len(picture.written),
         seq=picture.seq,
@@ -94,11 +101,3 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
         text=f"inconsistent: {reason}" if reason else "consistent",
         explanation=explanation,
     )
-
-
-def class_iri(semantic_map: SemanticMap, name: str) -> Term:
-    """The class of an exact name. Raises UnknownClass."""
-    iris = semantic_map.classes.iris
-    if name not in iris:
-        raise errors.UnknownClass(f"unknown class '{name}'{errors.did_you_mean(name, iris)}")
-    return iris[name]

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import NamedTuple
 
-from nodes.kb_node.answers import class_iri
-from nodes.kb_node.reasoner import Inconsistent, Reasoner, datatypes
+from nodes.kb_node import asked_terms
+from nodes.kb_node.asked_terms import RELATIONS
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.explain.sentences import said
 from nodes.kb_node.reasoner.refutation import refute, why_different
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.text import PREFIXES
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Could, Explain
@@ -22,12 +22,6 @@ _QUICK = 2000
 """Triples about an individual with which supposing something of it still takes milliseconds."""
 _COMPARED = 50
 """Values that are looked at for what would be the same."""
-_RELATIONS = {
-    "a": v.RDF_TYPE,
-    "type": v.RDF_TYPE,
-    "sameAs": v.OWL_SAME_AS,
-    "differentFrom": v.OWL_DIFFERENT_FROM,
-}
 
 
 class Asked(NamedTuple):
@@ -39,17 +33,17 @@ class Asked(NamedTuple):
 
 def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
     """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = _subject(semantic_map, question.name)
-    predicate = _predicate(semantic_map, question.predicate)
-    values = _values(semantic_map, subject, predicate, question.value)
+    subject = asked_terms.individual(semantic_map, question.name)
+    predicate = asked_terms.property_(semantic_map, question.predicate)
+    values = asked_terms.values(semantic_map, subject, predicate, question.value)
     return Asked(tuple((subject, predicate, value) for value in values), question.negated)
 
 
 def of_could(semantic_map: SemanticMap, question: Could) -> Asked:
     """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = _subject(semantic_map, question.name)
-    predicate = _predicate(semantic_map, question.predicate)
-    return Asked(((subject, predicate, _new_value(semantic_map, predicate, question)),))
+    subject = asked_terms.individual(semantic_map, question.name)
+    predicate = asked_terms.property_(semantic_map, question.predicate)
+    return Asked(((subject, predicate, asked_terms.value(semantic_map, predicate, question.value)),))
 
 
 def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
@@ -113,7 +107,7 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
 def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
     """What a triple would make the same, as where a property has one value at most."""
     s, p, o = triple
-    if o.startswith('"') or p in _RELATIONS.values():
+    if o.startswith('"') or p in RELATIONS.values():
         return
     others = [(o, y) for y in _known(reasoner, s, p, None, 2)] + [
         (s, x) for x in _known(reasoner, None, p, o, 0)
@@ -137,94 +131,3 @@ def _known(reasoner: Reasoner, s: Term | None, p: Term, o: Term | None, place: i
 def _has_many(reasoner: Reasoner, term: Term) -> bool:
     about = chain(reasoner.asserted(term, None, None), reasoner.asserted(None, None, term))
     return next(islice(about, _QUICK, None), None) is not None
-
-
-# Words
-
-
-def _term(word: str) -> Term | None:
-    """A term as it is written, or a name with a prefix that queries know; None for another word."""
-    prefix, colon, name = word.partition(":")
-    if word.startswith(("<", '"', "_:")):
-        return word
-    return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
-
-
-def _subject(semantic_map: SemanticMap, word: str) -> Term:
-    """An entity, or another individual or a class that the map or its TBox names. Raises UnknownName."""
-    if (entity := semantic_map.find(word)) is not None:
-        return v.iri(entity.iri)
-    others = (term,) if (term := _term(word)) is not None else (v.entity_iri(word), v.dm(word))
-    for known in others:
-        if semantic_map.reasoner.mentioned({known}):
-            return known
-    return v.iri(semantic_map.entity(word).iri)
-
-
-def _predicate(semantic_map: SemanticMap, word: str) -> Term:
-    if word in _RELATIONS:
-        return _RELATIONS[word]
-    if (term := _term(word)) is not None:
-        return term
-    kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
-    names = {
-        v.local_name(p): p
-        for kind in kinds
-        for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
-    }
-    if word not in names:
-        hint = errors.did_you_mean(word, (*names, *_RELATIONS))
-        raise errors.BadRequest(
-            f"unknown property '{word}'{hint or '; there are type and the properties of the TBox'}"
-        )
-    return names[word]
-
-
-def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
-    """The terms that `word` may stand for as the object of this subject and predicate."""
-    if (term := _term(word)) is not None:
-        return [term]
-    if predicate == v.RDF_TYPE:
-        return [class_iri(semantic_map, word)]
-    if predicate in _RELATIONS.values():
-        return [_subject(semantic_map, word)]
-    held = (
-        *semantic_map.reasoner.asserted(subject, predicate),
-        *semantic_map.reasoner.inferred(subject, predicate),
-    )
-    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.local_name(o)) == word]
-    return named or [_unheld(semantic_map, predicate, word)]
-
-
-def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
-    """A value that the subject does not have: an individual if there is one of that name."""
-    if _is_data(semantic_map.reasoner, predicate):
-        return _literal(semantic_map.reasoner, predicate, word)
-    found = (v.entity_iri(word), v.dm(word))
-    return next((term for term in found if semantic_map.reasoner.mentioned({term})), found[0])
-
-
-def _new_value(semantic_map: SemanticMap, predicate: Term, question: Could) -> Term:
-    word, reasoner = question.value, semantic_map.reasoner
-    if (term := _term(word)) is not None:
-        return term
-    if predicate == v.RDF_TYPE:
-        return class_iri(semantic_map, word)
-    if _is_data(reasoner, predicate):
-        return _literal(reasoner, predicate, word)
-    return _subject(semantic_map, word)
-
-
-def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
-    kinds = (v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
-    return any(reasoner.holds((predicate, v.RDF_TYPE, kind)) for kind in kinds)
-
-
-def _literal(reasoner: Reasoner, predicate: Term, text: str) -> Term:
-    """A value of the datatype that is the property's range, if it is known."""
-    ranges = (o for _, _, o in reasoner.asserted(predicate, v.RDFS_RANGE))
-    datatype = next((o for o in ranges if o.startswith(f"<{v.XSD}")), None)
-    term = v.literal(text, datatype)
-    if datatype is not None and datatypes.is_ill_typed(term):
-        raise errors.BadRequest(f"'{text}' is not a value of {v.local_name(datatype)}")
-    return term

@@ -15,6 +15,7 @@ from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
@@ -103,6 +104,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 @settings_options
 def up(settings: Settings) -> None:
     """Start the whole system in the foreground; Ctrl-C ends it."""
+    extras.require_nodes(settings.nodes)
     from nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception:
@@ -115,6 +117,7 @@ def up(settings: Settings) -> None:
 @click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a running system of this machine."""
+    extras.require("semmap down", "kb")
     from nodes.supervisor import registry
     from nodes.supervisor.control import Supervisor
 
@@ -132,6 +135,7 @@ def down(data: Path | None, connect: str | None) -> None:
 @click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    extras.require("semmap repair", "kb")
     from nodes.kb_node.storage.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
@@ -145,6 +149,7 @@ def node(name: str, settings: Settings) -> None:
 
     The coordinator listens on --listen; the others connect to it there.
     """
+    extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
 
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
