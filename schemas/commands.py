@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, field
+from msgspec import Meta, field, structs
 
 from schemas.calls import Call, R
 from schemas.entities import (
@@ -24,6 +24,7 @@ from schemas.entities import (
     Source,
     Text,
     Vector,
+    composed,
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
@@ -60,6 +61,11 @@ class Command(
     source: Source = "operator"
     agent: str = ""
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Names are compared in composed form, however they were typed."""
+        if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
+            structs.force_setattr(self, "name", composed(name))
 
 
 # To change
@@ -110,6 +116,10 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
     names: tuple[str, ...]
 
+    def __post_init__(self) -> None:
+        """As for `name`."""
+        structs.force_setattr(self, "names", tuple(map(composed, self.names)))
+
 
 class Clear(Command[Changed], frozen=True, tag="clear"):
     """Take every entity out of the map and the scene. The TBox stays."""
@@ -119,14 +129,16 @@ class Load(Command[Changed], frozen=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
 
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
-    class that the TBox does not have; without it, one such refuses the whole file. With `tbox` the file is
-    a TBox that takes the place of the present one, unless the map does not fit it.
+    class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
+    that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
+    file is a TBox that takes the place of the present one, unless the map does not fit it.
     """
 
     content: bytes
     filename: str = ""
     replace: bool = False
     skip_unknown: bool = False
+    strict: bool = False
     tbox: bool = False
 
 

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator
+from types import MappingProxyType
 from typing import NamedTuple
 
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.text import PREFIXES
+from nodes.kb_node.sparql.text import query_prefixes
+from ontology import prefixes
 from ontology import vocabulary as v
+from ontology.name_index import Ambiguous
+from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.commands import Explain, RdfFormat
-from schemas.entities import Entity
+from schemas.entities import Entity, composed
 from schemas.explanations import Explanation, Term, Triple
 from schemas.replies import Checked, Document, Inferred
 
@@ -59,6 +63,7 @@ class Picture(NamedTuple):
     asserted: list[Triple]
     written: list[Triple]
     seq: int
+    prefixes: Prefixes = MappingProxyType(v.PREFIXES)
 
 
 def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
@@ -69,7 +74,9 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
             following += _worth_saying(semantic_map.reasoner.inferred(individual, None, None))
-    return Picture([*semantic_map.tbox, *abox], abox + following, semantic_map.seq)
+    written = abox + following
+    used = prefixes.used_by(written, semantic_map.classes.prefixes)
+    return Picture([*semantic_map.tbox, *abox], written, semantic_map.seq, used)
 
 
 def export(picture: Picture, syntax: RdfFormat) -> Document:
@@ -78,7 +85,7 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
     return Document(
-        content=rdf.serialise(picture.written, syntax),
+        content=rdf.serialise(picture.written, syntax, picture.prefixes),
         media_type=rdf.MEDIA_TYPES[syntax],
         triples=len(picture.written),
         seq=picture.seq,
@@ -109,58 +116,71 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
     )
 
 
-def _class_iri(semantic_map: SemanticMap, name: str) -> Term:
-    iris = semantic_map.classes.iris
-    if name not in iris:
-        raise errors.UnknownClass(f"unknown class '{name}'{errors.did_you_mean(name, iris)}")
-    return iris[name]
+def _class_iri(semantic_map: SemanticMap, word: str) -> Term:
+    """The class that is meant. Raises UnknownClass."""
+    classes = semantic_map.classes
+    if word in classes.iris:
+        return classes.iris[word]
+    try:
+        name = classes.index.find(word)
+    except Ambiguous as error:
+        raise errors.UnknownClass(f"'{word}' may be {error}; say which class") from None
+    if name is None:
+        raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
+    return classes.iris[name]
 
 
-def _term(word: str) -> Term | None:
+def _term(semantic_map: SemanticMap, word: str) -> Term | None:
     """A term as it is written, or a name with a prefix that queries know; None for another word."""
     prefix, colon, name = word.partition(":")
     if word.startswith(("<", '"', "_:")):
         return word
-    return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
+    known = query_prefixes(semantic_map.classes.prefixes)
+    return v.iri(known[prefix] + name) if colon and prefix in known else None
 
 
 def _subject(semantic_map: SemanticMap, word: str) -> Term:
-    """An entity, or another individual or a class that the map or its TBox names. Raises UnknownName."""
-    if (entity := semantic_map.find(word)) is not None:
+    """An entity, or another individual or a class that the map or its TBox names.
+
+    Raises UnknownName, BadRequest for one that several have.
+    """
+    if (entity := semantic_map.find(composed(word))) is not None:
         return v.iri(entity.iri)
-    others = (term,) if (term := _term(word)) is not None else (v.entity_iri(word), v.dm(word))
-    for known in others:
-        if semantic_map.reasoner.mentioned({known}):
-            return known
+    reasoner = semantic_map.reasoner
+    if (term := _term(semantic_map, word)) is not None:
+        if reasoner.mentioned({term}):
+            return term
+    else:
+        for usual in (v.entity_iri(word), v.dm(word)):
+            if reasoner.mentioned({usual}):
+                return usual
+        namespaces = semantic_map.classes.prefixes
+        there = reasoner.mentioned({v.iri(namespace + word) for namespace in namespaces.values()})
+        if len(there) > 1:
+            names = sorted(prefixes.prefixed(term, namespaces) for term in there)
+            raise errors.BadRequest(f"'{word}' may be {errors.enumerated(names)}; say which")
+        if there:
+            return there.pop()
     return v.iri(semantic_map.entity(word).iri)
 
 
 def _predicate(semantic_map: SemanticMap, word: str) -> Term:
     if word in ("a", "type"):
         return v.RDF_TYPE
-    if (term := _term(word)) is not None:
+    if (term := _term(semantic_map, word)) is not None:
         return term
-    kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
-    names = {
-        v.local_name(p): p
-        for kind in kinds
-        for p, _, _ in semantic_map.reasoner.asserted(None, v.RDF_TYPE, kind)
-    }
-    if word not in names:
-        hint = errors.did_you_mean(word, names) or "; there are type and the properties of the TBox"
-        raise errors.BadRequest(f"unknown property '{word}'{hint}")
-    return names[word]
+    return semantic_map.classes.property_named(word)
 
 
 def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
     """The terms that `word` may stand for as the object of this subject and predicate."""
-    if (term := _term(word)) is not None:
-        return [term]
-    if predicate == v.RDF_TYPE:
+    if predicate == v.RDF_TYPE and not word.startswith("_:"):
         return [_class_iri(semantic_map, word)]
+    if (term := _term(semantic_map, word)) is not None:
+        return [term]
     held = (
         *semantic_map.reasoner.asserted(subject, predicate),
         *semantic_map.reasoner.inferred(subject, predicate),
     )
-    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.local_name(o)) == word]
+    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.entity_name(o)) == word]
     return named or [v.entity_iri(word)]

@@ -12,7 +12,7 @@ import click
 
 from nodes import bus
 from nodes.extern import availability
-from nodes.extern.cli.calling import TIME, command, complain, print_json, print_lines, talks
+from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
@@ -52,13 +52,13 @@ _STATUS_S = 20.0
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
+def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
 
     THING and PLACE are a name, a reference or a class.
     """
     if format in ("lu4r", "legacy"):
-        print_json(client.send(command(commands.List, class_=class_, format=format, as_of=as_of, **where)))
+        print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
         return
     entities = client.list(class_, as_of=as_of, **where)
     if format == "json":
@@ -163,6 +163,7 @@ def status(client: Client, format: str) -> None:
         return
     show.console().print(show.status_table(status))
     print(show.status_line(status))
+    print_lines(show.status_notes(status))
     print_lines(f"  {problem}" for problem in status.problems)
 
 
