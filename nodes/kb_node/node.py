@@ -30,6 +30,7 @@ from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.large_map import LargeMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
@@ -76,6 +77,8 @@ from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Pos
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
 R = TypeVar("R", Explanation, Possible)
 
@@ -93,7 +96,11 @@ class KnowledgeBase:
         self._surroundings = Surroundings(self.map.entities, self.map.find)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
-        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
+        self._sparql = SparqlService(
+            lambda: self.map.reasoner.asserted(),
+            NewsStand(node.session).publish,
+            LargeMap(journal, lambda: self.map.reasoner, node.soon),
+        )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
@@ -132,7 +139,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return _effects(self._commit(transaction))
+        if len(transaction.add) <= _FEW:
+            return _effects(self._commit(transaction))
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))

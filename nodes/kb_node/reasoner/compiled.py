@@ -206,6 +206,11 @@ class CompiledEngine:
         """Triples without those of the schema that are asserted already (or, unless `known`, are not)."""
         return [t for t in triples if not is_schema(t) or (t in self._schema_triples) != known]
 
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups, between which the ABox may change."""
+        yield list(self._schema_triples)
+        yield from self._view.by_subject()
+
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)

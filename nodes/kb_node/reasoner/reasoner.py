@@ -150,6 +150,15 @@ class Reasoner:
         """The asserted triples of a pattern."""
         return self._engine.asserted(s, p, o)
 
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups of one subject, for whoever has no time to read all of them at once.
+
+        The triples may change between two groups: one that is asserted all the while is among them, and one
+        that is asserted at no time is not.
+        """
+        engine = self._engine
+        return engine.by_subject() if isinstance(engine, CompiledEngine) else iter([list(self.asserted())])
+
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
         return self._engine.about(subject)
