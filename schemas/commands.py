@@ -37,6 +37,7 @@ from schemas.replies import (
     Inferred,
     LoggedCommit,
     Moved,
+    Possible,
     Sighting,
     SystemStatus,
 )
@@ -206,7 +207,24 @@ class Infer(Command[Inferred], frozen=True, tag="infer"):
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
-    """Why a triple holds: `name`, `predicate` and `value` are local names, IRIs in <> or literals."""
+    """Why a triple holds, or with `negated` why it cannot.
+
+    `name`, `predicate` and `value` are local names, IRIs in <> or literals. What no rule derives is decided
+    by refutation: two are different if their being the same would be a contradiction.
+    """
+
+    name: str
+    predicate: str
+    value: str
+    negated: bool = False
+
+
+class Could(Command[Possible], frozen=True, tag="could"):
+    """Would it be consistent with the map that a triple holds, and if not, why not? Nothing is changed.
+
+    `name`, `predicate` and `value` are written as for `Explain`; the value of a data property is typed by the
+    property's range.
+    """
 
     name: str
     predicate: str

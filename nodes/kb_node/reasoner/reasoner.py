@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -48,6 +49,11 @@ class Reasoner:
     def is_compiled(self) -> bool:
         """Whether changes are worked out one by one; else everything is, at each change."""
         return isinstance(self._engine, CompiledEngine)
+
+    @property
+    def words(self) -> Words:
+        """What terms are called in sentences: labels of the TBox, or names."""
+        return self._engine.words
 
     @property
     def not_incremental(self) -> str | None:
