@@ -10,6 +10,7 @@ from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -145,7 +146,8 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Relations, Sparql, Watch, Renew),
+        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

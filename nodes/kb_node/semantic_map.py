@@ -105,7 +105,8 @@ class SemanticMap:
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris
+            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
@@ -341,7 +342,7 @@ class SemanticMap:
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
         owners = subjects.union(
-            *(entity_reading.owners(self.reasoner, s) for s in steadily(known, self._progress))
+            *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:

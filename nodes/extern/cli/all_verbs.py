@@ -15,6 +15,7 @@ _VERBS = (
         ask.check,
         ask.infer,
         ask.explain,
+        ask.could,
         ask.relations,
         ask.export,
         ask.classes,

@@ -198,6 +198,18 @@ class Journal:
             rows = db.execute(query, (name, after, self.last if until is None else until))
             return [seq for (seq,) in rows]
 
+    def digest(self, seq: int) -> bytes:
+        """That of all commits up to one; empty before the first."""
+        with self._file.reading() as db:
+            return _digest_of(db, seq)
+
+    def extent(self, after: int) -> tuple[int, int]:
+        """How many commits are later than `after`, and their size [bytes]."""
+        query = "SELECT count(*), coalesce(sum(length(body)), 0) FROM commits WHERE seq > ?"
+        with self._file.reading() as db:
+            count, size = db.execute(query, (after,)).fetchone()
+        return count, size
+
     def undoing(self, after: int) -> list[int]:
         """The numbers of the commits later than `after` that took others back, newest first; reads all."""
         query = "SELECT seq, body FROM commits WHERE seq > ? ORDER BY seq DESC"
