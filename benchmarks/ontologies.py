@@ -1,10 +1,10 @@
 """Run a folder of ontologies: `python -m benchmarks.ontologies DIR [--import IRI=FILE]... [--json FILE]`.
 
 A row for each ontology below DIR, with what it imports as far as that is found: how many triples, whether
-changes are incremental (compiled), how long it takes until it is ready for them, the median of an add with its
-check, the memory of the process, and what is amiss. Beside it how long owlrl and `reasonable` (where it is
-installed) take for the closure of the same triples. Each figure comes from a process of its own, which is ended
-after `--patience` seconds: owlrl takes minutes for a large ontology, and hours for some.
+changes are incremental (compiled), how long it takes until it is ready for them, the median of an add with
+its check, the memory of the process, and what is amiss. Beside it how long owlrl and `reasonable` (where it
+is installed) take for the closure of the same triples. Each figure comes from a process of its own, which
+is ended after `--patience` seconds: owlrl takes minutes for a large ontology, and hours for some.
 """
 
 from __future__ import annotations
