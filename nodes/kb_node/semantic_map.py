@@ -57,7 +57,7 @@ class SemanticMap:
         self._journal = journal
         self._progress = progress
         journal.verify(progress)
-        start = journal.last_checkpoint()
+        start = journal.last_checkpoint(progress)
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
@@ -115,7 +115,8 @@ class SemanticMap:
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
-        return [t for t in self.reasoner.asserted() if t not in self.tbox]
+        tbox = self.tbox
+        return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
@@ -251,7 +252,8 @@ class SemanticMap:
                 triples=tuple(self.abox()),
                 entities=tuple(self._entities.values()),
                 read_by=conclusions_format.mark(),
-            )
+            ),
+            self._progress,
         )
         self._checkpointed = self.seq
 

@@ -16,6 +16,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
+from nodes.runtime.version import version
 from ontology.model_sizes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
@@ -49,7 +50,7 @@ class Answers:
             found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
             seen = with_size if query.as_of is not None else self._with_body
             return then(found, lambda there: self._formatted(map(seen, there), query.format))
-        entities = self._door.entities_of(class_)
+        entities = self._door.map.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
@@ -58,18 +59,19 @@ class Answers:
         """One entity, with what has become of its body."""
         if query.as_of is not None:
             return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
-        return self._with_body(self._door.entity(query.name))
+        return self._with_body(self._door.map.entity(query.name))
 
     def status(self, _: c.Status) -> SystemStatus:
         """The nodes, the map, the scene."""
         return SystemStatus(
             truth=self._truth,
-            commit=max(0, self._door.seq),
-            entities=len(self._door.entities),
+            commit=max(0, self._door.map.seq),
+            entities=len(self._door.map.entities),
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
             problems=tuple(self._keeping.problems()),
+            version=version(),
         )
 
     def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
@@ -77,14 +79,14 @@ class Answers:
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
-            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
+            iris = {name: info.iri for name, info in self._door.map.classes.by_name.items()}
             return formats.legacy(entities, iris)
         return entities
 
     def _class_name(self, word: str, as_of: When | None) -> str:
         """The class that is meant; then there may have been others than now."""
         try:
-            return self._door.classes.find(word).name
+            return self._door.map.classes.find(word).name
         except errors.UnknownClass:
             if as_of is None:
                 raise
