@@ -121,7 +121,7 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
