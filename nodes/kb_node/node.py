@@ -32,9 +32,9 @@ from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.large_map import LargeMap
-from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.standing_queries.news import NewsStand
+from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.sparql.dataset import Dataset, Delta
-from nodes.kb_node.sparql.evaluation import answer
-from nodes.kb_node.sparql.footprint import Footprint, footprint
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.queries.footprint import Footprint, footprint
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from ontology import vocabulary as v
 
 QUERIES = [

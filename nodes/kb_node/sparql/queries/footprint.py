@@ -12,7 +12,7 @@ from rdflib.paths import AlternativePath, InvPath, MulPath, Path, SequencePath
 from rdflib.plugins.sparql import prepareQuery
 from rdflib.plugins.sparql.parserutils import CompValue
 
-from nodes.kb_node.sparql.text import PREFIXES
+from nodes.kb_node.sparql.queries.text import PREFIXES
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 

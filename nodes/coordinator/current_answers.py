@@ -16,6 +16,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
+from nodes.runtime.version import version
 from ontology.model_sizes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
@@ -70,6 +71,7 @@ class Answers:
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
             problems=tuple(self._keeping.problems()),
+            version=version(),
         )
 
     def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:

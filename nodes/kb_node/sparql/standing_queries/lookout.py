@@ -20,11 +20,11 @@ from typing import Any, Final
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql import text
-from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, outcomes
+from nodes.kb_node.sparql.queries import text
 from nodes.kb_node.sparql.readers import Reader, cause_of_death
-from nodes.kb_node.sparql.standing import Standing
+from nodes.kb_node.sparql.standing_queries.standing import Standing
+from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas import errors
 from schemas.commands import Renew, Watch
 from schemas.replies import Done

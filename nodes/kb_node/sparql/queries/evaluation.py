@@ -7,8 +7,8 @@ from typing import Final
 
 import pyoxigraph as ox
 
-from nodes.kb_node.sparql.dataset import ASSERTED, INFERRED, Dataset
-from nodes.kb_node.sparql.text import query_prefixes, syntax_error
+from nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
+from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, Dataset
 from ontology import prefixes
 from ontology import vocabulary as v
 from schemas import errors

@@ -8,8 +8,8 @@ from multiprocessing.connection import Connection
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql.lookout import Lookout
 from nodes.kb_node.sparql.protocol import Answered, News, Outcome, questions
+from nodes.kb_node.sparql.standing_queries.lookout import Lookout
 from schemas.commands import Watch
 from schemas.sparql import SparqlResult
 

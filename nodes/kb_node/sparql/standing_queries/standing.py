@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Watch
 from schemas.sparql import Row, RowsChanged
 
 if TYPE_CHECKING:
-    from nodes.kb_node.sparql.footprint import Footprint
+    from nodes.kb_node.sparql.queries.footprint import Footprint
 
 
 @dataclass
@@ -32,7 +32,7 @@ class Standing:
     def of(cls, command: Watch, name: str) -> Standing:
         """The one that a command asks for, without its rows."""
         # rdflib's parser takes longer to load than all else that the first look-up waits for
-        from nodes.kb_node.sparql.footprint import footprint
+        from nodes.kb_node.sparql.queries.footprint import footprint
 
         return cls(
             watch=name,

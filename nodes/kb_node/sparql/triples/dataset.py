@@ -15,7 +15,7 @@ from pathlib import Path
 import pyoxigraph as ox
 from msgspec import Struct
 
-from nodes.kb_node.sparql.kept import cloned
+from nodes.kb_node.sparql.triples.kept import cloned
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 

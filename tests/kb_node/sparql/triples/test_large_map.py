@@ -7,9 +7,9 @@ import pytest
 
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql import worker
-from nodes.kb_node.sparql.kept import FOLDER, clone_of, cloned
-from nodes.kb_node.sparql.large_map import LargeMap
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
+from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import Journal
 from ontology import vocabulary as v

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.sparql.dataset import Delta
-from nodes.kb_node.sparql.kept import KeptStores
+from nodes.kb_node.sparql.triples.dataset import Delta
+from nodes.kb_node.sparql.triples.kept import KeptStores
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.futures import settle
 from schemas import errors
@@ -110,7 +110,7 @@ class LargeMap:
 
     def _pump(self, pieces: Iterator[list[Triple]], path: Path) -> tuple[int, int]:
         """Send all pieces: how many triples were sent, and how many the store has."""
-        command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.filling", str(path)]
+        command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.triples.filling", str(path)]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             self._process = process
             assert process.stdin is not None

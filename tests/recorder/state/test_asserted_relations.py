@@ -1,4 +1,4 @@
-from nodes.recorder.state.relations import Relations, is_relation, missed
+from nodes.recorder.state.asserted_relations import Relations, is_relation, missed
 from ontology import vocabulary as v
 from tests.recorder.messages import commit, entity, relation, star
 

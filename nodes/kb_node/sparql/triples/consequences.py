@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.sparql.dataset import Dataset, Delta, as_stored
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 

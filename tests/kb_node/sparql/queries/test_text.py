@@ -1,8 +1,8 @@
 import pytest
 
-from nodes.kb_node.sparql import text
-from nodes.kb_node.sparql.dataset import Dataset
-from nodes.kb_node.sparql.evaluation import answer
+from nodes.kb_node.sparql.queries import text
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset
 from schemas import errors
 
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.triples.dataset import Delta
 
 _LENGTH_BYTES: Final = 4
 _deltas = msgpack.Decoder(Delta)

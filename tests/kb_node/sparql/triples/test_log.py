@@ -2,8 +2,8 @@
 
 import os
 
-from nodes.kb_node.sparql.dataset import Delta
-from nodes.kb_node.sparql.log import Log
+from nodes.kb_node.sparql.triples.dataset import Delta
+from nodes.kb_node.sparql.triples.log import Log
 from ontology import vocabulary as v
 
 

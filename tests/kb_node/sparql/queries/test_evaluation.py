@@ -1,7 +1,7 @@
 import pytest
 
-from nodes.kb_node.sparql.dataset import Dataset, Delta
-from nodes.kb_node.sparql.evaluation import answer
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from ontology import vocabulary as v
 from schemas import errors
 from tests.kb_node.home import turtle

@@ -1,4 +1,4 @@
-"""Fills a store on disk from N-Triples on stdin: `python -m nodes.kb_node.sparql.filling PATH`.
+"""Fills a store on disk from N-Triples on stdin: `python -m nodes.kb_node.sparql.triples.filling PATH`.
 
 Says on stdout how many triples the store has: fewer than came where two differ in the spelling of a number.
 """
