@@ -94,7 +94,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
 
 class Update(Command[Changed], frozen=True, tag="update"):
-    """Change what is named; what is not named stays. `alt` replaces all alternative references.
+    """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
     """

@@ -168,4 +168,4 @@ def _plain(value: Any) -> Any:
     """Numbers and arrays of NumPy as Python's own."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise errors.BadRequest(f"{value!r} is neither a number, a text nor a sequence of them")
+    raise errors.BadRequest(f"{value!r} is not a number, a string or a sequence of them")

@@ -145,7 +145,9 @@ class Keeping:
         if entity.place:
             return BodyState(status="none", detail="places have no bodies")
         if self._config.truth == "perceived":
-            return BodyState(status="none", detail="only perception tells the map", model=entity.model)
+            return BodyState(
+                status="none", detail="the map is updated by perception only", model=entity.model
+            )
         if not self.scene.known:
             return BodyState(status="unknown", detail="no simulator runs", model=entity.model)
         if body is not None:
