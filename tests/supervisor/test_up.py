@@ -117,13 +117,13 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--abox", "nowhere.ttl"), "there is no file nowhere.ttl"),
         (("--abox", "/"), "is a directory"),
         (("--tbox", "nowhere.ttl"), "there is no file"),
-        (("--models", "nowhere"), "nowhere is no folder"),
+        (("--models", "nowhere"), "nowhere is not a folder"),
         (("--abox", Path("demo", "picnic.json")), "semmap load"),
         (("--abox", Path("demo", "house.hrc")), "semmap load"),
         (("--threshold", "-1"), "--threshold must be"),
         (("--camera-size", "0", "0"), "--camera-size: the 1st must be"),
         (("--truth", "god"), "god"),
-        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is no Zenoh endpoint"),
+        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is not a valid Zenoh endpoint"),
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],
 )
@@ -179,7 +179,7 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
     words = ("--models", models, "--abox", "none", "--no-record")
     with running(tmp_path / "data", *words) as system:
         (line,) = [line for line in system.said if line.startswith("models ")]
-    assert "passed over, for no class has a model of that name: chiar.obj (did you mean chair" in line
+    assert "ignored, because no class has a model of that name: chiar.obj (did you mean chair" in line
 
 
 def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):

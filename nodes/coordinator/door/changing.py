@@ -21,7 +21,7 @@ from schemas.scene_files import pose_of
 
 @once
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
-    """Put an entity into the map."""
+    """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
     name = command.name or free_name(found.name, view.entities)
     if name in view.entities:
@@ -41,7 +41,7 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
 
 @once
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
-    """Change what is named; what is not named stays."""
+    """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     changes = (found, command.ref, command.alt, command.size)

@@ -6,7 +6,7 @@ to take, an entity that of the commit which last changed its pose. If the map's 
 come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
 follows.
 
-Where only perception tells the map (`perceived`) nothing is to be done: an entity without a body is a belief,
+If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
 a body without an entity has not been seen yet, and a pose that differs will be seen.
 """
 

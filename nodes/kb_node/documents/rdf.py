@@ -68,10 +68,10 @@ def parse(
     """
     name = filename or "the document"
     content = content.removeprefix(_BOM)
-    if not content.strip():
+    if not content or content.isspace():
         raise errors.BadFile(f"{name} is empty")
     try:
-        text = content.decode()
+        content.decode()
     except UnicodeDecodeError as error:
         where = content.count(b"\n", 0, error.start) + 1
         raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
@@ -80,7 +80,9 @@ def parse(
         if syntax in ("rdfxml", "owlxml"):
             _require_well_formed(content)
         if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
-            return [_labelled(triple, label_prefix) for triple in owl_syntaxes.parse(text, syntax)]
+            return [
+                _labelled(triple, label_prefix) for triple in owl_syntaxes.parse(content.decode(), syntax)
+            ]
         quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
         return _triples(quads, label_prefix, progress)
     except (SyntaxError, ValueError) as error:

@@ -49,7 +49,7 @@ from schemas.explanations import Term, Triple
 
 _DEEPEST = 6
 """Expressions, definitions and case distinctions one inside the other."""
-_MOST = 3000
+_MOST = 1000
 """Suppositions in one proof."""
 _WIDEST = 24
 """Alternatives, neighbours or members of an enumeration that are tried."""
@@ -71,6 +71,7 @@ class Prover:
         self._depth = 0
         self._left = _MOST
         self._open: set[tuple[Term, Term]] = set()
+        self._witnessed: set[Term] = set()
         self.asserted = reasoner.asserted
         self.holds = reasoner.holds
         self.reader = Reader(reasoner.asserted)
@@ -85,7 +86,9 @@ class Prover:
     def follows(self, supposed: Iterable[Triple], goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached supposing some triples. From a contradiction everything follows."""
         supposed = [triple for triple in supposed if not is_literal(triple[0])]  # to suppose less is sound
-        things = {triple[0]: None for triple in supposed if not is_schema(triple)}
+        facts = [triple for triple in supposed if not is_schema(triple)]
+        ends = (term for s, p, o in facts for term in ((s,) if p == TYPE or is_literal(o) else (s, o)))
+        things = dict.fromkeys(ends)
         supposed += [(x, TYPE, THING) for x in things]
         supposed += [(x, p, x) for p in self._reflexive() for x in things]
         if any(p in _BOTTOMS for _, p, _ in supposed):
@@ -171,7 +174,11 @@ class Prover:
             return False
         self._depth += 1
         try:
-            return self._member(x, expression) or self._by_cases(x, expression)
+            return (
+                self._member(x, expression)
+                or self._with_own_witnesses(x, lambda: self._member(x, expression))
+                or self._by_cases(x, expression)
+            )
         finally:
             self._depth -= 1
 
@@ -237,12 +244,8 @@ class Prover:
 
     def _has_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
         """So many values that are in a class and differ from one another, or at least one that must exist."""
-        if number <= 0 or self._has_known_values(x, number, role, filler):
+        if number <= 0:
             return True
-        new = list(self._must_exist([x]))
-        return bool(new) and self.follows(new, lambda: self._has_known_values(x, number, role, filler))
-
-    def _has_known_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
         found = [y for y in self.values(x, role) if self.member(y, filler)]
         if number == 1 and found:
             return True
@@ -304,6 +307,19 @@ class Prover:
                     continue
 
     # Witnesses
+
+    def _with_own_witnesses(self, x: Term, goal: Callable[[], bool]) -> bool:
+        """Whether a goal is reached when what must exist for x has names."""
+        if x in self._witnessed or is_literal(x):
+            return False
+        new = list(self._must_exist([x]))
+        if all(map(self._reasoner.holds, new)):
+            return False
+        self._witnessed.add(x)
+        try:
+            return self.follows(new, goal)
+        finally:
+            self._witnessed.remove(x)
 
     def with_witnesses(self, mentioned: Iterable[Term], goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached once what must exist, for two steps, has names."""
