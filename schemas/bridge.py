@@ -10,12 +10,14 @@ from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
     History,
     Infer,
     LastSeen,
+    Relations,
     Renew,
     Sparql,
     Watch,
@@ -24,6 +26,7 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.moments import When
+from schemas.relations import Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -99,9 +102,10 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     filename: str
     replace: bool
     skip_unknown: bool
+    strict: bool = False
 
 
-class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
 
     VERB: ClassVar[str] = "load-tbox"
@@ -115,11 +119,15 @@ class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then."""
+    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then.
+
+    With `where` only those that are there; by distance if it asks for the nearest.
+    """
 
     VERB: ClassVar[str] = "list"
     class_: str | None = field(name="class", default=None)
     as_of: When | None = None
+    where: Where | None = None
 
 
 class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -138,7 +146,8 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Sparql, Watch, Renew),
+        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, field
+from msgspec import Meta, field, structs
 
 from schemas.calls import Call, R
 from schemas.entities import (
@@ -24,9 +24,11 @@ from schemas.entities import (
     Source,
     Text,
     Vector,
+    composed,
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
+from schemas.relations import Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
     Checked,
@@ -35,6 +37,7 @@ from schemas.replies import (
     Inferred,
     LoggedCommit,
     Moved,
+    Possible,
     Sighting,
     SystemStatus,
 )
@@ -59,6 +62,11 @@ class Command(
     source: Source = "operator"
     agent: str = ""
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Names are compared in composed form, however they were typed."""
+        if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
+            structs.force_setattr(self, "name", composed(name))
 
 
 # To change
@@ -109,6 +117,10 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
     names: tuple[str, ...]
 
+    def __post_init__(self) -> None:
+        """As for `name`."""
+        structs.force_setattr(self, "names", tuple(map(composed, self.names)))
+
 
 class Clear(Command[Changed], frozen=True, tag="clear"):
     """Take every entity out of the map and the scene. The TBox stays."""
@@ -118,14 +130,16 @@ class Load(Command[Changed], frozen=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
 
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
-    class that the TBox does not have; without it, one such refuses the whole file. With `tbox` the file is
-    a TBox that takes the place of the present one, unless the map does not fit it.
+    class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
+    that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
+    file is a TBox that takes the place of the present one, unless the map does not fit it.
     """
 
     content: bytes
     filename: str = ""
     replace: bool = False
     skip_unknown: bool = False
+    strict: bool = False
     tbox: bool = False
 
 
@@ -135,11 +149,41 @@ class Load(Command[Changed], frozen=True, tag="load"):
 class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"):
     """The entities of a class (all, without one), over inferred types; with `as_of` those of then.
 
-    Answered with the entities, or with the document of another format than `json`.
+    Of these, those that stand `on` a thing (directly or on what is on it), are `in` a place or a container,
+    are `near` a thing or `within` so many metres of it, or the `nearest` so many `to` it; worked out from
+    poses, sizes and shapes. Things and places are given by name, reference or class. Answered with the
+    entities, or with the document of another format than `json`.
     """
 
     class_: ClassName | None = field(name="class", default=None)
     format: ListFormat = "json"
+    as_of: When | None = None
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
+    near: Text | None = None
+    within: Annotated[float, Meta(gt=0.0, le=20_000.0)] | None = None
+    nearest: Annotated[int, Meta(ge=1, le=10_000)] | None = None
+    to: Text | None = None
+
+    @property
+    def where(self) -> Where | None:
+        """What it asks of where things are, if it does."""
+        where = Where(
+            on=self.on, in_=self.in_, near=self.near, within=self.within, nearest=self.nearest, to=self.to
+        )
+        return None if where == Where() else where
+
+
+class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
+    """Where a thing is relative to others, as measured; with `other` also what does not hold of the two.
+
+    `viewer` (an entity) or `viewpoint` adds left of, right of, in front of and behind, as seen from there.
+    """
+
+    name: str
+    other: str | None = None
+    viewer: str | None = None
+    viewpoint: ViewPoint | None = None
     as_of: When | None = None
 
 
@@ -163,7 +207,24 @@ class Infer(Command[Inferred], frozen=True, tag="infer"):
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
-    """Why a triple holds: `name`, `predicate` and `value` are local names, IRIs in <> or literals."""
+    """Why a triple holds, or with `negated` why it cannot.
+
+    `name`, `predicate` and `value` are local names, IRIs in <> or literals. What no rule derives is decided
+    by refutation: two are different if their being the same would be a contradiction.
+    """
+
+    name: str
+    predicate: str
+    value: str
+    negated: bool = False
+
+
+class Could(Command[Possible], frozen=True, tag="could"):
+    """Would it be consistent with the map that a triple holds, and if not, why not? Nothing is changed.
+
+    `name`, `predicate` and `value` are written as for `Explain`; the value of a data property is typed by the
+    property's range.
+    """
 
     name: str
     predicate: str

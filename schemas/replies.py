@@ -34,6 +34,16 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     explanation: Explanation | None = None
 
 
+class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Whether something could be without contradicting the map."""
+
+    possible: bool
+    text: str
+    """The answer in one sentence; if it could not be, why not."""
+    explanation: Explanation | None = None
+    """Why it could not be."""
+
+
 class Inferred(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Triples that follow, grouped by subject in the order of names."""
 
@@ -61,6 +71,8 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     heartbeat_age_s: float
     detail: str = ""
     last_error: str = ""
+    notes: tuple[str, ...] = ()
+    """What is good to know of what it works with: of the knowledge base, on its TBox."""
 
 
 class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -44,11 +44,12 @@ class Answers:
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
         class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
-        if query.as_of is not None:
-            asked = bridge.Entities(class_=class_, as_of=query.as_of)
+        if query.as_of is not None or query.where is not None:
+            asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
             found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
-            return then(found, lambda then_there: self._formatted(map(with_size, then_there), query.format))
-        entities = self._door.entities_of(class_)
+            seen = with_size if query.as_of is not None else self._with_body
+            return then(found, lambda there: self._formatted(map(seen, there), query.format))
+        entities = self._door.map.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
@@ -57,14 +58,14 @@ class Answers:
         """One entity, with what has become of its body."""
         if query.as_of is not None:
             return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
-        return self._with_body(self._door.entity(query.name))
+        return self._with_body(self._door.map.entity(query.name))
 
     def status(self, _: c.Status) -> SystemStatus:
         """The nodes, the map, the scene."""
         return SystemStatus(
             truth=self._truth,
-            commit=max(0, self._door.seq),
-            entities=len(self._door.entities),
+            commit=max(0, self._door.map.seq),
+            entities=len(self._door.map.entities),
             bodies=len(self._keeping.scene.bodies),
             in_agreement=self._keeping.in_agreement(),
             nodes=self._health.nodes(),
@@ -76,14 +77,14 @@ class Answers:
         if wanted == "lu4r":
             return formats.lu4r(entities)
         if wanted == "legacy":
-            iris = {name: info.iri for name, info in self._door.classes.by_name.items()}
+            iris = {name: info.iri for name, info in self._door.map.classes.by_name.items()}
             return formats.legacy(entities, iris)
         return entities
 
     def _class_name(self, word: str, as_of: When | None) -> str:
         """The class that is meant; then there may have been others than now."""
         try:
-            return self._door.classes.find(word).name
+            return self._door.map.classes.find(word).name
         except errors.UnknownClass:
             if as_of is None:
                 raise

@@ -16,11 +16,11 @@ import contextlib
 import functools
 import queue
 import time
+import uuid
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import msgspec
-import zenoh
 
 from nodes import bus
 from nodes.extern.client_verbs import Verbs
@@ -32,6 +32,7 @@ from schemas.commands import Command
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
+from schemas.replies import Changed
 
 R = TypeVar("R")
 C = TypeVar("C", bound=Command)
@@ -55,7 +56,7 @@ def connect(
 class Client(Verbs):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
-    def __init__(self, session: zenoh.Session, *, source: Source = "operator", agent: str = "") -> None:
+    def __init__(self, session: bus.Session, *, source: Source = "operator", agent: str = "") -> None:
         self.session = session
         self._ask = functools.partial(bus.ask, session, keys.CMD, lifelines=bus.Lifelines(session))
         self._signature: dict[str, Any] = {"source": source, "agent": agent}
@@ -72,9 +73,9 @@ class Client(Verbs):
         )
         return reply
 
-    def request(self, command: Command[R], read: Callable[[R], Any] | None = None) -> Any:
-        """Send a command and `read` its reply: what each verb does."""
-        reply = self.send(command)
+    def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
+        """Make a command, send it, and `read` its reply: what each verb does."""
+        reply = self.send(make())
         return reply if read is None else read(reply)
 
     @contextlib.contextmanager
@@ -96,31 +97,38 @@ class Client(Verbs):
         the system gives way to one with another map, whose numbers may be lower, that one's commits follow.
         """
         began_ns = time.time_ns()
-        events: queue.SimpleQueue[Commit] = queue.SimpleQueue()
+        events: queue.SimpleQueue[Commit | None] = queue.SimpleQueue()
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
             yield (c for c in _each(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
         finally:
             subscriber.undeclare()
+            events.put(None)  # whoever waits for the next one on another thread is told of the end
 
 
-def _each(events: queue.SimpleQueue[Commit], timeout_s: float | None) -> Iterator[Commit]:
+def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
     while True:
         try:
-            yield events.get(timeout=timeout_s)
+            commit = events.get(timeout=timeout_s)
         except queue.Empty:
             raise errors.NoAnswer(f"no commit came within {timeout_s:g} s") from None
+        if commit is None:
+            return
+        yield commit
 
 
 def _checked(command: C, signature: dict[str, Any]) -> C:
     """The command as it is sent: signed, in Python's own numbers, with offsets in its times.
 
-    Raises BadRequest.
+    A change has an id, so that it is executed once even if the coordinator is killed before it replies and
+    the command is sent again. Raises BadRequest.
     """
     fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_plain)
     for moment in _moments(type(command)) & fields.keys():
         fields[moment] = with_offset(fields[moment])
+    if reply_type(type(command)) is Changed and not command.id:
+        fields["id"] = uuid.uuid4().hex
     return codec.convert({**signature, **fields}, type(command))
 
 

@@ -9,18 +9,35 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
-from nodes.kb_node import answers, gc_pause, undo
+from msgspec import structs
+
+from nodes.kb_node import answers, gc_pause, questions, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
+from nodes.kb_node.documents import (
+    blank_nodes,
+    document_change,
+    rdf,
+    tbox_notes,
+    tbox_validation,
+    term_syntax,
+)
 from nodes.kb_node.pages import Pages
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.relations.selection import selected
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.surroundings import Surroundings
+from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.large_map import LargeMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime.loop import Node, open_node
+from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -39,12 +56,14 @@ from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
     History,
     Infer,
     LastSeen,
+    Relations,
     Renew,
     Sparql,
     Watch,
@@ -53,11 +72,15 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
+from schemas.relations import Relation
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
+R = TypeVar("R", Explanation, Possible)
 
 
 class KnowledgeBase:
@@ -70,14 +93,20 @@ class KnowledgeBase:
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
         self._pages = Pages(self.map)
+        self._surroundings = Surroundings(self.map.entities, self.map.find)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
-        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
+        self._sparql = SparqlService(
+            lambda: self.map.reasoner.asserted(),
+            NewsStand(node.session).publish,
+            LargeMap(journal, lambda: self.map.reasoner, node.soon),
+        )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             node.serve_one(keys.CMD, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.note(self._notes())
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -94,6 +123,8 @@ class KnowledgeBase:
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
             Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
+            Relations.answered_by(self.on_relations),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -108,7 +139,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return _effects(self._commit(transaction))
+        if len(transaction.add) <= _FEW:
+            return _effects(self._commit(transaction))
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
@@ -131,9 +166,12 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
+        self._surroundings.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
+        if commit.tbox:
+            self._node.note(self._notes())
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -208,12 +246,34 @@ class KnowledgeBase:
         return tuple(self.map.class_table())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
-        """The entities of a class, now or as of then."""
+        """The entities of a class, now or as of then; with `where` those that are there."""
+        where = query.where
         if query.as_of is not None:
-            return self._aside.submit(
-                self._past.entities, query.as_of, query.class_, tuple(self.map.classes.iris)
-            )
-        return answers.entities_of(self.map, query.class_)
+            return self._aside.submit(self._then, query)
+        found = answers.entities_of(self.map, query.class_)
+        if where is None:
+            return found
+        return tuple(selected(self._surroundings.space(), found, where, self.map.entities()))
+
+    def _then(self, query: Entities) -> tuple[Entity, ...]:
+        assert query.as_of is not None
+        found = self._past.entities(query.as_of, query.class_, tuple(self.map.classes.iris))
+        if query.where is None:
+            return found
+        everyone = self._past.entities(query.as_of, None, ())
+        return tuple(selected(Space(everyone), found, query.where, everyone))
+
+    def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
+        """Where a thing is relative to others, now or as of then."""
+        if query.as_of is not None:
+            return self._aside.submit(self._relations_then, query)
+        self.map.entity(query.name)
+        return tuple(relations(self._surroundings.space(), query))
+
+    def _relations_then(self, query: Relations) -> tuple[Relation, ...]:
+        assert query.as_of is not None
+        self._past.entity(query.name, query.as_of)
+        return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
 
     def on_get(self, query: Get) -> Entity | Future[Entity]:
         """One entity, now or as of then."""
@@ -225,9 +285,35 @@ class KnowledgeBase:
         """What follows."""
         return answers.infer(self.map, query.name)
 
-    def on_explain(self, query: Explain) -> Explanation:
-        """Why it follows."""
-        return answers.explain(self.map, query)
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        asked = questions.of_explain(self.map, query)
+        space = self._surroundings.space() if query.predicate in SPOKEN and not query.negated else None
+        seen = space and explained(space, query.name, query.predicate, query.value)
+        if not seen:
+            return self._tried(questions.explain, asked)
+        explanation = questions.why(self.map.reasoner, asked)
+        if explanation is not None:
+            link = "; and" if seen.holds else "; but as it stands"
+            return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
+        conclusion = (subject, v.dm(seen.relation), object_)
+        return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Whether it could be."""
+        return self._tried(questions.could, questions.of_could(self.map, query))
+
+    def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
+        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        reasoner = self.map.reasoner
+        if questions.is_quick(reasoner, asked):
+            with suppress(NotCompilable):
+                return answer(reasoner, asked, anew=False)
+        asserted = list(reasoner.asserted())
+        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""
@@ -247,15 +333,17 @@ class KnowledgeBase:
         """A commit that takes back another one."""
         return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
 
-    def on_load_tbox(self, load: LoadTBox) -> Effects | None:
-        """Another TBox, in one commit; none for the one that holds."""
+    def on_load_tbox(self, load: LoadTBox) -> Loaded:
+        """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
         read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
-            return _effects(self._journal.commit_of(load.id))
+            commit = self._journal.commit_of(load.id)
+            return Loaded(commit=_effects(commit), skipped=(), notes=self._notes())
         try:
-            return Effects.of(self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox)))
+            commit = self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+            return Loaded(commit=Effects.of(commit), skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
@@ -289,6 +377,9 @@ class KnowledgeBase:
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
+
+    def _notes(self) -> tuple[str, ...]:
+        return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)
 
     def _summary(self) -> str:
         entities = wording.entities(len(self.map))

@@ -15,7 +15,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.storage import closure_cache, commit_encoding, fingerprint
+from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
@@ -57,7 +57,7 @@ class SemanticMap:
         self._journal = journal
         self._progress = progress
         journal.verify(progress)
-        start = journal.last_checkpoint()
+        start = journal.last_checkpoint(progress)
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
@@ -105,7 +105,8 @@ class SemanticMap:
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris
+            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
@@ -114,7 +115,8 @@ class SemanticMap:
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
-        return [t for t in self.reasoner.asserted() if t not in self.tbox]
+        tbox = self.tbox
+        return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
@@ -249,8 +251,9 @@ class SemanticMap:
                 seq=self.seq,
                 triples=tuple(self.abox()),
                 entities=tuple(self._entities.values()),
-                read_by=fingerprint.of_code(),
-            )
+                read_by=conclusions_format.mark(),
+            ),
+            self._progress,
         )
         self._checkpointed = self.seq
 
@@ -279,7 +282,7 @@ class SemanticMap:
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == fingerprint.of_code():
+        elif start.read_by == conclusions_format.mark():
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
@@ -341,7 +344,7 @@ class SemanticMap:
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
         owners = subjects.union(
-            *(entity_reading.owners(self.reasoner, s) for s in steadily(known, self._progress))
+            *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:

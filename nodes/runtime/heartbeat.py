@@ -7,8 +7,6 @@ import os
 import time
 from typing import Literal
 
-import zenoh
-
 from nodes import bus
 from schemas import codec, keys
 from schemas.health import Health
@@ -22,7 +20,7 @@ _ERROR_SHOWN_S = 3600.0
 class Heartbeat:
     """Beats for the thread that owns the node's state, and on it: when that hangs, it falls silent."""
 
-    def __init__(self, name: str, session: zenoh.Session) -> None:
+    def __init__(self, name: str, session: bus.Session) -> None:
         self.due_s = 0.0
         """When it beats next, by the monotonic clock."""
         self._name = name
@@ -31,6 +29,7 @@ class Heartbeat:
         self._state: Literal["starting", "ready"] = "starting"
         self._detail = ""
         self._last_error = ""
+        self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
@@ -48,6 +47,7 @@ class Heartbeat:
             state=self._state,
             detail=self._detail,
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
+            notes=self._notes,
         )
         self._health.put(codec.encode(health))
 
@@ -55,8 +55,7 @@ class Heartbeat:
         """Say so, at once, and let the liveliness token appear."""
         if self._state != "ready":
             self._state = "ready"
-            key = keys.live_key(self._name, str(os.getpid()))
-            self._token = self._session.liveliness().declare_token(key)
+            self._token = bus.appear(self._session, self._name)
             log.info("ready: %s", detail)
             self.due_s = 0.0
         self.describe(detail)
@@ -65,6 +64,10 @@ class Heartbeat:
     def describe(self, detail: str) -> None:
         """Say this of the node's state, from the next beat on."""
         self._detail = detail
+
+    def note(self, notes: tuple[str, ...]) -> None:
+        """Say this of what the node works with, from now on."""
+        self._notes, self.due_s = notes, 0.0
 
     def report(self, text: str) -> None:
         """Log an error, and say it with the time of the day, from now on and for an hour."""

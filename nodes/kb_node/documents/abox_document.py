@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
 from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
@@ -15,6 +16,8 @@ from schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"
+_OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
+"""The classes of what describes an entity, in which semmap writes whatever the TBox."""
 _FEW = 5
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
@@ -41,7 +44,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     triples = _with_floats(list(triples))
     types_said = [t for t in triples if t[1] == v.RDF_TYPE]
     declared = {s for s, _, o in types_said if o in (v.OWL_CLASS, v.RDFS_CLASS)}
-    known = declared.union(classes.names)
+    known = declared.union(classes.names, _OF_STARS)
     built_in = {o for o in {o for _, _, o in types_said} if is_built_in(o)}
     types = [(s, o) for s, _, o in types_said if o not in built_in]
     spatial = _with_subclasses(classes.spatial, triples)
@@ -50,7 +53,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
     for s, c in unknown:
-        users.setdefault(v.local_name(c), []).append(v.local_name(s))
+        users.setdefault(v.local_name(c), []).append(_called(s))
     if unknown and not skip_unknown:
         raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
@@ -61,6 +64,35 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         kept = _without(gone, [t for t in triples if t not in doubtful])
     notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
     return SortedOut(kept, words, list(notes))
+
+
+def strangers(
+    triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
+) -> dict[Term, Triple]:
+    """What something is related to though nobody says what it is, each with the first triple that does so.
+
+    What the reasoner holds counts, too, as far as it `stays`.
+    """
+    relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
+    found: dict[Term, Triple] = {}
+    for triple in triples:
+        if triple[1] in relations:
+            found.setdefault(triple[2], triple)
+    for s, p, _ in triples:
+        if p == v.RDF_TYPE:
+            found.pop(s, None)
+    return {
+        term: triple
+        for term, triple in found.items()
+        if not any(map(stays, reasoner.asserted(term, v.RDF_TYPE, None)))
+    }
+
+
+def of_strangers(found: Mapping[Term, Triple]) -> str:
+    """One sentence on them."""
+    few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
+    more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
+    return f"nobody says what {'this is' if len(found) == 1 else 'these are'}: {few}{more}"
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
@@ -87,6 +119,8 @@ def _with_float(triple: Triple) -> Triple:
 
 def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
     """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
+    if not any(p.startswith(_TBOX) for p in classes.properties):
+        return []  # the TBox is somebody else's, and these are the words of stars
     used = {p for p in set(map(itemgetter(1), triples)) if p.startswith(_TBOX)} - classes.properties
     unknown = used and used - {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
     if not unknown:

@@ -6,13 +6,16 @@ spelled `"1"`.
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from pathlib import Path
 
 import pyoxigraph as ox
 from msgspec import Struct
 
+from nodes.kb_node.sparql.kept import cloned
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 
@@ -44,14 +47,22 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
 class Dataset:
     """Two graphs without a triple in common, as they are after commit `seq`."""
 
-    def __init__(self, seq: int, asserted: Iterable[Triple]) -> None:
+    settled = 0
+    """Before that commit it is no map yet."""
+
+    def __init__(self, seq: int, asserted: Iterable[Triple], store: ox.Store | None = None) -> None:
+        """`store` may hold others already."""
         self.seq = seq
-        self.store = ox.Store()
+        self.store = store or ox.Store()
         self._other_spellings: Counter[ox.Quad] = Counter()
         asserted = list(asserted)
         self.store.bulk_extend(quads(asserted, ASSERTED))
         if len(self.store) < len(asserted):
             self._count_spellings(asserted)
+
+    def opened(self) -> Dataset:
+        """As a reader has it, once it is forked."""
+        return self
 
     def apply(self, delta: Delta) -> None:
         """Go on to the commit after."""
@@ -108,6 +119,43 @@ class Dataset:
                 if quad.predicate.value != _TYPE:
                     found.add(str(quad.subject))
         return found
+
+
+class KeptDataset(Dataset):
+    """The triples in a store on disk, and the log since. Who keeps it never opens it: only readers do.
+
+    Oxigraph's threads for a store on disk would not live on in a fork.
+    """
+
+    def __init__(self, path: Path, seq: int, settled: int) -> None:
+        super().__init__(seq, ())
+        self.path = path
+        self.settled = settled
+        self._first = seq
+
+    def apply(self, delta: Delta) -> None:
+        """The readers do that."""
+        self.seq = delta.seq
+
+    def opened(self) -> Dataset:
+        """A clone, as it was before the log began."""
+        opened = Dataset(self._first, (), cloned(self.path))
+        opened.settled = self.settled
+        return opened
+
+    def renew(self, deltas: Iterable[Delta]) -> None:
+        """Take in the log, in a process of its own, so that another log can begin."""
+        if (pid := os.fork()) == 0:
+            try:
+                store = Dataset(self._first, (), ox.Store(str(self.path)))
+                for delta in deltas:
+                    store.apply(delta)
+                store.store.flush()
+                del store
+            finally:
+                os._exit(0)
+        os.waitpid(pid, 0)
+        self._first = self.seq
 
 
 def quads(triples: Iterable[Triple], graph: ox.NamedNode | ox.DefaultGraph) -> Iterator[ox.Quad]:

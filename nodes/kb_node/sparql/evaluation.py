@@ -8,11 +8,14 @@ from typing import Final
 import pyoxigraph as ox
 
 from nodes.kb_node.sparql.dataset import ASSERTED, INFERRED, Dataset
-from nodes.kb_node.sparql.text import PREFIXES, syntax_error
+from nodes.kb_node.sparql.text import query_prefixes, syntax_error
+from ontology import prefixes
+from ontology import vocabulary as v
 from schemas import errors
 from schemas.explanations import Term
 from schemas.sparql import Row, SparqlResult
 
+_PREFERRED_PREFIX: Final = ox.NamedNode(v.bare(prefixes.PREFERRED_PREFIX))
 _SPO: Final = ("subject", "predicate", "object")
 
 
@@ -21,10 +24,11 @@ def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> Sparq
 
     Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
     """
+    known = query_prefixes(_declared_in(dataset))
     try:
         found = dataset.store.query(
             query,
-            prefixes=PREFIXES,
+            prefixes=known,
             default_graph=[ASSERTED, INFERRED] if inferred else ASSERTED,
             named_graphs=[],
         )
@@ -34,12 +38,19 @@ def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> Sparq
             return SparqlResult(kind="graph", variables=_SPO, rows=_graph(found, limit), seq=dataset.seq)
         rows: tuple[Row, ...] = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
     except SyntaxError as error:
-        raise syntax_error(query, error) from None
+        raise syntax_error(query, error, known) from None
     except (RuntimeError, ValueError, OSError) as error:
         raise errors.Refused(f"the query cannot be evaluated: {' '.join(str(error).split())}") from None
     _require_few(len(rows), limit)
     variables = tuple(variable.value for variable in found.variables)
     return SparqlResult(kind="select", variables=variables, rows=rows, seq=dataset.seq)
+
+
+def _declared_in(dataset: Dataset) -> dict[str, str]:
+    """The prefixes of the TBox's own namespaces."""
+    said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
+    declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)
+    return {prefix: namespace for namespace, prefix in declared.items()}
 
 
 def _term(term: object) -> Term | None:

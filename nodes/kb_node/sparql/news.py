@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import zenoh
-
 from nodes import bus
 from nodes.kb_node.sparql.protocol import News
 from schemas import codec, keys
@@ -14,7 +12,7 @@ from schemas import codec, keys
 class NewsStand:
     """Publishes the news, from one thread."""
 
-    def __init__(self, session: zenoh.Session) -> None:
+    def __init__(self, session: bus.Session) -> None:
         self._session = session
         self._publishers: dict[str, Any] = {}
 

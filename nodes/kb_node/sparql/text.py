@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from types import MappingProxyType
 from typing import Final
 
-from ontology import vocabulary as v
+from ontology.prefixes import WELL_KNOWN, Prefixes
 from schemas import errors
 
-PREFIXES: Final = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
-"""The prefixes that a query need not declare."""
+PREFIXES: Final = dict(WELL_KNOWN)
+"""The prefixes that a query need not declare, whatever the TBox; those of its namespaces come on top."""
 
 _FORMS = frozenset({"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"})
 _UPDATES = frozenset({"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH"})
@@ -33,6 +34,11 @@ _REASONS = (
     ("a variable that is unbound", "it selects a variable that it neither binds nor groups by"),
     ("IRI parsing failed", "an IRI is malformed"),
 )
+
+
+def query_prefixes(of_tbox: Prefixes) -> dict[str, str]:
+    """The prefixes that a query need not declare over a TBox with prefixes of its own."""
+    return {**of_tbox, **PREFIXES}
 
 
 def require_reading(query: str) -> str:
@@ -59,22 +65,23 @@ def require_select(query: str) -> None:
         raise errors.BadRequest(f"only a SELECT can be watched, and this is a query of form {form}")
 
 
-def syntax_error(query: str, error: SyntaxError) -> errors.BadRequest:
+def syntax_error(
+    query: str, error: SyntaxError, prefixes: Prefixes = MappingProxyType(PREFIXES)
+) -> errors.BadRequest:
     """What Oxigraph's parser says, without the grammar: the place and, where it can be told, the reason."""
     match = _FAULT.match(str(error))
     if match is None:
         return errors.BadRequest(f"the query is no SPARQL: {' '.join(str(error).split())}")
     line, column, expected = int(match[1]), int(match[2]), match[3]
-    return errors.BadRequest(
-        f"the query is no SPARQL: line {line}, column {column}: {_reason(query, line, column, expected)}"
-    )
+    reason = _reason(query, line, column, expected, prefixes)
+    return errors.BadRequest(f"the query is no SPARQL: line {line}, column {column}: {reason}")
 
 
-def _reason(query: str, line: int, column: int, expected: str) -> str:
+def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixes) -> str:
     text = query.splitlines()[line - 1] if line <= len(query.splitlines()) else ""
     before, after = text[: column - 1], text[column - 1 :].strip()
     if "Prefix not found" in expected and (prefix := re.search(r"([\w.-]*):[^\s:]*$", before)):
-        known = ", ".join(f"{name}:" for name in PREFIXES)
+        known = ", ".join(f"{name}:" for name in prefixes)
         return f"unknown prefix '{prefix[1]}:'; there are {known}, and PREFIX declares others"
     for sign, reason in _REASONS:
         if sign in expected:

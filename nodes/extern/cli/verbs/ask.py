@@ -35,15 +35,32 @@ _STATUS_S = 20.0
     shell_complete=class_names,
     help="Only those of this class, also by inference.",
 )
+@click.option(
+    "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
+)
+@click.option(
+    "--in",
+    "in_",
+    metavar="PLACE",
+    shell_complete=entity_names,
+    help="Only what is in that place, or inside that container.",
+)
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="Only what is near it.")
+@click.option("--within", type=float, metavar="M", help="With --near: at most so far from it [m].")
+@click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
+@click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str, as_of: str | None) -> None:
-    """List the entities."""
+def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
+    """List the entities.
+
+    THING and PLACE are a name, a reference or a class.
+    """
     if format in ("lu4r", "legacy"):
-        print_json(client.list_as(format, class_, as_of=as_of))  # type: ignore[arg-type]
+        print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
         return
-    entities = client.list(class_, as_of=as_of)
+    entities = client.list(class_, as_of=as_of, **where)
     if format == "json":
         print_json(entities)
         return
@@ -87,10 +104,60 @@ def infer(client: Client, name: str | None) -> None:
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
+@click.option("--not", "negated", is_flag=True, help="Why it cannot hold.")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
-def explain(client: Client, name: str, predicate: str, value: str) -> None:
-    """Why something holds: semmap explain fridge1 type Device."""
-    print_lines(show.explanation(client.explain(name, predicate, value)))
+def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
+    """Why something holds: semmap explain fridge1 type Device.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. With --not, why it cannot hold: semmap explain
+    --not cup1 type Room.
+    """
+    explanation = client.explain(name, predicate, value, negated=negated)
+    if format == "json":
+        print_json(explanation)
+    else:
+        print_lines(show.explanation(explanation))
+
+
+@click.command()
+@click.argument("name")
+@click.argument("predicate")
+@click.argument("value")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def could(client: Client, name: str, predicate: str, value: str, format: str) -> None:
+    """Could something hold without contradicting the map? semmap could milk1 isInside oven1.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. Nothing is changed. The exit status is 0 if it
+    could, and 1 if it could not; then the answer says why.
+    """
+    answer = client.could(name, predicate, value)
+    if format == "json":
+        print_json(answer)
+    else:
+        print(answer.text)
+    if not answer.possible:
+        sys.exit(errors.Inconsistent.exit_status)
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("other", required=False, shell_complete=entity_names)
+@click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
+@click.option(
+    "--from-pose", "viewpoint", nargs=4, type=float, metavar="X Y Z YAW", help="The same, from a pose."
+)
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
+@_as_of
+@talks
+def relations(client: Client, name: str, other: str | None, format: str, **fields: Any) -> None:
+    """Where NAME is relative to what is around it, measured; with OTHER, also what does not hold."""
+    found = client.relations(name=name, other=other, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([relation.text for relation in found] or [f"{name} is on, in and near nothing"])
 
 
 @click.command()
@@ -127,6 +194,7 @@ def status(client: Client, format: str) -> None:
         return
     show.console().print(show.status_table(status))
     print(show.status_line(status))
+    print_lines(show.status_notes(status))
     print_lines(f"  {problem}" for problem in status.problems)
 
 
