@@ -115,13 +115,16 @@ class Individuals:
                     yield edge, member, store.subject[edge]
 
     def reached(self, node: int, role: Role) -> dict[int, tuple[int, int, int]]:
-        """Who is reached from a node by one step of a role or more: each with the last edge and its ends."""
+        """Who is reached from a node by one step of a role or more: the last edge, and its ends.
+
+        Of those that are the same, the first of their `members` stands for all.
+        """
         group, found = self.steps.group(role), dict[int, tuple[int, int, int]]()
         pending = [node]
         for here in pending:
             for edge, start, end in self.related(here, group):
-                if end not in found and self.members(end)[0] not in found:
-                    found[end] = (edge, start, end)
+                if (one := self.members(end)[0]) not in found:
+                    found[one] = (edge, start, end)
                     pending.append(end)
         return found
 
@@ -129,7 +132,13 @@ class Individuals:
         """An edge that implies a role between two nodes or their equals, or NONE."""
         group, store = self.steps.group(role), self.store
         if group.is_wide or len(self.members(one)) * len(self.members(other)) > MANY:
-            return next((edge for edge, _, end in self.related(one, group) if self.is_same(end, other)), NONE)
+            there = self.related(other, Group(group.into, group.out))
+            for (edge, _, end), (back, _, start) in zip(self.related(one, group), there, strict=False):
+                if self.is_same(end, other):
+                    return edge
+                if self.is_same(start, one):
+                    return back
+            return NONE
         for x in self.members(one):
             for y in self.members(other):
                 for p in group.out:
