@@ -162,14 +162,15 @@ class Keeping:
 
     def problems(self) -> list[str]:
         """What is amiss between map and scene, one sentence each."""
-        entities = sorted(self._door.map.entities.items())
-        states = ((name, self.body_state(entity)) for name, entity in entities)
-        amiss = [
+        entities = self._door.map.entities.values()
+        may_lack_bodies = self.scene.known and self._config.truth != "perceived"
+        states = ((e.name, self.body_state(e)) for e in entities) if may_lack_bodies else ()
+        amiss = sorted(
             f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
             for name, state in states
             if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
-        ]
-        seen = [f"{name}: perception: {entity.conflict}" for name, entity in entities if entity.conflict]
+        )
+        seen = sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
         return amiss + seen + [f"{name}: {why}" for name, why in foreign]
 

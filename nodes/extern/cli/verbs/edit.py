@@ -15,6 +15,7 @@ from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
+from schemas import errors
 
 
 def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -83,10 +84,16 @@ def clear(client: Client) -> None:
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Refuse what speaks of things that nobody says what they are.")
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
+@click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
 @import_option
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
     with progress(client):
-        reply = client.load(file, imports=dict(imports), **how)
+        try:
+            reply = client.load(file, imports=dict(imports), **how)
+        except errors.NoAnswer as error:
+            raise errors.NoAnswer(
+                f"{error.text}; whether {file.name} was loaded is not known here: semmap history tells"
+            ) from None
     print_lines(show.changed(reply))
