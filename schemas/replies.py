@@ -76,7 +76,7 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The whole system."""
+    """The whole system. `version` is that of semmap in the coordinator."""
 
     truth: str
     commit: int
@@ -86,6 +86,7 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Map and scene are the same, to within the thresholds; None when no simulator runs."""
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
+    version: str = ""
 
 
 class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -12,9 +12,9 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.coordinator import authority
-from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
@@ -197,7 +197,7 @@ class Coordinator:
             if not self._has_map and time.monotonic() < deadline:
                 self._early.append((deadline, execute, future))
             elif not self._has_map:
-                error = errors.NoAnswer("the knowledge base does not answer; see: semmap status")
+                error = errors.NoAnswer("the knowledge base is not answering; see: semmap status")
                 future.set_exception(error)
             else:
                 settle(future, execute)

@@ -6,7 +6,7 @@ from typing import Final
 
 from nodes.kb_node.reasoner import Reasoner, datatypes
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.text import query_prefixes
+from nodes.kb_node.sparql.queries.text import query_prefixes
 from ontology import prefixes
 from ontology import vocabulary as v
 from ontology.name_index import Ambiguous

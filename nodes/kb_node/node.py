@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +18,7 @@ from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
     blank_nodes,
     document_change,
+    load_parts,
     rdf,
     tbox_notes,
     tbox_validation,
@@ -30,12 +32,13 @@ from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.large_map import LargeMap
-from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.standing_queries.news import NewsStand
+from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from ontology import vocabulary as v
 from schemas import errors, keys, wording
@@ -191,8 +194,8 @@ class KnowledgeBase:
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
-        """An RDF document in one commit."""
-        label = f"f{uuid.uuid4().hex[:8]}"
+        """An RDF document in one commit, or in parts."""
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
                 load.content,
@@ -202,11 +205,13 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
-            commit = self._commit(transaction)
-            names = () if commit is None else tuple(entity.name for entity in commit.changed)
+            del triples
+            parts = load_parts.in_parts(transaction) if load.parts else [transaction]
+            commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
             return Loaded(
-                commit=_effects(commit),
-                names=names,
+                commit=_effects(commits[-1] if commits else None),
+                parts=len(commits),
+                names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
                 skipped=tuple(sorted_out.skipped),
                 notes=tuple(sorted_out.notes),
             )
@@ -223,6 +228,7 @@ class KnowledgeBase:
             with gc_pause.uncollected(freeze=True):
                 yield tell
         finally:
+            self._node.afterwards(heap.trim)
             self._node.describe(self._summary())
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
@@ -406,6 +412,7 @@ def run(config: KbConfig) -> None:
         try:
             with gc_pause.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal)
+            heap.trim()
             node.run()
             knowledge_base.close()
         finally:

@@ -11,7 +11,7 @@ from nodes.recorder.drawing.stage import Stage
 from nodes.recorder.drawing.surfaces import Kind
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
-from nodes.recorder.state.relations import Relations, missed
+from nodes.recorder.state.asserted_relations import Relations, missed
 from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node

@@ -3,6 +3,7 @@ import pytest
 from nodes.kb_node import answers
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.abox_document import sort_out
+from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from ontology import vocabulary as v
 from schemas import errors
 from tests.kb_node import home
@@ -90,3 +91,15 @@ def test_owlrl_is_of_the_same_opinion(more, consistent):
     checked = answers.check([*home.TBOX, *turtle(f":a a dm:Chair {more} .")], "owlrl")
     assert (checked.consistent, checked.engine) == (consistent, "owlrl")
     assert checked.text.startswith("consistent" if consistent else "inconsistent: ")
+
+
+def test_what_follows_is_the_same_on_both_engines(furnished):
+    """The one that works change by change, and the one for graphs that it cannot take."""
+    compiled = answers.infer(furnished, None), answers.picture(furnished, inferred=True)
+    assert furnished.reasoner.is_compiled
+    furnished.reasoner._engine = GeneralEngine(furnished.reasoner.asserted())
+    assert not furnished.reasoner.is_compiled
+    general = answers.infer(furnished, None), answers.picture(furnished, inferred=True)
+    assert set(general[0].triples) == set(compiled[0].triples)
+    assert general[0].text == compiled[0].text
+    assert set(general[1].written) == set(compiled[1].written)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple

@@ -19,12 +19,12 @@ from typing import Final, NoReturn
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql import text
-from nodes.kb_node.sparql.dataset import Dataset, KeptDataset
-from nodes.kb_node.sparql.evaluation import answer
-from nodes.kb_node.sparql.kept import remove_clone
-from nodes.kb_node.sparql.log import Log
 from nodes.kb_node.sparql.protocol import Outcome, Question, questions
+from nodes.kb_node.sparql.queries import text
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
+from nodes.kb_node.sparql.triples.kept import remove_clone
+from nodes.kb_node.sparql.triples.log import Log
 from schemas import errors
 
 MEMORY_BYTES: Final = 1 << 30

@@ -19,10 +19,10 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.lanes import Lanes
-from nodes.kb_node.sparql.large_map import Filled, LargeMap, delta_of
 from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
+from nodes.kb_node.sparql.triples.dataset import Delta
+from nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
 from nodes.runtime.futures import settle
 from schemas import codec, errors
 from schemas.calls import Call, reply_type

@@ -19,10 +19,6 @@ from typing import Any, Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.consequences import Consequences
-from nodes.kb_node.sparql.dataset import Dataset, Delta, KeptDataset
-from nodes.kb_node.sparql.log import Log
-from nodes.kb_node.sparql.lookout import Lookout
 from nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
@@ -36,6 +32,10 @@ from nodes.kb_node.sparql.protocol import (
     to_worker,
 )
 from nodes.kb_node.sparql.readers import Reader
+from nodes.kb_node.sparql.standing_queries.lookout import Lookout
+from nodes.kb_node.sparql.triples.consequences import Consequences
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
+from nodes.kb_node.sparql.triples.log import Log
 from schemas import errors
 
 BACKLOG: Final = 50_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from nodes.kb_node.reasoner.explain.words import Verb, Words, article
+from nodes.kb_node.reasoner.explain.words import Verb, Words, article, is_uncountable
 from nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
@@ -148,7 +148,8 @@ class Axioms:
 
     def _sub_class(self, narrow: Term, wide: Term) -> str:
         if is_named(narrow):
-            return f"every {self._words.cls(narrow)} {self.clause(wide)}"
+            noun = self._words.cls(narrow)
+            return f"{f'whatever is {noun}' if is_uncountable(noun) else f'every {noun}'} {self.clause(wide)}"
         return f"whatever {self.clause(narrow)} {self.clause(wide)}"
 
     def _same_class(self, one: Term, other: Term) -> str:

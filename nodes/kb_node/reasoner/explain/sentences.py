@@ -52,7 +52,10 @@ def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
     speaker = _Speaker(support, words)
     others = [triple for triple in support if triple != supposed]
     others.sort(key=speaker.axioms.is_axiom)  # the facts first
-    return _because(speaker.deny(supposed), speaker.reasons(others, supposed))
+    claim = speaker.deny(supposed)
+    if claim in map(speaker.say, others):  # as of the other truth value of a property that has one value
+        return f"{claim} (asserted)."
+    return _because(claim, speaker.reasons(others, supposed))
 
 
 def said(triple: Triple, words: Words) -> str:

@@ -41,7 +41,7 @@ _UNCOUNTABLE: Final = frozenset(
         *("coordinates", "headphones", "scissors", "stairs", "trousers"),
     )
 )
-"""Nouns that have no article, also as the last word of a label."""
+"""Nouns that take no article, also as the last word of a label."""
 _BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
 
 
@@ -135,11 +135,16 @@ class Words:
         return prop in self._data
 
 
+def is_uncountable(noun: str) -> bool:
+    """Whether a noun takes neither "a" nor "every"."""
+    return noun.rpartition(" ")[2] in _UNCOUNTABLE
+
+
 def article(noun: str) -> str:
     """A noun with "a" or "an"."""
     if not noun[:1].isalnum() or noun.startswith(("something ", "a ", "an ", "one of ")):
         return noun
-    if noun.rpartition(" ")[2] in _UNCOUNTABLE:
+    if is_uncountable(noun):
         return noun
     return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"
 

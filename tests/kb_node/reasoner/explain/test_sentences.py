@@ -17,7 +17,7 @@ HOLDS = {
     ),
     ":milk1 a dm:Food": (
         ":milk1 a dm:Milk",
-        "milk1 is food, because it is milk (asserted), every milk is a drink, and every drink is food.",
+        "milk1 is food, because it is milk (asserted), whatever is milk is a drink, and every drink is food.",
     ),
     ":counter1 dm:supports :milk1": (
         ":milk1 dm:isOn :counter1",
