@@ -28,7 +28,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
-from schemas.relations import Relation, ViewPoint, Where
+from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
     Checked,
@@ -191,10 +191,15 @@ class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
     as_of: When | None = None
 
 
-class Get(Command[Entity], frozen=True, tag="get"):
-    """One entity; with `as_of` as it was then."""
+class Get(Command[Described], frozen=True, tag="get"):
+    """One entity; with `as_of` as it was then.
+
+    With `where` also what it is on, inside and in, and what was said of that but does not hold (of the map as
+    it is now only).
+    """
 
     name: str
+    where: bool = False
     as_of: When | None = None
 
 

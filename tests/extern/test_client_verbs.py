@@ -11,6 +11,7 @@ from nodes.extern.client import Client, _checked
 from nodes.extern.client_verbs import Verb, Verbs
 from schemas import calls, commands, errors, replies
 from schemas.entities import Entity
+from schemas.relations import Described
 
 UNSIGNED = {"source": "operator", "agent": ""}
 NOT_A_METHOD = {"watch", "renew"}
@@ -41,8 +42,8 @@ def test_each_command_says_what_it_is_answered_with():
     for verb, kind in commands.COMMANDS.items():
         assert verb == kind.VERB
         assert calls.reply_type(kind) is not None
-    assert calls.reply_type(commands.Get) is Entity
-    assert calls.reply_type(type("Take", (commands.Get,), {})) is Entity
+    assert calls.reply_type(commands.Get) is Described
+    assert calls.reply_type(type("Take", (commands.Get,), {})) is Described
     with pytest.raises(TypeError, match="Call does not say what it is answered with"):
         calls.reply_type(calls.Call)
 
