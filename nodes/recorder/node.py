@@ -87,7 +87,7 @@ class Recorder:
             return
         if (
             len(self._map.entities) > MANY_ENTITIES
-        ):  # their stars are more than a message, and a drawing, holds
+        ):  # more stars than a message holds
             self._related = True
             self._relations.begin(())
             self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
