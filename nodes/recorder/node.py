@@ -85,9 +85,7 @@ class Recorder:
         """Ask for the relations; commits that come meanwhile may be newer than they."""
         if self._asking_stars:
             return
-        if (
-            len(self._map.entities) > MANY_ENTITIES
-        ):  # more stars than a message holds
+        if len(self._map.entities) > MANY_ENTITIES:  # more stars than a message holds
             self._related = True
             self._relations.begin(())
             self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
