@@ -83,7 +83,7 @@ def test_a_scene_with_a_fault_names_the_field(change, said):
             {"at": [0, 0, 1], "look_at": [1, 0, 1], "orientation": [1, 0, 0, 0]},
             "either look_at or orientation",
         ),
-        ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is where the camera itself stands"),
+        ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is the camera's own position"),
         ({"at": [0, 0, 1], "orientation": [1, 1, 0, 0]}, "has length 1.414; it must be 1"),
         ({"at": [0, 0, 1], "look_at": [1, 0, 1], "fovy": 58}, "fovy is 58; it is an angle .* radians"),
         ({"at": [0, 0, 1], "look_at": [1, 0, 1], "name": "a/b"}, "name must be a valid name"),
@@ -151,7 +151,7 @@ def test_a_byte_order_mark_is_no_part_of_a_scene():
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
 def test_numbers_that_json_does_not_have_are_named(number):
     content = as_bytes(SCENE).replace(b"1.5", number.encode())
-    with pytest.raises(BadFile, match=r"scene.json is no scene: .*; JSON has no NaN and no Infinity"):
+    with pytest.raises(BadFile, match=r"scene.json is not a valid scene: .*; JSON does not allow NaN and Infinity"):
         scene_files.read(content, "scene.json")
     with pytest.raises(BadFile) as error:
         scene_files.read(as_bytes({"entities": [{"class": number}], "x": 1}), "scene.json")

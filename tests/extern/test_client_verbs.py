@@ -67,7 +67,7 @@ def test_numbers_of_numpy_are_sent_as_numbers():
         (commands.Move("cup1", (1.0, 2.0)), "at"),
         (commands.StepOnce(-1.0), "seconds"),
         (commands.History(limit=0), "limit"),
-        (commands.Get(object()), "neither a number, a text nor a sequence"),
+        (commands.Get(object()), "not a number, a string or a sequence"),
     ],
 )
 def test_what_is_no_such_field_is_refused_before_it_is_sent(command, said):
