@@ -91,7 +91,7 @@ def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
     names = tuple(entity.name for entity in leaving)
     if not names:
-        return Changed(commit=None, text="the map is empty already")
+        return Changed(commit=None, text="the map is already empty")
 
     made = yield from commit(view, transactions.remove(command, reason, names))
     return Changed(commit=seq(made), text=f"removed {len(names)}: {_few(names)}", names=names)

@@ -1,4 +1,4 @@
-"""The keeper: what must be done so that map and scene say the same. A pure function, level-triggered.
+"""The reconciler: the actions that bring map and scene into agreement. A pure function, level-triggered.
 
 It looks only at how things are, never at how they came to be, so it also mends what was missed while any
 node was away. Who changed last wins: a body carries the number of the commit whose pose it was last ordered

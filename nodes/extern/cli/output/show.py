@@ -120,7 +120,9 @@ def status_line(status: SystemStatus) -> str:
     verdicts = {
         True: "map and scene agree" + (", except for:" if status.problems else ""),
         False: "map and scene do not agree yet",
-        None: "the map is updated by perception only" if status.truth == "perceived" else "no simulator runs",
+        None: "the map is updated by perception only"
+        if status.truth == "perceived"
+        else "no simulator is running",
     }
     agree = verdicts[status.in_agreement]
     counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"

@@ -10,11 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
-from itertools import combinations, islice, product
+from itertools import combinations, islice
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.entailment.expressions import (
-    ANYTHING,
     And,
     AtLeast,
     AtMost,
@@ -32,6 +31,7 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     Writer,
     negated,
 )
+from nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import (
@@ -51,15 +51,10 @@ _DEEPEST = 6
 """Expressions, definitions and case distinctions one inside the other."""
 _MOST = 1000
 """Suppositions in one proof."""
-_WIDEST = 24
-"""Alternatives, neighbours or members of an enumeration that are tried."""
 _INDIVIDUALS = 300
 """Individuals for whom witnesses are named."""
 _TOPS = (iri("owl:topObjectProperty"), iri("owl:topDataProperty"))
 _BOTTOMS = (iri("owl:bottomObjectProperty"), iri("owl:bottomDataProperty"))
-
-Alternatives = list[list[Triple]]
-"""Sets of triples of which one holds; none at all is a contradiction."""
 
 
 class Prover:
@@ -107,39 +102,8 @@ class Prover:
         return all(self.follows(supposed, goal) for supposed in alternatives)
 
     def given(self, x: Term, expression: Expression) -> Alternatives:
-        """What it says of x to be a member of a class, with names for what must exist."""
-        match expression:
-            case Named(term):
-                return [[]] if term == THING else [[(x, TYPE, term)]]
-            case And(parts):
-                choices = islice(product(*(self.given(x, part) for part in parts)), _WIDEST + 1)
-                whole = [[triple for part in choice for triple in part] for choice in choices]
-                return whole if len(whole) <= _WIDEST else [[]]
-            case Or(parts):
-                whole = [one for part in parts for one in self.given(x, part)]
-                return whole if len(whole) <= _WIDEST else [[]]
-            case OneOf(terms):
-                return [[(x, SAME_AS, term)] for term in terms] if len(terms) <= _WIDEST else [[]]
-            case AtLeast(number, role, filler) if number <= _WIDEST:
-                return self._given_values(x, number, role, filler)
-            case Has(role, value):
-                return [[role.edge(x, value)]]
-            case Self(role):
-                return [[role.edge(x, x)]]
-            case Not(OneOf((term,))):
-                return [[(x, DIFFERENT_FROM, term)]]
-            case Not(Has(role, value)):
-                return [self._never(role.edge(x, value))]
-            case Not(Self(role)):
-                return [self._never(role.edge(x, x))]
-            case Not(Named(term)) if term == THING:
-                return []
-        triples: list[Triple] = []
-        try:
-            node = self._writer.write(expression, triples)
-        except Unreadable:
-            return [[]]
-        return [[*triples, (x, TYPE, node)]]
+        """What it says of x to be a member of a class."""
+        return given(x, expression, self._writer)
 
     # Facts
 
@@ -259,7 +223,7 @@ class Prover:
         s, o = (None, x) if role.backwards else (x, None)
         found: dict[Term, None] = {}
         for source in (self._reasoner.asserted, self._reasoner.inferred):
-            for triple in islice(source(s, role.property, o), _WIDEST):
+            for triple in islice(source(s, role.property, o), WIDEST):
                 found[triple[0 if role.backwards else 2]] = None
         return list(found)
 
@@ -375,28 +339,6 @@ class Prover:
                     yield from ((node, part) for part in positive if isinstance(part, AtLeast | Self | OneOf))
             except Unreadable:
                 continue
-
-    def _given_values(self, x: Term, number: int, role: Role, filler: Expression) -> Alternatives:
-        values = [self.fresh() for _ in range(number)]
-        triples = [role.edge(x, y) for y in values]
-        triples += [(one, DIFFERENT_FROM, other) for one, other in combinations(values, 2)]
-        if filler == ANYTHING:
-            return [triples]
-        choices = list(islice(product(*(self.given(y, filler) for y in values)), _WIDEST + 1))
-        if len(choices) > _WIDEST:
-            return [triples]
-        return [[*triples, *(triple for part in choice for triple in part)] for choice in choices]
-
-    def _never(self, edge: Triple) -> list[Triple]:
-        s, p, o = edge
-        node = self.fresh()
-        target = "owl:targetValue" if is_literal(o) else "owl:targetIndividual"
-        return [
-            (node, TYPE, iri("owl:NegativePropertyAssertion")),
-            (node, iri("owl:sourceIndividual"), s),
-            (node, iri("owl:assertionProperty"), p),
-            (node, iri(target), o),
-        ]
 
 
 _EXISTENTIAL = (
