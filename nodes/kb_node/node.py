@@ -375,6 +375,8 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
+        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
+            return
         with suppress(errors.Refused):
             self.map.checkpoint()
 
@@ -383,6 +385,7 @@ class KnowledgeBase:
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
+            heap.trim()
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)

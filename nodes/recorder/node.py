@@ -18,7 +18,7 @@ from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
 from schemas import keys, wording
 from schemas.bridge import Recall, StarQuery
-from schemas.commits import Commit, Star
+from schemas.commits import MANY_ENTITIES, Commit, Star
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 _SCENE_LOST_S = 10.0
@@ -84,6 +84,13 @@ class Recorder:
     def _ask_stars(self) -> None:
         """Ask for the relations; commits that come meanwhile may be newer than they."""
         if self._asking_stars:
+            return
+        if len(self._map.entities) > MANY_ENTITIES:  # more stars than a message holds
+            self._related = True
+            self._relations.begin(())
+            self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
+            self._show_all()
+            self._shown()
             return
         self._asking_stars = True
 

@@ -45,7 +45,7 @@ def test_what_is_nothing_of_the_kind_is_refused(content):
 
 def test_a_broken_json_file_is_told_as_such():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
-    with pytest.raises(BadFile, match=r"x\.json is no valid JSON"):
+    with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
         kind_of(b"[1, 2", "x.json")
 
 
