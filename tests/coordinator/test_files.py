@@ -124,7 +124,7 @@ def test_a_huric_map():
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
-        (HURIC[:200], "no valid XML"),
+        (HURIC[:200], "not valid XML"),
         (b"<huricExample/>", "no semantic map"),
         (HURIC.replace(b'x="11.0"', b'x="NaN"'), "jar_1"),
         (HURIC.replace(b'x="11.0"', b'x="eleven"'), "jar_1"),
@@ -151,7 +151,7 @@ def test_a_byte_order_mark_is_no_part_of_a_scene():
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
 def test_numbers_that_json_does_not_have_are_named(number):
     content = as_bytes(SCENE).replace(b"1.5", number.encode())
-    with pytest.raises(BadFile, match=r"scene.json is not a valid scene: .*; JSON does not allow NaN and Infinity"):
+    with pytest.raises(BadFile, match=r"scene.json is not a valid scene: .*; JSON does not allow NaN"):
         scene_files.read(content, "scene.json")
     with pytest.raises(BadFile) as error:
         scene_files.read(as_bytes({"entities": [{"class": number}], "x": 1}), "scene.json")
