@@ -87,7 +87,7 @@ BAD = [
     (("watch", "semmap/**", "--sparql", "SELECT ?s {}"), 2, "not both"),
     (("picture", "."), 2, "scene.png"),
     (("picture", "scene.jpg"), 2, "scene.png"),
-    (("add", "sedla"), 2, "did you mean Chair ('sedia')?"),
+    (("add", "sedla"), 2, "did you mean Chair ('sedia')"),
 ]
 
 
