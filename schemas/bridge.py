@@ -10,6 +10,7 @@ from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -36,9 +37,10 @@ class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, the names of the entities that it changed, and what was left out and why."""
+    """The commit, the last of so many `parts`; the names of all entities that changed; what was left out."""
 
     commit: Effects | None
+    parts: int = 1
     names: tuple[str, ...] = ()
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
@@ -89,7 +91,7 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
 
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Add an ABox in any RDF syntax in one commit; with `replace` instead of the present one."""
+    """Add an ABox in any RDF syntax, with `replace` instead of the present one; see `commands.Load`."""
 
     VERB: ClassVar[str] = "load"
 
@@ -102,6 +104,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     replace: bool
     skip_unknown: bool
     strict: bool = False
+    parts: bool = False
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -149,7 +152,8 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Relations, Sparql, Watch, Renew),
+        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

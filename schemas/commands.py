@@ -37,6 +37,7 @@ from schemas.replies import (
     Inferred,
     LoggedCommit,
     Moved,
+    Possible,
     Sighting,
     SystemStatus,
 )
@@ -93,7 +94,7 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
 
 class Update(Command[Changed], frozen=True, tag="update"):
-    """Change what is named; what is not named stays. `alt` replaces all alternative references.
+    """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
     """
@@ -133,6 +134,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
     file is a TBox that takes the place of the present one, unless the map does not fit it; `spatial_root` are
     classes of it whose instances are things in space, where that is not known by itself.
+
+    A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
+    when one part is refused, those before it stay, and the error says so.
     """
 
     content: bytes
@@ -142,6 +146,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     strict: bool = False
     tbox: bool = False
     spatial_root: tuple[ClassName, ...] = ()
+    parts: bool = False
 
 
 # To ask
@@ -208,7 +213,24 @@ class Infer(Command[Inferred], frozen=True, tag="infer"):
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
-    """Why a triple holds: `name`, `predicate` and `value` are local names, IRIs in <> or literals."""
+    """Why a triple holds, or with `negated` why it cannot.
+
+    `name`, `predicate` and `value` are local names, IRIs in <> or literals. What no rule derives is decided
+    by refutation: two are different if their being the same would be a contradiction.
+    """
+
+    name: str
+    predicate: str
+    value: str
+    negated: bool = False
+
+
+class Could(Command[Possible], frozen=True, tag="could"):
+    """Would it be consistent with the map that a triple holds, and if not, why not? Nothing is changed.
+
+    `name`, `predicate` and `value` are written as for `Explain`; the value of a data property is typed by the
+    property's range.
+    """
 
     name: str
     predicate: str

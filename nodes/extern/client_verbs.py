@@ -111,6 +111,7 @@ def _load(
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
+    parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
     id: str = "",
@@ -120,6 +121,7 @@ def _load(
 
     `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
     that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
+    With `parts` it is as many commits as it takes, for files of any size.
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
@@ -134,6 +136,7 @@ def _load(
         strict=strict,
         tbox=tbox,
         spatial_root=tuple(spatial_root),
+        parts=parts,
         id=id,
         reason=reason,
     )
@@ -206,6 +209,7 @@ class Verbs:
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
+    could = Verb(commands.Could)
     relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)

@@ -7,25 +7,24 @@ from collections.abc import Iterable, Iterator
 from types import MappingProxyType
 from typing import NamedTuple
 
+from nodes.kb_node import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.text import query_prefixes
 from ontology import prefixes
 from ontology import vocabulary as v
-from ontology.name_index import Ambiguous
 from ontology.prefixes import Prefixes
 from schemas import errors
-from schemas.commands import Explain, RdfFormat
-from schemas.entities import Entity, composed
-from schemas.explanations import Explanation, Term, Triple
+from schemas.commands import RdfFormat
+from schemas.entities import Entity
+from schemas.explanations import Triple
 from schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
     """The entities of a class, given by its exact name. Raises UnknownClass."""
-    return tuple(semantic_map.entities(_class_iri(semantic_map, class_name) if class_name else None))
+    return tuple(semantic_map.entities(asked_terms.class_(semantic_map, class_name) if class_name else None))
 
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
@@ -43,18 +42,6 @@ def _worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
         and (p, s) != (v.OWL_SAME_AS, o)
         and not (p == v.RDF_TYPE and o.startswith("_:"))
     )
-
-
-def explain(semantic_map: SemanticMap, question: Explain) -> Explanation:
-    """Why a triple holds. Raises UnknownName, BadRequest for an unknown word, Refused if it does not hold."""
-    subject = _subject(semantic_map, question.name)
-    predicate = _predicate(semantic_map, question.predicate)
-    for value in _values(semantic_map, subject, predicate, question.value):
-        explanation = semantic_map.reasoner.explain((subject, predicate, value))
-        if explanation is not None:
-            return explanation
-    relation = "is of class" if predicate == v.RDF_TYPE else question.predicate
-    raise errors.Refused(f"it does not hold that {question.name} {relation} {question.value}")
 
 
 class Picture(NamedTuple):
@@ -114,73 +101,3 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
         text=f"inconsistent: {reason}" if reason else "consistent",
         explanation=explanation,
     )
-
-
-def _class_iri(semantic_map: SemanticMap, word: str) -> Term:
-    """The class that is meant. Raises UnknownClass."""
-    classes = semantic_map.classes
-    if word in classes.iris:
-        return classes.iris[word]
-    try:
-        name = classes.index.find(word)
-    except Ambiguous as error:
-        raise errors.UnknownClass(f"'{word}' may be {error}; say which class") from None
-    if name is None:
-        raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
-    return classes.iris[name]
-
-
-def _term(semantic_map: SemanticMap, word: str) -> Term | None:
-    """A term as it is written, or a name with a prefix that queries know; None for another word."""
-    prefix, colon, name = word.partition(":")
-    if word.startswith(("<", '"', "_:")):
-        return word
-    known = query_prefixes(semantic_map.classes.prefixes)
-    return v.iri(known[prefix] + name) if colon and prefix in known else None
-
-
-def _subject(semantic_map: SemanticMap, word: str) -> Term:
-    """An entity, or another individual or a class that the map or its TBox names.
-
-    Raises UnknownName, BadRequest for one that several have.
-    """
-    if (entity := semantic_map.find(composed(word))) is not None:
-        return v.iri(entity.iri)
-    reasoner = semantic_map.reasoner
-    if (term := _term(semantic_map, word)) is not None:
-        if reasoner.mentioned({term}):
-            return term
-    else:
-        for usual in (v.entity_iri(word), v.dm(word)):
-            if reasoner.mentioned({usual}):
-                return usual
-        namespaces = semantic_map.classes.prefixes
-        there = reasoner.mentioned({v.iri(namespace + word) for namespace in namespaces.values()})
-        if len(there) > 1:
-            names = sorted(prefixes.prefixed(term, namespaces) for term in there)
-            raise errors.BadRequest(f"'{word}' may be {errors.enumerated(names)}; say which")
-        if there:
-            return there.pop()
-    return v.iri(semantic_map.entity(word).iri)
-
-
-def _predicate(semantic_map: SemanticMap, word: str) -> Term:
-    if word in ("a", "type"):
-        return v.RDF_TYPE
-    if (term := _term(semantic_map, word)) is not None:
-        return term
-    return semantic_map.classes.property_named(word)
-
-
-def _values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
-    """The terms that `word` may stand for as the object of this subject and predicate."""
-    if predicate == v.RDF_TYPE and not word.startswith("_:"):
-        return [_class_iri(semantic_map, word)]
-    if (term := _term(semantic_map, word)) is not None:
-        return [term]
-    held = (
-        *semantic_map.reasoner.asserted(subject, predicate),
-        *semantic_map.reasoner.inferred(subject, predicate),
-    )
-    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.entity_name(o)) == word]
-    return named or [v.entity_iri(word)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -11,28 +12,33 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, undo
+from nodes.kb_node import answers, gc_pause, questions, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
     blank_nodes,
     document_change,
+    load_parts,
     rdf,
     tbox_notes,
     tbox_validation,
     term_syntax,
 )
 from nodes.kb_node.pages import Pages
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.standing_queries.news import NewsStand
+from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from ontology import vocabulary as v
 from schemas import errors, keys, wording
@@ -53,6 +59,7 @@ from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -69,11 +76,14 @@ from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.relations import Relation
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
+R = TypeVar("R", Explanation, Possible)
 
 
 class KnowledgeBase:
@@ -89,7 +99,11 @@ class KnowledgeBase:
         self._surroundings = Surroundings(self.map.entities, self.map.find)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
-        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
+        self._sparql = SparqlService(
+            lambda: self.map.reasoner.asserted(),
+            NewsStand(node.session).publish,
+            LargeMap(journal, lambda: self.map.reasoner, node.soon),
+        )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
@@ -112,6 +126,7 @@ class KnowledgeBase:
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
             Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
@@ -127,7 +142,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return _effects(self._commit(transaction))
+        if len(transaction.add) <= _FEW:
+            return _effects(self._commit(transaction))
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return _effects(self._commit(transaction))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
@@ -175,8 +194,8 @@ class KnowledgeBase:
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
-        """An RDF document in one commit."""
-        label = f"f{uuid.uuid4().hex[:8]}"
+        """An RDF document in one commit, or in parts."""
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
                 load.content,
@@ -186,11 +205,13 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
-            commit = self._commit(transaction)
-            names = () if commit is None else tuple(entity.name for entity in commit.changed)
+            del triples
+            parts = load_parts.in_parts(transaction) if load.parts else [transaction]
+            commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
             return Loaded(
-                commit=_effects(commit),
-                names=names,
+                commit=_effects(commits[-1] if commits else None),
+                parts=len(commits),
+                names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
                 skipped=tuple(sorted_out.skipped),
                 notes=tuple(sorted_out.notes),
             )
@@ -207,6 +228,7 @@ class KnowledgeBase:
             with gc_pause.uncollected(freeze=True):
                 yield tell
         finally:
+            self._node.afterwards(heap.trim)
             self._node.describe(self._summary())
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
@@ -269,24 +291,35 @@ class KnowledgeBase:
         """What follows."""
         return answers.infer(self.map, query.name)
 
-    def on_explain(self, query: Explain) -> Explanation:
-        """Why it follows, or what was measured of where a thing is; or why it does not hold."""
-        space = self._surroundings.space() if query.predicate in SPOKEN else None
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        asked = questions.of_explain(self.map, query)
+        space = self._surroundings.space() if query.predicate in SPOKEN and not query.negated else None
         seen = space and explained(space, query.name, query.predicate, query.value)
-        try:
-            explanation = answers.explain(self.map, query)
-        except errors.Refused:
-            if not seen:
-                raise
-            if not seen.holds:
-                raise errors.Refused(seen.text) from None
-            subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
-            conclusion = (subject, v.dm(seen.relation), object_)
-            return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
         if not seen:
-            return explanation
-        link = "; and" if seen.holds else "; but as it stands"
-        return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
+            return self._tried(questions.explain, asked)
+        explanation = questions.why(self.map.reasoner, asked)
+        if explanation is not None:
+            link = "; and" if seen.holds else "; but as it stands"
+            return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
+        conclusion = (subject, v.dm(seen.relation), object_)
+        return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Whether it could be."""
+        return self._tried(questions.could, questions.of_could(self.map, query))
+
+    def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
+        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        reasoner = self.map.reasoner
+        if questions.is_quick(reasoner, asked):
+            with suppress(NotCompilable):
+                return answer(reasoner, asked, anew=False)
+        asserted = list(reasoner.asserted())
+        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""
@@ -342,6 +375,8 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
+        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
+            return
         with suppress(errors.Refused):
             self.map.checkpoint()
 
@@ -350,6 +385,7 @@ class KnowledgeBase:
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
+            heap.trim()
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)
@@ -379,6 +415,7 @@ def run(config: KbConfig) -> None:
         try:
             with gc_pause.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal)
+            heap.trim()
             node.run()
             knowledge_base.close()
         finally:

@@ -15,6 +15,7 @@ from nodes.recorder.recording import open_recording
 from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
+from schemas.commands import Classes
 from schemas.commits import Snapshot
 from schemas.health import Health
 from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
@@ -63,6 +64,7 @@ class World:
                 "snapshot": (SnapshotQuery, lambda _: self.snapshot),
                 "recall": (Recall, lambda query: tuple(self.past[n] for n in query.seqs if n in self.past)),
                 "star": (StarQuery, lambda query: tuple(map(star, query.names))),
+                "classes": (Classes, lambda _: ()),
             },
         )
         self.asked = []
@@ -91,7 +93,7 @@ class World:
 
     def _scene(self, _):
         if self.scene is None:
-            raise errors.Refused("no simulator runs")
+            raise errors.Refused("no simulator is running")
         return self.scene
 
     def _surfaces(self, query):

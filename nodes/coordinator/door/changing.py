@@ -21,7 +21,7 @@ from schemas.scene_files import pose_of
 
 @once
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
-    """Put an entity into the map."""
+    """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
     name = command.name or free_name(found.name, view.entities)
     if name in view.entities:
@@ -41,7 +41,7 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
 
 @once
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
-    """Change what is named; what is not named stays."""
+    """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     changes = (found, command.ref, command.alt, command.size)
@@ -91,7 +91,7 @@ def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
     names = tuple(entity.name for entity in leaving)
     if not names:
-        return Changed(commit=None, text="the map is empty already")
+        return Changed(commit=None, text="the map is already empty")
 
     made = yield from commit(view, transactions.remove(command, reason, names))
     return Changed(commit=seq(made), text=f"removed {len(names)}: {_few(names)}", names=names)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from schemas.commits import Effects, Snapshot
+from schemas.commits import Effects
 from schemas.entities import Entity
 
 
 class KnownMap(map_replica.MapReplica[Effects]):
-    """Besides the entities the classes, and whether another knowledge base may know less."""
+    """Besides the entities the classes, and both by name."""
 
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
-        self.doubted = False
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -25,20 +26,6 @@ class KnownMap(map_replica.MapReplica[Effects]):
 
     def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
         """The entities, or those of a class by inference, in the order of their names."""
-        known = sorted(self.entities.items())
-        return tuple(e for _, e in known if class_name is None or class_name in e.types)
-
-    def doubt(self) -> None:
-        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
-        super().doubt()
-        self.doubted = True
-
-    def begin(self, snapshot: Snapshot) -> None:
-        """Take over a snapshot, unless it is older than what is known and not doubted."""
-        if snapshot.seq >= self.seq or self.doubted:
-            self.doubted = False
-            super().begin(snapshot)
-
-    def take(self, commit: Effects) -> bool:
-        """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
-        return super().take(commit) and not self.doubted
+        there = self.entities.values()
+        found = list(there) if class_name is None else [e for e in there if class_name in e.types]
+        return tuple(sorted(found, key=attrgetter("name")))

@@ -35,7 +35,7 @@ class Running:
         """Take a body and put it elsewhere, as a hand would."""
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
-            state = self._keeping.body_state(self._door.entity(command.name))
+            state = self._keeping.body_state(self._door.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
@@ -63,7 +63,7 @@ class Running:
             return self._ask_scene(command)
         return then(
             self._keeping.place_all(),
-            lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.bodies))}"),
+            lambda reply: Done(text=f"put back where the map says: {wording.bodies(len(reply.bodies))}"),
         )
 
     def picture(self, command: c.TakePicture) -> Future[Picture]:
@@ -73,7 +73,7 @@ class Running:
 
     def _ask_scene(self, call: Call[R]) -> Future[R]:
         if not self._keeping.scene.known:
-            raise errors.NoAnswer("no simulator runs")
+            raise errors.NoAnswer("no simulator is running")
         return self._ask(call)
 
 
@@ -83,5 +83,7 @@ def _let_go(command: c.Move, body: Body) -> str:
     if body.ghost:
         return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {GHOSTLY}"
     if room_z_m - z > _LIFTED_M:
-        return f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and let go"
-    return f"put {body.name} at ({x:g}, {y:g}, {z:g}) and let go"
+        return (
+            f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and released it"
+        )
+    return f"put {body.name} at ({x:g}, {y:g}, {z:g}) and released it"

@@ -1,4 +1,4 @@
-"""All verbs of the command line. They do nothing that is not a command; watching is a subscription."""
+"""All verbs of the command line. Each sends a command; only `watch` subscribes instead."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ _VERBS = (
         ask.check,
         ask.infer,
         ask.explain,
+        ask.could,
         ask.relations,
         ask.export,
         ask.classes,

@@ -1,4 +1,4 @@
-"""What the verbs of the command line that talk to a system have in common."""
+"""What all verbs that talk to a running system share: the connection, errors, exit statuses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIME = (
     " whole second, 12:30 the minute (of today, without a date), the date alone the day. Or seconds since"
     " 1970, or a stamp_ns of the JSON."
 )
-"""For the help of options that take one."""
+"""For the help of options that take a time."""
 
 connect_option = click.option(
     "--connect",
@@ -97,11 +97,6 @@ def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
 def given(fields: dict[str, Any]) -> dict[str, Any]:
     """The options that were given."""
     return {name: value for name, value in fields.items() if value not in (None, (), False)}
-
-
-def command(kind: type[Any], **fields: Any) -> Any:
-    """A command of the options that were given. Raises BadRequest."""
-    return codec.convert(given(fields), kind)
 
 
 def complain(text: str) -> None:

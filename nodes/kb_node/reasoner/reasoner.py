@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -50,6 +51,11 @@ class Reasoner:
         return isinstance(self._engine, CompiledEngine)
 
     @property
+    def words(self) -> Words:
+        """What terms are called in sentences: labels of the TBox, or names."""
+        return self._engine.words
+
+    @property
     def not_incremental(self) -> str | None:
         """What keeps changes from being worked out one by one; None when nothing does.
 
@@ -85,8 +91,7 @@ class Reasoner:
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
             except NotCompilable:  # undone
-                gone = engine.without_known_schema(delete, known=False)
-                new = engine.without_known_schema(insert, known=True)
+                gone, new = engine.without_idle_axioms(delete, insert)
                 if len(gone) + len(new) < len(delete) + len(insert):
                     return self.apply(delete=gone, insert=new)
         return self._apply_anew(delete, insert)
@@ -143,6 +148,15 @@ class Reasoner:
     ) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
         return self._engine.asserted(s, p, o)
+
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups of one subject, for whoever has no time to read all of them at once.
+
+        The triples may change between two groups: one that is asserted all the while is among them, and one
+        that is asserted at no time is not.
+        """
+        engine = self._engine
+        return engine.by_subject() if isinstance(engine, CompiledEngine) else iter([list(self.asserted())])
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject, predicate to objects. Costs as much as there is."""

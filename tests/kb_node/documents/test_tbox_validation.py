@@ -110,7 +110,7 @@ REFUSED = {
     "inconsistent map": (
         TBOX_TURTLE + "dm:Chair owl:disjointWith dm:Seat .",
         errors.Inconsistent,
-        "chair. cannot be both a Chair and a Seat",
+        "chair. cannot be both a chair and a Seat",
     ),
     "inconsistent TBox": (
         TBOX_TURTLE + ":x a dm:Chair , dm:Kitchen .",

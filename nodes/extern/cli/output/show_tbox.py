@@ -20,7 +20,7 @@ def report(found: TBoxReport) -> Iterator[str]:
     for iri in found.missing:
         yield _line("missing", f"{iri} (--import {iri}=FILE says where it is)")
     for kind, count in found.outside_rl.items():
-        yield _line("inert", f"{count} x {kind} (outside OWL 2 RL)")
+        yield _line("inert", f"{count} x {kind} (beyond OWL 2 RL)")
     yield from _names(found)
     yield from _verdict(found)
     if (quick := found.quickness) is not None:

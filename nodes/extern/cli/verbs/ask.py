@@ -1,4 +1,4 @@
-"""The verbs that ask, from `list` to `sparql`, and `watch`."""
+"""The verbs that query: `list`, `get`, `check`, `infer`, `explain`, `sparql` and others, and `watch`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import click
 
 from nodes import bus
 from nodes.extern import availability
-from nodes.extern.cli.calling import TIME, command, complain, print_json, print_lines, talks
+from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
@@ -22,7 +22,7 @@ from schemas import commands, errors, keys
 from schemas.entities import Entity
 
 _format = functools.partial(click.option, "--format", "format")
-_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"As it was after a commit, or a time. {TIME}")
+_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
 _STATUS_S = 20.0
 """Seconds: whoever asks how things stand is told of a system that is too busy to say."""
 
@@ -33,7 +33,7 @@ _STATUS_S = 20.0
     "class_",
     metavar="CLASS",
     shell_complete=class_names,
-    help="Only those of this class, also by inference.",
+    help="Only entities of this class, inferred types included.",
 )
 @click.option(
     "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
@@ -52,13 +52,13 @@ _STATUS_S = 20.0
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
+def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
 
     THING and PLACE are a name, a reference or a class.
     """
     if format in ("lu4r", "legacy"):
-        print_json(client.send(command(commands.List, class_=class_, format=format, as_of=as_of, **where)))
+        print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
         return
     entities = client.list(class_, as_of=as_of, **where)
     if format == "json":
@@ -85,7 +85,7 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
 @talks
 def check(client: Client, engine: Any) -> None:
-    """Is the map consistent, and if not, why?"""
+    """Check whether the map is consistent; if it is not, explain why."""
     checked = client.check(engine)
     print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     if not checked.consistent:
@@ -96,7 +96,7 @@ def check(client: Client, engine: Any) -> None:
 @click.argument("name", required=False, shell_complete=entity_names)
 @talks
 def infer(client: Client, name: str | None) -> None:
-    """What follows that was not said, about one entity or all."""
+    """List the inferred facts about one entity, or about all."""
     print_lines(show.inferred(client.infer(name)))
 
 
@@ -104,10 +104,41 @@ def infer(client: Client, name: str | None) -> None:
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
+@click.option("--not", "negated", is_flag=True, help="Why it cannot hold.")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
-def explain(client: Client, name: str, predicate: str, value: str) -> None:
-    """Why something holds: semmap explain fridge1 type Device."""
-    print_lines(show.explanation(client.explain(name, predicate, value)))
+def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
+    """Explain why a fact holds: semmap explain fridge1 type Device.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. With --not, why it cannot hold: semmap explain
+    --not cup1 type Room.
+    """
+    explanation = client.explain(name, predicate, value, negated=negated)
+    if format == "json":
+        print_json(explanation)
+    else:
+        print_lines(show.explanation(explanation))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("predicate")
+@click.argument("value")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def could(client: Client, name: str, predicate: str, value: str, format: str) -> None:
+    """Could something hold without contradicting the map? semmap could milk1 isInside oven1.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. Nothing is changed. The exit status is 0 if it
+    could, and 1 if it could not; then the answer says why.
+    """
+    answer = client.could(name, predicate, value)
+    if format == "json":
+        print_json(answer)
+    else:
+        print(answer.text)
+    if not answer.possible:
+        sys.exit(errors.Inconsistent.exit_status)
 
 
 @click.command()
@@ -131,11 +162,11 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's ending, else rdfxml.")
-@click.option("--inferred", is_flag=True, help="With what follows.")
+@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's suffix, else rdfxml.")
+@click.option("--inferred", is_flag=True, help="Include inferred facts.")
 @talks
 def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
-    """Write the map to FILE, checked first and all at once."""
+    """Export the map to FILE: checked for consistency first, written atomically."""
     document = client.export(format or _format_of(file), inferred=inferred)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
@@ -145,7 +176,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
 @_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @talks
 def classes(client: Client, format: str) -> None:
-    """The class tree, with the number of entities of each class."""
+    """Show the class tree with the number of entities of each class."""
     if format == "json":
         print_json(client.classes())
     else:
@@ -156,7 +187,7 @@ def classes(client: Client, format: str) -> None:
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @talks
 def status(client: Client, format: str) -> None:
-    """The nodes and the map."""
+    """Show the state of the nodes, the map and the scene."""
     status = client.send(commands.Status(), timeout_s=_STATUS_S)
     if format == "json":
         print_json(status)
@@ -169,31 +200,46 @@ def status(client: Client, format: str) -> None:
 
 @click.command()
 @click.argument("query")
-@click.option("--inferred", is_flag=True, help="Over what follows, too.")
+@click.option("--inferred", is_flag=True, help="Query inferred facts, too.")
 @_format(
     type=click.Choice(sparql_formats.FORMATS),
-    help="Default: table for rows, else turtle.",
+    help="Default: table for rows, turtle for graphs.",
 )
-@click.option("--timeout", type=float, default=5.0, show_default=True, metavar="S", help="Cancelled after.")
-@click.option("--limit", type=int, default=10_000, show_default=True, metavar="N", help="Refused beyond.")
+@click.option(
+    "--timeout",
+    type=float,
+    default=5.0,
+    show_default=True,
+    metavar="S",
+    help="Cancel the query after S seconds.",
+)
+@click.option(
+    "--limit",
+    type=int,
+    default=10_000,
+    show_default=True,
+    metavar="N",
+    help="Refuse results of more than N rows.",
+)
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
-    """Answer a SPARQL 1.1 query that reads: SELECT, ASK, CONSTRUCT, DESCRIBE.
+    """Run a read-only SPARQL 1.1 query: SELECT, ASK, CONSTRUCT or DESCRIBE.
 
-    QUERY is the query, @FILE or - for stdin. Known prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
+    QUERY is the query text, @FILE, or - for stdin. Predefined prefixes: dm: (TBox), : (ABox), rdf:, rdfs:,
+    owl:, xsd:.
     """
     sparql_answers.ask(client, query, **options)
 
 
 @click.command()
 @click.argument("keyexpr", default=keys.COMMIT.key)
-@click.option("--sparql", "query", metavar="QUERY", help="The rows of a SELECT instead, as they come and go.")
-@click.option("--inferred", is_flag=True, help="With --sparql: over what follows, too.")
+@click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
+@click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
 @talks
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
-    """Print what is published on a key expression, as it happens; without one, the commits."""
+    """Print messages on a Zenoh key expression as they are published; by default, the commits."""
     if query is not None and keyexpr != keys.COMMIT.key:
-        raise errors.BadRequest("watch takes a key expression or --sparql, not both")
+        raise errors.BadRequest("give a key expression or --sparql, not both")
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
@@ -230,6 +276,6 @@ def _format_of(file: Path) -> commands.RdfFormat:
     }
     if (known := endings.get(file.suffix.lower())) is None:
         raise errors.BadRequest(
-            f"what format is {file.name}? End it with {', '.join(endings)}, or say --format"
+            f"cannot tell the format of {file.name} by its suffix ({', '.join(endings)}); use --format"
         )
     return known
