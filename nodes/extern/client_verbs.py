@@ -100,7 +100,7 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
 
 
 def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
-    """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
     return commands.Remove(names=names, id=id, reason=reason)
 
 
