@@ -7,7 +7,7 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType, MethodType
@@ -25,7 +25,7 @@ from typing import (
 
 from nodes.extern.files import read_file
 from nodes.extern.ontologies import ontology
-from schemas import commands, replies
+from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
 from schemas.entities import Entity
@@ -100,7 +100,7 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
 
 
 def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
-    """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
     return commands.Remove(names=names, id=id, reason=reason)
 
 
@@ -113,6 +113,7 @@ def _load(
     tbox: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -124,7 +125,10 @@ def _load(
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
+    `spatial_root` are classes, by IRI or name, whose instances are things in space.
     """
+    if imports and not tbox:
+        raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
     content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
     return commands.Load(
         content=content,
@@ -133,6 +137,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        spatial_root=tuple(spatial_root),
         parts=parts,
         id=id,
         reason=reason,

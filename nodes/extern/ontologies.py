@@ -6,14 +6,20 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from nodes.extern.files import read_file
+from nodes.runtime import extras
+from ontology.prefixes import declarations
 
 
 def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
     """A document with an ontology and all that it imports, as far as that is found, and what it is called.
 
     `imports` says in which file an import is. The document is the file itself where there is only that one,
-    and else of N-Triples. Raises BadFile.
+    and else of N-Triples. Where only a client is installed, a file is taken without its imports, as nothing
+    there can read it. Raises BadFile, and BadRequest for what that client cannot do.
     """
+    if extras.missing(["kb"]) and not imports and not path.is_dir():
+        return read_file(path), path.name
+    extras.require("finding imports", "kb")
     from nodes.kb_node.documents import ontology_files, rdf
 
     gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
@@ -22,4 +28,5 @@ def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]
         return read_file(gathered.files[0]), path.name
     more = "1 more file" if further == 1 else f"{further} more files"
     name = path.resolve().name
-    return rdf.serialise(gathered.triples, "ntriples"), f"{name} and {more}"
+    triples = [*gathered.triples, *declarations(gathered.prefixes, gathered.triples)]
+    return rdf.serialise(triples, "ntriples"), f"{name} and {more}"

@@ -25,6 +25,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
     said = (
         missing(ontology_files.missing_imports(tbox)),
         not_in_space(classes),
+        set_aside(tbox),
         beyond(outside_rl(filter(is_schema, tbox))),
         slow(reasoner),
     )
@@ -43,14 +44,27 @@ def not_in_space(classes: ClassTable) -> str:
     """What it means that no class is known to be spatial."""
     if classes.spatial:
         return ""
-    return "no class is known to be of things in space, so nothing of it is an entity with a position"
+    return (
+        "the TBox does not say which of its classes are of things in space, so nothing can be placed;"
+        " load it again with --spatial-root CLASS"
+    )
+
+
+def set_aside(tbox: Iterable[Triple]) -> str:
+    """What of the TBox does not count, and why."""
+    reasons: dict[str, list[str]] = {}
+    for s, text in sorted((v.local_name(s), v.lexical(o)) for s, p, o in tbox if p == v.SET_ASIDE):
+        what, _, why = text.partition(": ")
+        reasons.setdefault(why, []).append(f"{s} {what}")
+    said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
+    return said and f"set aside, because no map could be kept with it: {said}"
 
 
 def beyond(kinds: Counter[str]) -> str:
     """How many axioms say more than the reasoner draws from them, and which kinds."""
     if not kinds:
         return ""
-    most = kinds.most_common(_FEW)
+    most = sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))[:_FEW]
     few = ", ".join(f"{count} {kind}" for kind, count in most)
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
