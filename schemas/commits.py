@@ -25,6 +25,13 @@ from schemas.entities import (
 from schemas.explanations import Term, Triple
 
 
+class Statement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """A property, by name or label, and values of it as they are written; none stands for all."""
+
+    property: str
+    values: tuple[str, ...] = ()
+
+
 class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
 
@@ -36,12 +43,16 @@ class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     alt: tuple[Text, ...] = ()
     affordances: tuple[str, ...] = ()
     """Individuals of the TBox, by their local names."""
+    set: tuple[Statement, ...] = ()
 
 
 class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """What an entity is to be from now on; omitted fields keep their values.
 
-    `alt` replaces all alternative references. An empty `conflict` takes the present one back.
+    `alt` replaces all alternative references. An empty `conflict` takes the present one back. `unset` goes
+    before `set`, which replaces the value of a functional property and adds those of another. All of it is
+    refused with `PreconditionFailed` unless the properties of `only_if` have one of these values now (no
+    value, where none is given).
     """
 
     name: str
@@ -53,6 +64,9 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
     ref: Text | None = None
     alt: tuple[Text, ...] | None = None
     conflict: Remark | None = None
+    only_if: tuple[Statement, ...] = ()
+    unset: tuple[Statement, ...] = ()
+    set: tuple[Statement, ...] = ()
 
     @property
     def places(self) -> bool:

@@ -264,6 +264,7 @@ class SemanticMap:
             self.classes,
             self.tbox,
             self.entity,
+            self.find,
             remove=self.steadily(remove),
             edit=self.steadily(edit),
             add=self.steadily(add),

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
 from schemas import errors
@@ -47,6 +48,7 @@ class ClassTable:
             s for kind in v.PROPERTY_KINDS for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
         )
         self.iris = _by_name(self.names)
+        self.stated = PropertyTable(reasoner)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
