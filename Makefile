@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format docs diagrams schema models train-perception clean
+.PHONY: help setup demo test test-long lint format docs diagrams schema shapes models train-perception clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -54,6 +54,9 @@ diagrams: setup  ## Draw the manual's Mermaid diagrams that have changed; needs 
 
 schema: setup  ## Write the JSON Schema of scene files anew
 	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json
+
+shapes: setup  ## Write the models' support surfaces and hollows anew, for the knowledge base
+	$(BIN)/python -m nodes.sim_node.models.write_shapes
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png

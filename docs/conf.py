@@ -11,7 +11,6 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "diagr
 exclude_patterns = ["_ext", "README.md"]
 html_theme = "furo"
 html_title = "semmap"
-html_static_path = ["_static"]
 html_show_copyright = False
 myst_heading_anchors = 3
 myst_fence_as_directive = ["mermaid"]

@@ -16,6 +16,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Relations,
     Renew,
     Sparql,
     Watch,
@@ -24,6 +25,7 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
 from schemas.moments import When
+from schemas.relations import Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -115,11 +117,15 @@ class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then."""
+    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then.
+
+    With `where` only those that are there; by distance if it asks for the nearest.
+    """
 
     VERB: ClassVar[str] = "list"
     class_: str | None = field(name="class", default=None)
     as_of: When | None = None
+    where: Where | None = None
 
 
 class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -138,7 +144,7 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Sparql, Watch, Renew),
+        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Relations, Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

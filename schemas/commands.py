@@ -27,6 +27,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
+from schemas.relations import Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
     Checked,
@@ -135,11 +136,41 @@ class Load(Command[Changed], frozen=True, tag="load"):
 class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"):
     """The entities of a class (all, without one), over inferred types; with `as_of` those of then.
 
-    Answered with the entities, or with the document of another format than `json`.
+    Of these, those that stand `on` a thing (directly or on what is on it), are `in` a place or a container,
+    are `near` a thing or `within` so many metres of it, or the `nearest` so many `to` it; worked out from
+    poses, sizes and shapes. Things and places are given by name, reference or class. Answered with the
+    entities, or with the document of another format than `json`.
     """
 
     class_: ClassName | None = field(name="class", default=None)
     format: ListFormat = "json"
+    as_of: When | None = None
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
+    near: Text | None = None
+    within: Annotated[float, Meta(gt=0.0, le=20_000.0)] | None = None
+    nearest: Annotated[int, Meta(ge=1, le=10_000)] | None = None
+    to: Text | None = None
+
+    @property
+    def where(self) -> Where | None:
+        """What it asks of where things are, if it does."""
+        where = Where(
+            on=self.on, in_=self.in_, near=self.near, within=self.within, nearest=self.nearest, to=self.to
+        )
+        return None if where == Where() else where
+
+
+class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
+    """Where a thing is relative to others, as measured; with `other` also what does not hold of the two.
+
+    `viewer` (an entity) or `viewpoint` adds left of, right of, in front of and behind, as seen from there.
+    """
+
+    name: str
+    other: str | None = None
+    viewer: str | None = None
+    viewpoint: ViewPoint | None = None
     as_of: When | None = None
 
 

@@ -19,9 +19,11 @@ from nodes.runtime.futures import then
 from ontology.model_sizes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
-from schemas.entities import Entity
+from schemas.entities import Entity, Size
 from schemas.moments import When
 from schemas.replies import SystemStatus
+
+_DIGITS = 4
 
 Listed = tuple[Entity, ...] | dict[str, Any]
 """The entities, or the document of another format."""
@@ -42,10 +44,11 @@ class Answers:
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """The entities of a class, with what has become of their bodies."""
         class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
-        if query.as_of is not None:
-            asked = bridge.Entities(class_=class_, as_of=query.as_of)
+        if query.as_of is not None or query.where is not None:
+            asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
             found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
-            return then(found, lambda then_there: self._formatted(map(with_size, then_there), query.format))
+            seen = with_size if query.as_of is not None else self._with_body
+            return then(found, lambda there: self._formatted(map(seen, there), query.format))
         entities = self._door.entities_of(class_)
         if query.format == "json":
             entities = tuple(map(self._with_body, entities))
@@ -91,7 +94,7 @@ class Answers:
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":
             return structs.replace(entity, body=state)
-        sized = with_size(entity) if body is None else structs.replace(entity, size_m=body.size_m)
+        sized = with_size(entity) if body is None else structs.replace(entity, size_m=_rounded(body.size_m))
         return structs.replace(sized, body=structs.replace(state, own_size=sized.size_m is not None))
 
 
@@ -100,3 +103,9 @@ def with_size(entity: Entity) -> Entity:
     if entity.size_m is not None or entity.place:
         return entity
     return structs.replace(entity, size_m=own_size_m(entity.model))
+
+
+def _rounded(size_m: Size) -> Size:
+    """To the precision of the table of models, so that an entity's size is the same before it has a body."""
+    x, y, z = size_m
+    return round(x, _DIGITS), round(y, _DIGITS), round(z, _DIGITS)

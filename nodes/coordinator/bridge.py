@@ -14,12 +14,13 @@ from schemas.commands import Command
 
 R = TypeVar("R")
 
-_LONG_S = {"load": 300.0, "load-tbox": 300.0, "undo": 300.0}
+_LONG = frozenset({"load", "load-tbox", "undo"})
 """What keeps the knowledge base busy; the heart goes on beating meanwhile."""
-_BESIDE_S = {"check": 660.0, "sparql": 180.0, "watch": 180.0}
-"""What is worked out beside its other work."""
-_USUALLY_S = 10.0
+_BUSY_S = 6 * 3600.0
+"""However long the knowledge base works: it is watched, and its end ends the question."""
 _AT_ONCE_S = 3.0
+_OVER_A_START_S = 900.0
+"""A large map takes its time to start."""
 
 
 class Bridge:
@@ -30,15 +31,16 @@ class Bridge:
 
     def ask(self, call: Call[R]) -> R:
         """The answer; nothing else is done until it comes. Raises its error."""
-        return self._node.ask(keys.BRIDGE, call, timeout_s=_USUALLY_S)
+        return self._node.ask(keys.BRIDGE, call, timeout_s=_BUSY_S, beating=True)
 
     def ask_later(self, call: Call[R], *, patience_s: float = 0.0) -> Future[R]:
         """The answer when it comes; NoAnswer when nobody serves the key for `patience_s`."""
-        return self._node.ask_later(keys.BRIDGE, call, patience_s=patience_s)
+        return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def change(self, call: Call[R]) -> Future[R]:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        timeout_s, beating = _LONG_S.get(call.VERB, _AT_ONCE_S), call.VERB in _LONG_S
+        beating = call.VERB in _LONG
+        timeout_s = _BUSY_S if beating else _AT_ONCE_S
         future: Future[R] = Future()
         settle(
             future,
@@ -51,12 +53,12 @@ class Bridge:
 
         What is asked has the id of its command, so that it is done once.
         """
-        timeout_s = _LONG_S.get(call.VERB, _USUALLY_S)
-        return self._node.ask_later(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=bus.RESTART_S)
+        patience_s = _OVER_A_START_S if call.VERB in _LONG else bus.RESTART_S
+        return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def relay(self, command: Command[R]) -> Relay[R]:
         """Let the knowledge base answer a command itself."""
-        return Relay(keys.BRIDGE, command, _BESIDE_S.get(command.VERB, bus.TIMEOUT_S))
+        return Relay(keys.BRIDGE, command, _BUSY_S)
 
 
 def _is_unanswered(asked: Future[Any]) -> bool:

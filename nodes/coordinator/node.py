@@ -77,6 +77,7 @@ class Coordinator:
             c.Check.answered_by(relay),
             c.Infer.answered_by(relay),
             c.Explain.answered_by(relay),
+            c.Relations.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
             c.Sparql.answered_by(relay),

@@ -72,9 +72,9 @@ class Client(Verbs):
         )
         return reply
 
-    def request(self, command: Command[R], read: Callable[[R], Any] | None = None) -> Any:
-        """Send a command and `read` its reply: what each verb does."""
-        reply = self.send(command)
+    def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
+        """Make a command, send it, and `read` its reply: what each verb does."""
+        reply = self.send(make())
         return reply if read is None else read(reply)
 
     @contextlib.contextmanager
@@ -96,21 +96,25 @@ class Client(Verbs):
         the system gives way to one with another map, whose numbers may be lower, that one's commits follow.
         """
         began_ns = time.time_ns()
-        events: queue.SimpleQueue[Commit] = queue.SimpleQueue()
+        events: queue.SimpleQueue[Commit | None] = queue.SimpleQueue()
         subscriber = bus.follow(self.session, keys.COMMIT, lambda _, commit: events.put(commit))
         try:
             now = self.status().commit
             yield (c for c in _each(events, timeout) if c.seq > now or c.stamp_ns > began_ns)
         finally:
             subscriber.undeclare()
+            events.put(None)  # whoever waits for the next one on another thread is told of the end
 
 
-def _each(events: queue.SimpleQueue[Commit], timeout_s: float | None) -> Iterator[Commit]:
+def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> Iterator[Commit]:
     while True:
         try:
-            yield events.get(timeout=timeout_s)
+            commit = events.get(timeout=timeout_s)
         except queue.Empty:
             raise errors.NoAnswer(f"no commit came within {timeout_s:g} s") from None
+        if commit is None:
+            return
+        yield commit
 
 
 def _checked(command: C, signature: dict[str, Any]) -> C:

@@ -7,7 +7,8 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from functools import partial
 from pathlib import Path
 from types import MethodType
 from typing import (
@@ -31,6 +32,7 @@ from schemas.moments import When
 from schemas.scenes import Picture
 
 if TYPE_CHECKING:
+    from nodes.extern.async_client import AsyncClient
     from nodes.extern.client import Client
 
 P = ParamSpec("P")
@@ -41,7 +43,8 @@ U = TypeVar("U")
 class Verb(Generic[P, U]):
     """A method that sends the command that `make` makes of its arguments, and returns its reply.
 
-    With `read`, what that makes of the reply. Types and documentation are those of `make`.
+    With `read`, what that makes of the reply. A `Client` returns it, an `AsyncClient` has it awaited. Types
+    and documentation are those of `make`.
     """
 
     @overload
@@ -55,7 +58,7 @@ class Verb(Generic[P, U]):
         make, read = self._make, self._read
 
         def method(client: Any, *args: Any, **fields: Any) -> Any:
-            return client.request(make(*args, **fields), read)
+            return client.request(partial(make, *args, **fields), read)
 
         method.__name__, method.__qualname__ = name, f"{owner.__name__}.{name}"
         method.__doc__, method.__module__ = make.__doc__, make.__module__
@@ -64,6 +67,10 @@ class Verb(Generic[P, U]):
 
     @overload
     def __get__(self, client: Client, owner: type[Client]) -> Callable[P, U]: ...
+    @overload
+    def __get__(
+        self, client: AsyncClient, owner: type[AsyncClient]
+    ) -> Callable[P, Coroutine[Any, Any, U]]: ...
     @overload
     def __get__(self, client: None, owner: type[Any]) -> Callable[..., Any]: ...
     def __get__(self, client: Any, owner: type[Any]) -> Any:
@@ -121,13 +128,28 @@ def _load(
     )
 
 
-def _list(class_: str | None = None, *, as_of: When | None = None) -> commands.List:
+def _list(
+    class_: str | None = None,
+    *,
+    as_of: When | None = None,
+    on: str | None = None,
+    in_: str | None = None,
+    near: str | None = None,
+    within: float | None = None,
+    nearest: int | None = None,
+    to: str | None = None,
+) -> commands.List:
     """The entities of a class, over inferred types; all of them without one.
+
+    Of these those `on` a thing, `in_` a place or container, `near` a thing (`within` so many metres of it),
+    or the `nearest` so many `to` a thing; each is given by name, reference or class.
 
     `as_of`: the map as it was after a commit, given by its number, or at a time: seconds since 1970, ISO 8601
     or a reply's `stamp_ns`. A time denotes its written precision (see `schemas.moments.When`).
     """
-    return commands.List(class_=class_, as_of=as_of)
+    return commands.List(
+        class_=class_, as_of=as_of, on=on, in_=in_, near=near, within=within, nearest=nearest, to=to
+    )
 
 
 def _list_as(
@@ -173,6 +195,7 @@ class Verbs:
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
+    relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
     status = Verb(commands.Status)

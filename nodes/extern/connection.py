@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import zenoh
 
 from nodes import bus
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from schemas import errors
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
@@ -20,8 +20,22 @@ _AGAIN_S = 0.1
 
 
 def endpoint() -> str:
-    """The system that is meant when nothing else is said: `SEMMAP_CONNECT`, or the usual one."""
-    return os.environ.get(CONNECT_VARIABLE) or bus.DEFAULT_ENDPOINT
+    """The system that is meant when nothing else is said.
+
+    That is `SEMMAP_CONNECT`; or the one at the usual endpoint; or the only one that this user runs on this
+    machine. Raises BadRequest when it could be any of several.
+    """
+    if said := os.environ.get(CONNECT_VARIABLE):
+        return said
+    running = registry.systems()
+    if not running or any(system.reachable == bus.DEFAULT_ENDPOINT for system in running):
+        return bus.DEFAULT_ENDPOINT
+    if len(running) > 1:
+        which = ", ".join(f"{system.reachable} ({system.data})" for system in running)
+        raise errors.BadRequest(
+            f"{len(running)} systems run here, choose one with --connect or {CONNECT_VARIABLE}: {which}"
+        )
+    return running[0].reachable
 
 
 @contextlib.contextmanager

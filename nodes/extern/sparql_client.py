@@ -34,7 +34,7 @@ class StandingQuery:
         self._ask = ask
         self._name = f"q{uuid.uuid4().hex[:12]}"
         self._command = commands.Watch(query=query, inferred=inferred, watch=self._name, lease=_LEASE_S)
-        self._news: queue.SimpleQueue[RowsChanged] = queue.SimpleQueue()
+        self._news: queue.SimpleQueue[RowsChanged | None] = queue.SimpleQueue()
         topic = keys.QUERY._replace(key=keys.query_key(self._name))
         self._subscriber = bus.follow(session, topic, lambda _, news: self._news.put(news))
         try:
@@ -47,7 +47,7 @@ class StandingQuery:
         self.seq = self._seen.seq
 
     def changes(self, *, timeout: float | None = None) -> Iterator[RowsChanged]:
-        """The news, in order, without end.
+        """The news, in order, until it is closed.
 
         Raises Refused when the query had to be cancelled, NoAnswer when `timeout` seconds have brought none.
         """
@@ -58,6 +58,8 @@ class StandingQuery:
         while True:
             try:
                 news = self._news.get(timeout=max(0.0, min(renew_at, end_at) - time.monotonic()))
+                if news is None:
+                    return
             except queue.Empty:
                 if time.monotonic() >= end_at:
                     raise errors.NoAnswer(f"no rows came or went within {patience_s:g} s") from None
@@ -79,8 +81,9 @@ class StandingQuery:
             end_at = time.monotonic() + patience_s
 
     def close(self) -> None:
-        """End it."""
+        """End it; whoever waits for news on another thread gets no more."""
         self._subscriber.undeclare()
+        self._news.put(None)
         with contextlib.suppress(errors.SemmapError):
             renewal = commands.Renew(watch=self._name, end=True)
             self._ask("renew", renewal, replies.Done, patience_s=0.0, timeout_s=2.0)

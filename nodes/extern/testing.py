@@ -17,12 +17,13 @@ _READY = "stop "
 
 
 @contextmanager
-def own_system(data: Path, *words: str) -> Iterator[Client]:
-    """A client of `semmap up --data DATA WORDS...` on a port of its own, which is stopped at the end.
+def own_system(data: Path, *words: str, endpoint: str | None = None) -> Iterator[Client]:
+    """A client of `semmap up --data DATA WORDS...`, which is stopped at the end.
 
-    Raises RuntimeError, with what it printed, when it does not start.
+    It listens at `endpoint`, or else on a free port of this machine. Raises RuntimeError, with what it
+    printed, when it does not start.
     """
-    endpoint = free_endpoint()
+    endpoint = endpoint or free_endpoint()
     up = [str(Path(sys.executable).with_name("semmap")), "up", "--data", str(data), "--listen", endpoint]
     with subprocess.Popen(
         [*up, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True

@@ -9,11 +9,17 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TypeVar
 
+from msgspec import structs
+
 from nodes.kb_node import answers, gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
 from nodes.kb_node.pages import Pages
+from nodes.kb_node.relations.selection import selected
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.surroundings import Surroundings
+from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
@@ -21,6 +27,7 @@ from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime.loop import Node, open_node
+from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -45,6 +52,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Relations,
     Renew,
     Sparql,
     Watch,
@@ -53,6 +61,7 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Explanation
 from schemas.health import LOADING
+from schemas.relations import Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
 from schemas.sparql import SparqlResult, Watching
 
@@ -70,6 +79,7 @@ class KnowledgeBase:
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
         self._pages = Pages(self.map)
+        self._surroundings = Surroundings(self.map.entities, self.map.find)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
@@ -94,6 +104,7 @@ class KnowledgeBase:
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
             Explain.answered_by(self.on_explain),
+            Relations.answered_by(self.on_relations),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -131,6 +142,7 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
+        self._surroundings.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
@@ -208,12 +220,34 @@ class KnowledgeBase:
         return tuple(self.map.class_table())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
-        """The entities of a class, now or as of then."""
+        """The entities of a class, now or as of then; with `where` those that are there."""
+        where = query.where
         if query.as_of is not None:
-            return self._aside.submit(
-                self._past.entities, query.as_of, query.class_, tuple(self.map.classes.iris)
-            )
-        return answers.entities_of(self.map, query.class_)
+            return self._aside.submit(self._then, query)
+        found = answers.entities_of(self.map, query.class_)
+        if where is None:
+            return found
+        return tuple(selected(self._surroundings.space(), found, where, self.map.entities()))
+
+    def _then(self, query: Entities) -> tuple[Entity, ...]:
+        assert query.as_of is not None
+        found = self._past.entities(query.as_of, query.class_, tuple(self.map.classes.iris))
+        if query.where is None:
+            return found
+        everyone = self._past.entities(query.as_of, None, ())
+        return tuple(selected(Space(everyone), found, query.where, everyone))
+
+    def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
+        """Where a thing is relative to others, now or as of then."""
+        if query.as_of is not None:
+            return self._aside.submit(self._relations_then, query)
+        self.map.entity(query.name)
+        return tuple(relations(self._surroundings.space(), query))
+
+    def _relations_then(self, query: Relations) -> tuple[Relation, ...]:
+        assert query.as_of is not None
+        self._past.entity(query.name, query.as_of)
+        return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
 
     def on_get(self, query: Get) -> Entity | Future[Entity]:
         """One entity, now or as of then."""
@@ -226,8 +260,23 @@ class KnowledgeBase:
         return answers.infer(self.map, query.name)
 
     def on_explain(self, query: Explain) -> Explanation:
-        """Why it follows."""
-        return answers.explain(self.map, query)
+        """Why it follows, or what was measured of where a thing is; or why it does not hold."""
+        space = self._surroundings.space() if query.predicate in SPOKEN else None
+        seen = space and explained(space, query.name, query.predicate, query.value)
+        try:
+            explanation = answers.explain(self.map, query)
+        except errors.Refused:
+            if not seen:
+                raise
+            if not seen.holds:
+                raise errors.Refused(seen.text) from None
+            subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
+            conclusion = (subject, v.dm(seen.relation), object_)
+            return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+        if not seen:
+            return explanation
+        link = "; and" if seen.holds else "; but as it stands"
+        return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

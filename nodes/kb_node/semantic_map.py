@@ -15,7 +15,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.storage import closure_cache, commit_encoding, fingerprint
+from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
@@ -249,7 +249,7 @@ class SemanticMap:
                 seq=self.seq,
                 triples=tuple(self.abox()),
                 entities=tuple(self._entities.values()),
-                read_by=fingerprint.of_code(),
+                read_by=conclusions_format.mark(),
             )
         )
         self._checkpointed = self.seq
@@ -280,7 +280,7 @@ class SemanticMap:
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == fingerprint.of_code():
+        elif start.read_by == conclusions_format.mark():
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -48,6 +49,7 @@ _PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
 _BODY_STEPS = 5_000
 """So many steps of single bodies take a tenth of a second or two; after that others have their turn."""
 
+_SHOWN = 6
 _LAG_S = 0.05
 """Time that could not be simulated as fast as it passed is dropped beyond this."""
 
@@ -201,7 +203,13 @@ class Simulator:
         state = ", paused" if self._paused else ""
         world = self._world
         bodies = f"{wording.bodies(len(world))} in " if len(world) else ""  # at first the map's are to come
-        return f"{bodies}{world.name}{state}"
+        ignored = f"; declared but ignored: {_few(world.ignored)}" if world.ignored else ""
+        return f"{bodies}{world.name}{state}{ignored}"
+
+
+def _few(words: Sequence[str]) -> str:
+    more = f" and {len(words) - _SHOWN} more" if len(words) > _SHOWN else ""
+    return ", ".join(words[:_SHOWN]) + more
 
 
 def run(config: SimConfig) -> None:

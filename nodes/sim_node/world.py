@@ -41,7 +41,10 @@ class World:
         `meanwhile` is called again and again while models are read and compiled. It may let time pass
         (`step`), and ask for `poses` and a `snapshot`: newcomers are not yet there.
         """
-        self._engine = Engine(ground or base_scene.bare_floor(), meanwhile)
+        ground = ground or base_scene.bare_floor()
+        self.ignored = base_scene.ignored(ground)
+        """Bodies whose class the world declares in vain, each with the reason."""
+        self._engine = Engine(ground, meanwhile)
         self._settling = Settling(self._engine)
         self._models, self._meanwhile = models, meanwhile
         self.name = name

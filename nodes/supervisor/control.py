@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import configparser
-import contextlib
 import hashlib
 import io
 import os
@@ -17,6 +16,7 @@ from typing import Any
 
 from supervisor.xmlrpc import SupervisorTransport
 
+from nodes.supervisor import registry
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
@@ -100,8 +100,8 @@ class Supervisor:
         try:
             self._rpc().supervisor.shutdown()
         except (OSError, xmlrpc.client.Error):
-            others = ", ".join(f"{other.data} ({settings.listen})" for other, settings in running())
-            hint = f"; with --data one may stop that in {others}" if others else ""
+            others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
+            hint = f"; --data stops one of these: {others}" if others else ""
             raise errors.NoAnswer(f"no system runs on the data in {self.data}{hint}") from None
         deadline = time.monotonic() + 2 * _STOP_WAIT_S
         while self.is_running() and time.monotonic() < deadline:
@@ -111,7 +111,7 @@ class Supervisor:
         """The last line that a node wrote to its log."""
         path = self.log_of(node)
         lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
-        return lines[-1].removeprefix(f"{node}: ") if lines else "it left no word"
+        return lines[-1].removeprefix(f"{node}: ") if lines else "(its log is empty)"
 
     def log_of(self, node: str) -> Path:
         """The file that a node writes to."""
@@ -153,20 +153,6 @@ class Supervisor:
         text = io.StringIO()
         conf.write(text)
         return text.getvalue()
-
-
-def running() -> list[tuple[Supervisor, Settings]]:
-    """All of this user's that answer on this machine, with what they were started with."""
-    found = []
-    for socket in sorted(Path(tempfile.gettempdir()).glob(_SOCKET.format("*"))):
-        try:
-            log = _rpc(socket).supervisor.getAllProcessInfo()[0]["logfile"]
-        except (OSError, xmlrpc.client.Error):
-            continue
-        supervisor = Supervisor(Path(log).parent.parent)
-        with contextlib.suppress(errors.BadRequest, OSError):  # another version's settings, or none
-            found.append((supervisor, supervisor.settings))
-    return found
 
 
 def _rpc(socket: Path) -> Any:

@@ -17,16 +17,16 @@ import zenoh
 from msgspec import structs
 
 from nodes import bus
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
+from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
 from schemas.commands import Classes
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
-_HANGS_AFTER_S = 30.0
 _STOP_TIMEOUT_S = 4.5
 _LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
@@ -48,7 +48,10 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
         process = supervisor.start(settings)
         try:
-            _Foreground(supervisor, settings, process, say).run()
+            with registry.entered(
+                data=supervisor.data, listen=settings.listen, reachable=settings.reachable, pid=process.pid
+            ):
+                _Foreground(supervisor, settings, process, say).run()
         finally:
             _stop(process)
             say("stopped")
@@ -70,13 +73,13 @@ class _Foreground:
         self._say = say
         self._beats: queue.SimpleQueue[Health] = queue.SimpleQueue()
         self._pids: dict[str, int] = {}
-        self._heard: dict[str, float] = {}
+        self._watchdog = Watchdog()
         self._stopping = False
+        self._deadline_s = time.monotonic() + _START_TIMEOUT_S
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, self._on_signal)
-        deadline = time.monotonic() + _START_TIMEOUT_S
         greeted = False
         with contextlib.ExitStack() as stack:
             session = None
@@ -89,7 +92,7 @@ class _Foreground:
                     greeted = True
                     self._tell_of_models(session)
                     self._greet()
-                if not greeted and time.monotonic() > deadline:
+                if not greeted and time.monotonic() > self._deadline_s:
                     late = sorted(set(self._settings.nodes) - set(self._pids))
                     raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
                 self._restart_what_hangs()
@@ -109,7 +112,9 @@ class _Foreground:
     def _hear(self) -> None:
         with contextlib.suppress(queue.Empty):
             health = self._beats.get(timeout=0.2)
-            self._heard[health.node] = time.monotonic()
+            self._watchdog.heard(health.node, health.pid)
+            if health.state == "starting":  # a large map takes its time, and tells so
+                self._deadline_s = time.monotonic() + _START_TIMEOUT_S
             if health.state == "ready" and self._pids.get(health.node) != health.pid:
                 again = " again" if health.node in self._pids else ""
                 self._pids[health.node] = health.pid
@@ -126,11 +131,9 @@ class _Foreground:
                 raise errors.Refused(f"{node} ended: {words} (log: {self._supervisor.log_of(node)})")
 
     def _restart_what_hangs(self) -> None:
-        for node, at in self._heard.items():
-            if time.monotonic() - at > _HANGS_AFTER_S:
-                self._say(f"{node:<{_COLUMN}} silent for {_HANGS_AFTER_S:g} s: restarting it")
-                self._heard[node] = time.monotonic()
-                self._supervisor.restart(node)
+        for node, reason in self._watchdog.hanging():
+            self._say(f"{node:<{_COLUMN}} {reason}: restarting it")
+            self._supervisor.restart(node)
 
     def _tell_of_models(self, session: zenoh.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""

@@ -1,5 +1,9 @@
 """The way to a system that is there, is starting, or is not."""
 
+import contextlib
+import os
+import re
+import tempfile
 import threading
 import time
 
@@ -8,16 +12,43 @@ import pytest
 from nodes import bus
 from nodes.extern import connection
 from nodes.extern.connection import open_session
-from nodes.supervisor import presence
+from nodes.supervisor import presence, registry
 from schemas import errors
 from tests.conftest import free_endpoint
 
 
-def test_the_system_that_is_meant(monkeypatch):
-    monkeypatch.setenv(connection.CONNECT_VARIABLE, "tcp/robot:7000")
-    assert connection.endpoint() == "tcp/robot:7000"
+@pytest.fixture
+def running(monkeypatch, tmp_path):
+    """Enter systems at these ports in a registry of our own."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv(connection.CONNECT_VARIABLE, "")
+
+    @contextlib.contextmanager
+    def enter(*ports):
+        with contextlib.ExitStack() as stack:
+            for port in ports:
+                where = f"tcp/127.0.0.1:{port}"
+                folder = tmp_path / str(port)
+                stack.enter_context(
+                    registry.entered(data=folder, listen=where, reachable=where, pid=os.getpid())
+                )
+            yield
+
+    return enter
+
+
+def test_the_system_that_is_meant(monkeypatch, running, tmp_path):
     assert connection.endpoint() == bus.DEFAULT_ENDPOINT
+    with running(7801):
+        assert connection.endpoint() == "tcp/127.0.0.1:7801"
+        monkeypatch.setenv(connection.CONNECT_VARIABLE, "tcp/robot:7000")
+        assert connection.endpoint() == "tcp/robot:7000"
+    monkeypatch.setenv(connection.CONNECT_VARIABLE, "")
+    with running(7801, 7447):
+        assert connection.endpoint() == bus.DEFAULT_ENDPOINT
+    both = f"tcp/127.0.0.1:7801 ({tmp_path}/7801), tcp/127.0.0.1:7802 ({tmp_path}/7802)"
+    with running(7801, 7802), pytest.raises(errors.BadRequest, match=re.escape(both)):
+        connection.endpoint()
 
 
 def test_a_refused_connection_is_told_at_once():

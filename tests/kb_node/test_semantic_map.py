@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import fingerprint
+from nodes.kb_node.storage import conclusions_format
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import stars
@@ -250,7 +250,7 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     before = semantic_map.snapshot()
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
-        other.setattr(fingerprint, "of_code", lambda: b"other")
+        other.setattr(conclusions_format, "mark", lambda: b"other")
         semantic_map._entities = {
             name: structs.replace(entity, class_="Stool") for name, entity in semantic_map._entities.items()
         }

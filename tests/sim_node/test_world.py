@@ -1,3 +1,4 @@
+import mujoco
 import numpy as np
 import pytest
 
@@ -339,3 +340,19 @@ def test_a_world_that_does_not_compile_is_refused(tmp_path):
     broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
     with pytest.raises(BadFile, match="no MJCF scene that compiles"):
         read_mjcf(broken)
+
+
+DECLARED = """<mujoco><custom>
+<text name="semmap:table_1" data="Table"/><text name="semmap:drawer" data="Drawer"/>
+<text name="semmap:tabel_2" data="Table"/><text name="other" data="not ours"/>
+</custom><worldbody><geom type="plane" size="0 0 .1"/>
+<body name="table_1" pos="0 0 .4"><geom type="box" size=".4 .4 .4"/>
+<body name="drawer" pos="0 0 .2"><geom type="box" size=".1 .1 .1"/></body></body>
+</worldbody></mujoco>"""
+
+
+def test_bodies_that_are_declared_in_vain_are_named():
+    world = World(mujoco.MjSpec.from_string(DECLARED))
+    assert world.ignored == ["drawer (part of another body)", "tabel_2 (no such body)"]
+    assert [body.name for body in world.scene().bodies] == ["table_1"]
+    assert World().ignored == []

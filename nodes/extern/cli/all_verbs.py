@@ -4,16 +4,26 @@ from __future__ import annotations
 
 import click
 
-from nodes.extern.cli.verbs import ask, edit, lifecycle, past, perceive, run, scene
+from nodes.extern.cli.verbs import ask, completion, edit, lifecycle, past, perceive, run, scene
 from schemas import errors
 
 _VERBS = (
     *(edit.add, edit.update, edit.remove, edit.clear, edit.load, past.undo, run.run),
-    *(ask.list_, ask.get, ask.check, ask.infer, ask.explain, ask.export, ask.classes, ask.status),
+    *(
+        ask.list_,
+        ask.get,
+        ask.check,
+        ask.infer,
+        ask.explain,
+        ask.relations,
+        ask.export,
+        ask.classes,
+        ask.status,
+    ),
     *(ask.sparql, ask.watch, past.history, past.last_seen),
     perceive.perceive,
     *(scene.move, scene.pause, scene.step, scene.reset, scene.picture, scene.replay),
-    *(lifecycle.up, lifecycle.down, lifecycle.node, lifecycle.repair),
+    *(lifecycle.up, lifecycle.down, lifecycle.node, lifecycle.repair, completion.completion),
 )
 
 

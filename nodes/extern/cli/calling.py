@@ -27,11 +27,9 @@ connect_option = click.option(
     "--connect",
     "where",
     envvar=CONNECT_VARIABLE,
-    default=bus.DEFAULT_ENDPOINT,
-    show_default=True,
     show_envvar=True,
     metavar="EP",
-    help="Zenoh endpoint of the system.",
+    help=f"Zenoh endpoint of the system. Default: {bus.DEFAULT_ENDPOINT}, or the only one on this machine.",
 )
 """Which running system is meant."""
 
@@ -41,7 +39,7 @@ def talks(function: Callable[..., None]) -> Callable[..., None]:
 
     @connect_option
     @functools.wraps(function)
-    def with_client(where: str, **arguments: Any) -> None:
+    def with_client(where: str | None, **arguments: Any) -> None:
         shared = click.get_current_context().obj
         if isinstance(shared, Client):
             function(shared, **arguments)

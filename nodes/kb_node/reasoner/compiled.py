@@ -18,7 +18,7 @@ from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.reasoner.tbox.schema import Schema
-from nodes.kb_node.reasoner.tbox.split import check_compilable, is_schema
+from nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     SAME_AS,
@@ -48,13 +48,15 @@ class CompiledEngine:
         triples = list(triples)
         self._prover = Prover()
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
-        for triple in self._schema_triples:
+        self._inert = Facts(dict.fromkeys(filter(is_inert, self._schema_triples)))
+        spoken = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
+        for triple in spoken:
             check_compilable(triple)
-        closure = closed or Closure(self._schema_triples)
+        closure = closed or Closure(spoken)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
-        self._of_the_schema = frozenset(s for s, _, _ in closure.facts)
+        self._of_the_schema = frozenset(s for s, _, _ in (*closure.facts, *self._inert.facts))
         self._abox = ABox(self._schema)
         self._shapes = Shapes(self._abox)
         self._view = View(self._abox)
@@ -86,7 +88,7 @@ class CompiledEngine:
                 self._size += len(insert) - len(delete)
                 return Change(frozenset(gone))
             if any(map(is_schema, delete)):
-                raise NotCompilable("less of the schema")
+                raise NotCompilable("the schema changes")
         added: list[Triple] = []
         removed: list[Triple] = []
         touched: set[Term] = set()
@@ -152,7 +154,7 @@ class CompiledEngine:
         for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
             for triple in batch:
                 if is_schema(triple):
-                    raise NotCompilable(f"more of the schema: {triple}")
+                    raise NotCompilable("the schema changes")
                 if triple[1] in (SAME_AS, DIFFERENT_FROM):
                     self._check(triple)
                 if abox.insert(triple):
@@ -163,7 +165,7 @@ class CompiledEngine:
     def _check(self, triple: Triple) -> None:
         check_compilable(triple)
         if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
-            raise NotCompilable(f"classes or properties compared: {triple}")
+            raise NotCompilable(f"classes or properties are compared: {' '.join(triple)}")
 
     def _undo(self, retraction: Retraction | None, removed: list[Triple], added: list[Triple]) -> None:
         back = Retraction(self._abox)
@@ -186,16 +188,23 @@ class CompiledEngine:
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
         yield from self._view.asserted(s, p, o)
-        for triple in self._schema.closure.match(s, p, o):
-            if triple in self._schema_triples:
-                yield triple
+        yield from self._told_of_the_schema(s, p, o)
+
+    def _told_of_the_schema(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        for facts in (self._schema.closure, self._inert):
+            for triple in facts.match(s, p, o):
+                if triple in self._schema_triples:
+                    yield triple
+
+    def without_known_schema(self, triples: Iterable[Triple], *, known: bool) -> list[Triple]:
+        """Triples without those of the schema that are asserted already (or, unless `known`, are not)."""
+        return [t for t in triples if not is_schema(t) or (t in self._schema_triples) != known]
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)
-        for triple in self._schema.closure.match(subject):
-            if triple in self._schema_triples:
-                objects.setdefault(triple[1], []).append(triple[2])
+        for _, predicate, object_ in self._told_of_the_schema(subject, None, None):
+            objects.setdefault(predicate, []).append(object_)
         return objects
 
     def mentioned(self, terms: Set[Term]) -> set[Term]:
@@ -215,7 +224,7 @@ class CompiledEngine:
 
     def holds(self, triple: Triple) -> bool:
         """Whether a triple is asserted or follows."""
-        return self._view.holds(triple) or self._schema.closure.holds(triple)
+        return self._view.holds(triple) or self._schema.closure.holds(triple) or triple in self._inert.facts
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual."""
@@ -230,7 +239,7 @@ class CompiledEngine:
         closure = self._schema.closure
         if triple in closure.facts:
             return self._prover.prove(closure.leaves(triple), triple)
-        if next(self._view.asserted(*triple), None):
+        if next(self._view.asserted(*triple), None) or triple in self._inert.facts:
             return self._prover.prove([triple], triple)
         s, p, o = triple
         if not self._view.holds(triple) or (p == SAME_AS and s == o):

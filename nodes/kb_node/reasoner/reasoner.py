@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Set
 from contextlib import contextmanager
 
@@ -10,6 +11,8 @@ from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.reasoner.tbox.profile import outside_rl
+from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
 from schemas.explanations import Explanation, Term, Triple
 
@@ -47,6 +50,20 @@ class Reasoner:
         return isinstance(self._engine, CompiledEngine)
 
     @property
+    def not_incremental(self) -> str | None:
+        """What keeps changes from being worked out one by one; None when nothing does.
+
+        No valid ontology of OWL 2 RL does. It takes a graph of OWL Full: one in which classes or properties
+        are the same as others, an individual is a value, or the vocabulary itself gets another meaning.
+        """
+        return self._engine.why if isinstance(self._engine, GeneralEngine) else None
+
+    @property
+    def outside_rl(self) -> Counter[str]:
+        """How many axioms of each kind say more than OWL 2 RL can, so that the rules miss some of it."""
+        return outside_rl(filter(is_schema, self.asserted()))
+
+    @property
     def closed(self) -> Facts | None:
         """All that follows from the schema, if that is worked out by itself."""
         return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
@@ -67,8 +84,11 @@ class Reasoner:
                 return engine.apply(delete, insert)
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
-            except NotCompilable:
-                pass  # undone; the general engine can do it
+            except NotCompilable:  # undone
+                gone = engine.without_known_schema(delete, known=False)
+                new = engine.without_known_schema(insert, known=True)
+                if len(gone) + len(new) < len(delete) + len(insert):
+                    return self.apply(delete=gone, insert=new)
         return self._apply_anew(delete, insert)
 
     def _apply_anew(self, delete: list[Triple], insert: list[Triple]) -> Change:
@@ -180,8 +200,8 @@ def _engine_for(triples: Iterable[Triple], closed: Facts | None = None) -> Compi
         return CompiledEngine(triples, closed)
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None
-    except NotCompilable:
-        engine = GeneralEngine(triples)
+    except NotCompilable as reason:
+        engine = GeneralEngine(triples, str(reason))
     contradiction = engine.contradiction()
     if contradiction is not None:
         raise Inconsistent(contradiction)

@@ -12,7 +12,7 @@ from msgspec import MsgspecError
 
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.rules.facts import Facts, pack, unpack
-from nodes.kb_node.storage import fingerprint
+from nodes.kb_node.storage import conclusions_format
 from schemas.explanations import Triple
 
 _SUFFIX = ".closure"
@@ -22,7 +22,7 @@ _DIGEST_BYTES = 16
 def reasoner(tbox: Collection[Triple], folder: Path) -> Reasoner:
     """A reasoner with the TBox. Raises Inconsistent.
 
-    What is in `folder` counts only for the same triples and the same code, and if it is not damaged.
+    What is in `folder` counts only for the same triples and the same format, and if it is not damaged.
     """
     closed = _read(_path(tbox, folder))
     found = Reasoner(tbox, closed=closed)
@@ -43,7 +43,7 @@ def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
 
 
 def _path(tbox: Collection[Triple], folder: Path) -> Path:
-    name = hashlib.blake2b(fingerprint.of_code(), digest_size=_DIGEST_BYTES)
+    name = hashlib.blake2b(conclusions_format.mark(), digest_size=_DIGEST_BYTES)
     for triple in sorted(tbox):
         name.update("\n".join(triple).encode())
     return folder / f"{name.hexdigest()}{_SUFFIX}"

@@ -134,11 +134,7 @@ def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, mujoco.MjData]:
 def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:
     """The world's own bodies: every named one on the top level, and every one that can move."""
     model, data = _compiled(spec)
-    classes = {
-        text.name.removeprefix(_CLASS_TEXT): text.data
-        for text in spec.texts
-        if text.name.startswith(_CLASS_TEXT)
-    }
+    classes = _declared(spec)
     records = {}
     for body in spec.worldbody.bodies:
         if body.name:
@@ -146,6 +142,23 @@ def bodies_of(spec: mujoco.MjSpec) -> dict[str, BodyRecord]:
                 model, data, body, classes.get(body.name) or class_from_name(body.name)
             )
     return records
+
+
+def ignored(spec: mujoco.MjSpec) -> list[str]:
+    """The bodies whose class a text declares in vain, each with the reason, in the order of the texts."""
+    top = {body.name for body in spec.worldbody.bodies}
+    nested = {body.name for body in spec.bodies} - top
+    return [
+        f"{name} (part of another body)" if name in nested else f"{name} (no such body)"
+        for name in _declared(spec)
+        if name not in top
+    ]
+
+
+def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
+    """The classes that the world's texts declare, by name of the body."""
+    texts = ((text.name, text.data) for text in spec.texts)
+    return {name.removeprefix(_CLASS_TEXT): data for name, data in texts if name.startswith(_CLASS_TEXT)}
 
 
 def class_from_name(name: str) -> str | None:

@@ -65,11 +65,11 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
 def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_there(door):
     said = []
 
-    def ask(verb, message, kind):
+    def ask(call):
         answer = {
             "spawn": Spawned(bodies=(), failed={"chair1": "its model file is broken"}),
             "snapshot": Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=()),
-        }[verb]
+        }[call.VERB]
         future = Future()
         future.set_result(answer)
         return future

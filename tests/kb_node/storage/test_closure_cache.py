@@ -1,7 +1,7 @@
 import pytest
 
 from nodes.kb_node.reasoner import compiled
-from nodes.kb_node.storage import closure_cache, fingerprint
+from nodes.kb_node.storage import closure_cache, conclusions_format
 from ontology import vocabulary as v
 from tests.kb_node.home import TBOX
 
@@ -46,7 +46,7 @@ def test_another_tbox_takes_its_place(tmp_path, closings):
 
 def test_other_code_closes_it_anew(tmp_path, closings, monkeypatch):
     check(tmp_path)
-    monkeypatch.setattr(fingerprint, "of_code", lambda: b"other")
+    monkeypatch.setattr(conclusions_format, "mark", lambda: b"other")
     check(tmp_path)
     assert len(closings) == 2
 

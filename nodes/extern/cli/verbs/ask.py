@@ -12,7 +12,8 @@ import click
 
 from nodes import bus
 from nodes.extern import availability
-from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
+from nodes.extern.cli.calling import TIME, command, complain, print_json, print_lines, talks
+from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
@@ -27,16 +28,39 @@ _STATUS_S = 20.0
 
 
 @click.command("list")
-@click.option("--class", "class_", metavar="CLASS", help="Only those of this class, also by inference.")
+@click.option(
+    "--class",
+    "class_",
+    metavar="CLASS",
+    shell_complete=class_names,
+    help="Only those of this class, also by inference.",
+)
+@click.option(
+    "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
+)
+@click.option(
+    "--in",
+    "in_",
+    metavar="PLACE",
+    shell_complete=entity_names,
+    help="Only what is in that place, or inside that container.",
+)
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="Only what is near it.")
+@click.option("--within", type=float, metavar="M", help="With --near: at most so far from it [m].")
+@click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
+@click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str, as_of: str | None) -> None:
-    """List the entities."""
+def list_(client: Client, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
+    """List the entities.
+
+    THING and PLACE are a name, a reference or a class.
+    """
     if format in ("lu4r", "legacy"):
-        print_json(client.list_as(format, class_, as_of=as_of))  # type: ignore[arg-type]
+        print_json(client.send(command(commands.List, class_=class_, format=format, as_of=as_of, **where)))
         return
-    entities = client.list(class_, as_of=as_of)
+    entities = client.list(class_, as_of=as_of, **where)
     if format == "json":
         print_json(entities)
         return
@@ -44,7 +68,7 @@ def list_(client: Client, class_: str | None, format: str, as_of: str | None) ->
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
 @talks
@@ -69,7 +93,7 @@ def check(client: Client, engine: Any) -> None:
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=entity_names)
 @talks
 def infer(client: Client, name: str | None) -> None:
     """What follows that was not said, about one entity or all."""
@@ -77,13 +101,32 @@ def infer(client: Client, name: str | None) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
 @talks
 def explain(client: Client, name: str, predicate: str, value: str) -> None:
     """Why something holds: semmap explain fridge1 type Device."""
     print_lines(show.explanation(client.explain(name, predicate, value)))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("other", required=False, shell_complete=entity_names)
+@click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
+@click.option(
+    "--from-pose", "viewpoint", nargs=4, type=float, metavar="X Y Z YAW", help="The same, from a pose."
+)
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
+@_as_of
+@talks
+def relations(client: Client, name: str, other: str | None, format: str, **fields: Any) -> None:
+    """Where NAME is relative to what is around it, measured; with OTHER, also what does not hold."""
+    found = client.relations(name=name, other=other, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([relation.text for relation in found] or [f"{name} is on, in and near nothing"])
 
 
 @click.command()

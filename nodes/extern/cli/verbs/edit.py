@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
+from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
@@ -33,7 +34,7 @@ _describing = _options(
 
 
 @click.command()
-@click.argument("class_", metavar="CLASS")
+@click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.argument("name", required=False)
 @_describing
 @click.option("--default", is_flag=True, help="At the next free place, named and called after its class.")
@@ -44,9 +45,9 @@ def add(client: Client, **fields: Any) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @_describing
-@click.option("--class", "class_", metavar="CLASS")
+@click.option("--class", "class_", metavar="CLASS", shell_complete=class_names)
 @click.option("--conflict", metavar="TEXT", help="What is seen against it; an empty text takes that back.")
 @talks
 def update(client: Client, **fields: Any) -> None:
@@ -55,7 +56,7 @@ def update(client: Client, **fields: Any) -> None:
 
 
 @click.command()
-@click.argument("names", nargs=-1, required=True)
+@click.argument("names", nargs=-1, required=True, shell_complete=entity_names)
 @talks
 def remove(client: Client, names: tuple[str, ...]) -> None:
     """Take entities out of map and scene."""

@@ -107,12 +107,14 @@ def up(settings: Settings) -> None:
 @click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a running system of this machine."""
-    from nodes.supervisor.control import Supervisor, running
+    from nodes.supervisor import registry
+    from nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        data = next((s.data for s, said in running() if connect in (said.listen, said.reachable)), None)
-        if data is None:
-            raise errors.NoAnswer(f"no system of this machine listens on {connect}")
+        there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
+        if not there:
+            raise errors.NoAnswer(f"no system of yours on this machine listens on {connect}")
+        (data,) = there
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 

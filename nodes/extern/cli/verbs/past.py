@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
+from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.output import show, show_past
 from nodes.extern.client import Client
 
@@ -14,7 +15,7 @@ _format = click.option(
 
 
 @click.command()
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=entity_names)
 @click.option("--since", metavar="COMMIT|TIME", help="From this on.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"Up to the end of this. {TIME}")
 @click.option("--limit", type=int, default=20, show_default=True, help="At most so many, the newest.")
@@ -34,7 +35,7 @@ def history(
 
 
 @click.command("last-seen")
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @_format
 @talks
 def last_seen(client: Client, name: str, format: str) -> None:

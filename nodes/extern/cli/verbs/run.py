@@ -14,14 +14,14 @@ from nodes.extern.client import Client, connect
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
 
-_BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch"))
+_BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch", "completion"))
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--keep-going", is_flag=True, help="Go on after a request that fails.")
 @connect_option
-def run(file: Path, keep_going: bool, where: str) -> None:
+def run(file: Path, keep_going: bool, where: str | None) -> None:
     """Send a file of requests, one a line: words of this command line, or a JSON message with its verb."""
     lines = _decode_lines(file)
     failed = 0

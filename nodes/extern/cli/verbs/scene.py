@@ -8,13 +8,14 @@ from typing import Any
 import click
 
 from nodes.extern.cli.calling import given, talks, vector_option
+from nodes.extern.cli.completing import entity_names
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from schemas import errors
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where the hand lets go: bottom centre [m].")
 @click.option("--yaw", type=float, metavar="RAD")
 @talks

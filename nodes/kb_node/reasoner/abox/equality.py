@@ -61,9 +61,11 @@ class Equality(Individuals):
             if len(values - {None}) > 1:
                 raise Clash(*claims, *self._different(one, other))
         elif self.is_literal(one) or self.is_literal(other):
-            raise NotCompilable(f"an individual is a value: {terms[one]}, {terms[other]}")
+            raise NotCompilable(f"an individual is the same as a value: {terms[one]} and {terms[other]}")
         elif self.schema.speaks_of(terms[one]) or self.schema.speaks_of(terms[other]):
-            raise NotCompilable(f"{terms[one]} is the same as {terms[other]}")
+            raise NotCompilable(
+                f"a class or property is the same as another: {terms[one]} and {terms[other]}"
+            )
 
     def _different(self, one: int, other: int) -> Iterator[Claim]:
         """The literals known to be the same as two, among which are two values."""

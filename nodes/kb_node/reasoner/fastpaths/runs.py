@@ -131,11 +131,15 @@ class Runs:
         return None
 
     def guess(self, triples: Sequence[Triple], start: int) -> tuple[Form, Terms, Sequence[Triple]] | None:
-        """The form that the run there has by its predicates, with what it says and its triples."""
+        """The form that the run there has by its predicates, with what it says and its triples.
+
+        Of a form that is the beginning of another's there may be more; then it is the other one's run.
+        """
         for form in self._begun_by(triples[start]):
-            here = triples[start : start + form.length]
+            end = start + form.length
+            here = triples[start:end]
             said = form.said(here)
-            if said is not None:
+            if said is not None and (end >= len(triples) or triples[end][0] not in said):
                 return form, said, here
         return None
 

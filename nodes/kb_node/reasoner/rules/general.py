@@ -18,7 +18,9 @@ from schemas.explanations import Explanation, Term, Triple
 class GeneralEngine:
     """A graph with its closure. Raises nothing: a clash is found in `contradiction`."""
 
-    def __init__(self, triples: Iterable[Triple]) -> None:
+    def __init__(self, triples: Iterable[Triple], why: str = "") -> None:
+        """Close a graph; `why` says what keeps it from being compiled."""
+        self.why = why
         self._asserted = dict.fromkeys(triples)
         self._closure = Closure(self._asserted)
 

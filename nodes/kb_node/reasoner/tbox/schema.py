@@ -16,7 +16,7 @@ from itertools import combinations
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, NotCompilable, Role
+from nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, Role
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 from schemas.explanations import Term, Triple
 
@@ -189,7 +189,7 @@ class Schema:
     def _chain(self, links: list[Term], result: Term) -> None:
         """A long chain is made of short ones, by properties of our own for its beginnings."""
         if len(links) < 2:
-            raise NotCompilable(f"a property chain of {len(links)} links")
+            return  # not OWL, which wants two; `profile` counts it
         first = self.property(links[0])
         for i, link in enumerate(links[1:], 2):
             end = self.property(result if i == len(links) else " ".join(links[:i]))

@@ -1,0 +1,138 @@
+"""The client for an event loop: the same verbs, awaited.
+
+    async with semmap.aio.connect() as client:
+        await client.add("Cup", "cup1", at=(1.0, 2.0, 0.75))
+        async with client.commits() as commits:
+            async for commit in commits:
+                print(commit.seq, commit.reason)
+
+Each call waits for its reply on a thread, and up to 32 may wait at once. A call whose task is cancelled has
+been sent all the same, and may be done; with an `id` it can be sent again, and is done once.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import functools
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Final, TypeVar
+
+from nodes.extern.client import LONG_S, Client
+from nodes.extern.client import connect as connect_blocking
+from nodes.extern.client_verbs import Verbs
+from nodes.extern.sparql_client import StandingQuery
+from schemas import errors
+from schemas.commands import Command
+from schemas.commits import Commit
+from schemas.entities import Source
+from schemas.sparql import RowsChanged
+
+R = TypeVar("R")
+T = TypeVar("T")
+
+_CALLS_AT_ONCE: Final = 32
+
+
+@contextlib.asynccontextmanager
+async def connect(
+    where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
+) -> AsyncIterator[AsyncClient]:
+    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
+    threads = ThreadPoolExecutor(_CALLS_AT_ONCE, thread_name_prefix="semmap")
+    connection = connect_blocking(where, source=source, agent=agent, namespace=namespace)
+    loop = asyncio.get_running_loop()
+    try:
+        client = await loop.run_in_executor(threads, connection.__enter__)
+        try:
+            yield AsyncClient(client, threads)
+        finally:
+            await loop.run_in_executor(None, connection.__exit__, None, None, None)
+    finally:
+        threads.shutdown(wait=False, cancel_futures=True)
+
+
+class AsyncClient(Verbs):
+    """Commands over the session of a `Client`; the verbs are coroutines. Owned by one event loop."""
+
+    def __init__(self, client: Client, threads: ThreadPoolExecutor) -> None:
+        self._client = client
+        self._threads = threads
+
+    async def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
+        """Send any command and return its reply; see `Client.send`."""
+        return await self._beside(lambda: self._client.send(command, timeout_s=timeout_s))
+
+    async def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
+        """Make a command, send it, and `read` its reply: what each verb does."""
+        return await self._beside(lambda: self._client.request(make, read))
+
+    @contextlib.asynccontextmanager
+    async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:
+        """Every commit from now on; see `Client.commits`. None for `timeout` seconds raises NoAnswer."""
+        async with self._entered(self._client.commits()) as commits:
+            yield _handed_over(commits, "no commit came", timeout)
+
+    @contextlib.asynccontextmanager
+    async def watch(self, query: str, *, inferred: bool = False) -> AsyncIterator[AsyncStandingQuery]:
+        """`async with client.watch(select) as standing: async for change in standing.changes(): ...`."""
+        async with self._entered(self._client.watch(query, inferred=inferred)) as standing:
+            yield AsyncStandingQuery(standing)
+
+    @contextlib.asynccontextmanager
+    async def _entered(self, context: contextlib.AbstractContextManager[T]) -> AsyncIterator[T]:
+        """Enter and leave on a thread, for both may wait for the system."""
+        entered = await self._beside(context.__enter__)
+        try:
+            yield entered
+        finally:
+            await self._beside(functools.partial(context.__exit__, None, None, None))
+
+    async def _beside(self, function: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._threads, function)
+
+
+class AsyncStandingQuery:
+    """The rows of a query as they were when it began, and news of them; use `AsyncClient.watch`."""
+
+    def __init__(self, standing: StandingQuery) -> None:
+        self._standing = standing
+        self.variables = standing.variables
+        self.rows = standing.rows
+        self.seq = standing.seq
+
+    def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
+        """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""
+        return _handed_over(self._standing.changes(), "no rows came or went", timeout)
+
+
+async def _handed_over(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:
+    """What a thread takes from `items`, which must end when what they come from is closed."""
+    loop = asyncio.get_running_loop()
+    taken: asyncio.Queue[tuple[T] | Exception | None] = asyncio.Queue()
+
+    def hand_over(item: tuple[T] | Exception | None) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            loop.call_soon_threadsafe(taken.put_nowait, item)
+
+    def take() -> None:
+        try:
+            for item in items:
+                hand_over((item,))
+            hand_over(None)
+        except Exception as error:
+            hand_over(error)
+
+    threading.Thread(target=take, name="semmap", daemon=True).start()
+    while True:
+        try:
+            item = await asyncio.wait_for(taken.get(), timeout_s)
+        except TimeoutError:
+            raise errors.NoAnswer(f"{nothing} within {timeout_s:g} s") from None
+        if item is None:
+            return
+        if isinstance(item, Exception):
+            raise item
+        yield item[0]

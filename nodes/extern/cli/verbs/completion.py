@@ -1,0 +1,20 @@
+"""The verb `completion`."""
+
+from __future__ import annotations
+
+import click
+
+from nodes.extern.cli import completing
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(completing.SHELLS))
+def completion(shell: str) -> None:
+    r"""Print what makes a shell complete verbs, options, files, and names of entities and classes.
+
+    \b
+    bash:  eval "$(semmap completion bash)"      (in ~/.bashrc)
+    zsh:   eval "$(semmap completion zsh)"       (in ~/.zshrc)
+    fish:  semmap completion fish | source       (in ~/.config/fish/config.fish)
+    """
+    click.echo(completing.script(click.get_current_context().find_root().command, shell))

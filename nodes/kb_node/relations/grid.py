@@ -1,0 +1,53 @@
+"""A spatial index: which solids are in which cells of a grid on the floor plan."""
+
+from __future__ import annotations
+
+from nodes.kb_node.relations.solids import Bounds, Solid
+
+CELL_M = 1.0
+MOST_CELLS = 1024
+"""What covers more is in no cell, but in a list that every question looks through."""
+
+
+class Grid:
+    """Names by cell. A question costs as much as there is around the place that it asks about."""
+
+    def __init__(self) -> None:
+        self._cells: dict[tuple[int, int], dict[str, None]] = {}
+        self._large: dict[str, None] = {}
+
+    def add(self, solid: Solid) -> None:
+        """File a solid under the cells that its bounds cover."""
+        cells = _cells(solid.bounds)
+        if cells is None:
+            self._large[solid.name] = None
+            return
+        for cell in cells:
+            self._cells.setdefault(cell, {})[solid.name] = None
+
+    def remove(self, solid: Solid) -> None:
+        """Take it out; with the bounds that it was filed under."""
+        if self._large.pop(solid.name, self) is None:
+            return
+        for cell in _cells(solid.bounds) or ():
+            names = self._cells[cell]
+            del names[solid.name]
+            if not names:
+                del self._cells[cell]
+
+    def around(self, bounds: Bounds, margin_m: float = 0.0) -> dict[str, None]:
+        """The names of whoever may be within a margin of some bounds."""
+        x0, y0, x1, y1 = bounds
+        found = dict(self._large)
+        cells = _cells((x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m))
+        for cell in self._cells if cells is None else cells:
+            found.update(self._cells.get(cell, {}))
+        return found
+
+
+def _cells(bounds: Bounds) -> list[tuple[int, int]] | None:
+    """The cells that some bounds cover; None for too many."""
+    x0, y0, x1, y1 = (int(value // CELL_M) for value in bounds)
+    if (x1 - x0 + 1) * (y1 - y0 + 1) > MOST_CELLS:
+        return None
+    return [(x, y) for x in range(x0, x1 + 1) for y in range(y0, y1 + 1)]

@@ -1,0 +1,117 @@
+"""Which entities are where: on, in, near, within, nearest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.solids import Solid
+from nodes.kb_node.relations.space import Space
+from schemas import errors
+from schemas.entities import Entity
+from schemas.relations import Where
+
+
+def selected(
+    space: Space, entities: Sequence[Entity], where: Where, everyone: Iterable[Entity]
+) -> list[Entity]:
+    """Those of `entities` that are where it is asked; the nearest first, if that is asked.
+
+    `everyone` is who may be meant by a word. Raises UnknownName for a word that means nobody, BadRequest.
+    """
+    if (where.within is not None) and where.near is None and where.to is None:
+        raise errors.BadRequest("--within needs a thing to be within reach of: --near NAME")
+    if (where.nearest is None) != (where.to is None):
+        raise errors.BadRequest("--nearest N and --to NAME go together: the N nearest to NAME")
+    everyone = tuple(everyone)
+    found = [entity for entity in entities if entity.name in space.solids]
+    if where.on is not None:
+        carriers = meant(everyone, where.on)
+        found = [e for e in found if _is_on(space, space.solids[e.name], carriers)]
+    if where.in_ is not None:
+        holders = meant(everyone, where.in_)
+        found = [e for e in found if _is_in(space, space.solids[e.name], holders)]
+    if where.near is not None:
+        others = [space.solids[name] for name in meant(everyone, where.near) if name in space.solids]
+        is_near = _within(where.within) if where.within is not None else _is_near(space)
+        found = [
+            e for e in found if any(is_near(space.solids[e.name], o) for o in others if o.name != e.name)
+        ]
+    if where.to is not None and where.nearest is not None:
+        found = _nearest(space, found, meant(everyone, where.to), where)
+    return found
+
+
+def meant(everyone: Iterable[Entity], word: str) -> set[str]:
+    """The entities that a word means: that name, else that reference, else that class. Raises UnknownName."""
+    everyone = tuple(everyone)
+    folded = word.casefold().replace("_", " ")
+    for called in (
+        lambda e: (e.name,),
+        lambda e: (e.preferred_reference or "", *e.alternative_references),
+        lambda e: e.types,
+    ):
+        names = {e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))}
+        if names:
+            return names
+    known = {e.name for e in everyone} | {e.preferred_reference or "" for e in everyone}
+    raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
+
+
+def _is_on(space: Space, solid: Solid, carriers: set[str]) -> bool:
+    """On one of them, or on what is on one of them."""
+    seen = {solid.name}
+    while True:
+        container, support, _ = space.whereabouts(solid)
+        below = support or container
+        if below is None or below[0].name in seen:
+            return False
+        solid = below[0]
+        if solid.name in carriers:
+            return support is not None or len(seen) > 1
+        seen.add(solid.name)
+
+
+def _is_in(space: Space, solid: Solid, holders: set[str]) -> bool:
+    """In one of these places, or inside one of these containers, or inside what is inside one."""
+    for name in holders:
+        other = space.solids.get(name)
+        if other is not None and other.is_place and other is not solid:
+            made = measures.within(solid, other, space.limits)
+            if made is not None and made.holds:
+                return True
+    seen = {solid.name}
+    while (container := space.whereabouts(solid).container) is not None and container[0].name not in seen:
+        solid = container[0]
+        if solid.name in holders:
+            return True
+        seen.add(solid.name)
+    return False
+
+
+def _within(metres: float) -> Callable[[Solid, Solid], bool]:
+    return lambda solid, other: not solid.is_place and measures.gap(solid, other) <= metres
+
+
+def _is_near(space: Space) -> Callable[[Solid, Solid], bool]:
+    def is_near(solid: Solid, other: Solid) -> bool:
+        made = measures.near(solid, other, space.limits)
+        return made is not None and made.holds
+
+    return is_near
+
+
+def _nearest(space: Space, found: list[Entity], to: set[str], where: Where) -> list[Entity]:
+    """By the distance of the boxes; places do not count as near to anything."""
+    targets = [space.solids[name] for name in sorted(to) if name in space.solids]
+    if not targets:
+        raise errors.Refused(f"{where.to} has no position")
+    distance: dict[str, float] = {}
+    for entity in found:
+        solid = space.solids[entity.name]
+        if not solid.is_place and entity.name not in to:
+            distance[entity.name] = min(measures.gap(solid, target) for target in targets)
+    limit = where.within if where.within is not None else math.inf
+    there = [e for e in found if distance.get(e.name, math.inf) <= limit and e.name in distance]
+    return sorted(there, key=lambda e: (distance[e.name], e.name))[: where.nearest]

@@ -1,0 +1,39 @@
+"""The space of a map, brought up to date when somebody asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from nodes.kb_node.relations.space import Space
+from schemas.entities import Entity
+
+
+class Surroundings:
+    """Commits only note whom they touched; the first question costs as much as the map is large."""
+
+    def __init__(
+        self, entities: Callable[[], Iterable[Entity]], find: Callable[[str], Entity | None]
+    ) -> None:
+        """`entities()` are all that there are now, `find(name)` is one of them."""
+        self._entities = entities
+        self._find = find
+        self._space: Space | None = None
+        self._touched: set[str] = set()
+
+    def touch(self, names: Iterable[str]) -> None:
+        """These entities came, went, or are otherwise now."""
+        if self._space is not None:
+            self._touched.update(names)
+
+    def space(self) -> Space:
+        """The solids as they are now."""
+        if self._space is None:
+            self._space = Space(self._entities())
+        for name in self._touched:
+            entity = self._find(name)
+            if entity is None:
+                self._space.take(name)
+            else:
+                self._space.put(entity)
+        self._touched.clear()
+        return self._space

@@ -1,0 +1,15 @@
+"""The format of the conclusions that are kept on disk: the closure of a TBox, the entities of a checkpoint.
+
+Conclusions of another format are not read but worked out again from the triples, which remain the truth. The
+number grows whenever the same triples may lead to other conclusions, or these are laid out otherwise: a test
+holds digests of rules, layouts and examples beside it.
+"""
+
+from __future__ import annotations
+
+FORMAT = 1
+
+
+def mark() -> bytes:
+    """What conclusions are marked with that are kept."""
+    return f"conclusions {FORMAT}".encode()

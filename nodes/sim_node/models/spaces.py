@@ -1,0 +1,260 @@
+"""A model's support surfaces and interiors, read off its geometry.
+
+Vertical lines through a grid over the footprint are cut with every part, which gives the solid intervals
+above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height with
+room above. An *interior* is a body of free cells with a floor below and walls on all four sides; its top may
+be open, as a bowl's is. What collides counts for surfaces, what is seen for interiors: a cup is solid to the
+physics and hollow to the eye.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from nodes.sim_node.models.library import Model
+from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
+from ontology.model_shapes import Interior, ModelShape, Surface
+
+CELLS = 64
+"""Cells along the longer side of the footprint."""
+LEVELS = 64
+"""Cells along the height, for interiors."""
+HEADROOM_M = 0.03
+"""Free height above a support surface."""
+LEVEL_M = 0.006
+"""Neighbouring cells whose heights differ by less belong to one surface."""
+LEAST_AREA = 0.02
+"""Of the footprint; smaller patches are edges and handles."""
+LEAST_FILL = 0.25
+"""Of the rectangle around a patch; what is thinner is a rim, which carries things only at the model's top."""
+LEAST_VOLUME = 0.03
+"""Of the bounding box."""
+
+Intervals = list[tuple[Floats, Floats]]
+"""For each part both ends of its cut with each cell's vertical line: (nx, ny), nan for none."""
+
+
+def shape_of(model: Model) -> ModelShape:
+    """The support surfaces and interiors of a model at its size, in metres in its own frame."""
+    x, y, z = model.size_m
+    step = max(x, y) / CELLS
+    xs = np.arange(-x / 2 + step / 2, x / 2, step)
+    ys = np.arange(-y / 2 + step / 2, y / 2, step)
+    felt = [_cut(part, xs, ys) for part in model.parts if part.role is not Role.SEEN]
+    seen = [_cut(part, xs, ys) for part in model.parts if part.role is not Role.FELT]
+    return ModelShape(
+        size_m=model.size_m,
+        surfaces=tuple(_surfaces(felt, xs, ys, step)),
+        interiors=tuple(_interiors(seen, xs, ys, step, z)),
+    )
+
+
+class _Top(NamedTuple):
+    """The upper end of one solid interval above a cell."""
+
+    height: float
+    room: float
+
+
+def _surfaces(cuts: Intervals, xs: Floats, ys: Floats, step: float) -> list[Surface]:
+    tops = _tops(cuts)
+    owner: dict[tuple[int, int, int], int] = {}
+    surfaces: list[Surface] = []
+    highest = max(top.height for here in tops.values() for top in here)
+    least = max(LEAST_AREA * len(xs) * len(ys), 4.0)
+    for (i, j), here in sorted(tops.items()):
+        for k, top in enumerate(here):
+            if (i, j, k) in owner or top.room < HEADROOM_M:
+                continue
+            patch = _patch(tops, (i, j, k), owner)
+            if len(patch) < least:
+                continue
+            cells = np.array([(a, b) for a, b, _ in patch])
+            height = float(np.median([tops[a, b][c].height for a, b, c in patch]))
+            (x0, y0), (x1, y1) = cells.min(axis=0), cells.max(axis=0)
+            fill = len(patch) / float((x1 - x0 + 1) * (y1 - y0 + 1))
+            if fill < LEAST_FILL and height < 0.95 * highest:
+                continue
+            surfaces.append(
+                Surface(
+                    height=height,
+                    low=(float(xs[x0] - step / 2), float(ys[y0] - step / 2)),
+                    high=(float(xs[x1] + step / 2), float(ys[y1] + step / 2)),
+                    fill=fill,
+                )
+            )
+    return sorted(surfaces, key=lambda surface: -surface.height)
+
+
+def _patch(
+    tops: dict[tuple[int, int], list[_Top]],
+    start: tuple[int, int, int],
+    owner: dict[tuple[int, int, int], int],
+) -> list[tuple[int, int, int]]:
+    """The tops that are level with the first and joined to it."""
+    level = tops[start[0], start[1]][start[2]].height
+    patch, waiting = [start], [start]
+    owner[start] = 1
+    while waiting:
+        i, j, _ = waiting.pop()
+        for a, b in ((i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)):
+            for c, top in enumerate(tops.get((a, b), ())):
+                near = abs(top.height - level) < LEVEL_M and top.room >= HEADROOM_M
+                if near and (a, b, c) not in owner:
+                    owner[a, b, c] = 1
+                    patch.append((a, b, c))
+                    waiting.append((a, b, c))
+    return patch
+
+
+def _tops(cuts: Intervals) -> dict[tuple[int, int], list[_Top]]:
+    """The upper ends of the solid intervals above each cell, from below, with the room above each."""
+    lows = np.stack([low for low, _ in cuts])
+    highs = np.stack([high for _, high in cuts])
+    tops: dict[tuple[int, int], list[_Top]] = {}
+    for i, j in zip(*np.nonzero(~np.isnan(lows).all(axis=0)), strict=True):
+        ends: list[list[float]] = []
+        met = ~np.isnan(lows[:, i, j])
+        for low, high in sorted(zip(lows[met, i, j], highs[met, i, j], strict=True)):
+            if ends and low <= ends[-1][1] + 0.003:
+                ends[-1][1] = max(ends[-1][1], high)
+            else:
+                ends.append([low, high])
+        above = [low for low, _ in ends[1:]] + [np.inf]
+        tops[int(i), int(j)] = [_Top(high, up - high) for (_, high), up in zip(ends, above, strict=True)]
+    return tops
+
+
+def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: float) -> list[Interior]:
+    rise = height / LEVELS
+    levels = (np.arange(LEVELS) + 0.5) * rise
+    solid = np.zeros((len(xs), len(ys), LEVELS), dtype=bool)
+    for low, high in cuts:
+        with np.errstate(invalid="ignore"):
+            solid |= (low[..., None] - rise / 2 <= levels) & (levels <= high[..., None] + rise / 2)
+    walled = ~solid
+    for axis in (0, 1):
+        walled &= np.logical_or.accumulate(solid, axis=axis)
+        walled &= np.flip(np.logical_or.accumulate(np.flip(solid, axis), axis=axis), axis)
+    walled &= np.logical_or.accumulate(solid, axis=2)
+    labels, count = ndimage.label(walled)
+    found: list[Interior] = []
+    for label in range(1, count + 1):
+        cells = np.argwhere(labels == label)
+        if len(cells) < LEAST_VOLUME * walled.size:
+            continue
+        low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        lid = solid[cells[:, 0], cells[:, 1]].shape[1]
+        top = cells[cells[:, 2] == cells[:, 2].max()]
+        covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
+        found.append(
+            Interior(
+                low=(
+                    float(xs[0] + (low[0] - 0.5) * step),
+                    float(ys[0] + (low[1] - 0.5) * step),
+                    float(low[2] * rise),
+                ),
+                high=(
+                    float(xs[0] + (high[0] - 0.5) * step),
+                    float(ys[0] + (high[1] - 0.5) * step),
+                    float(high[2] * rise),
+                ),
+                fill=len(cells) / float(np.prod(high - low)),
+                open=not all(covered),
+            )
+        )
+    return found
+
+
+def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:
+    """Where the vertical lines enter and leave a part: two arrays (nx, ny), nan where they miss it."""
+    rotation = rotation_matrix(part.turn)
+    grid = np.stack(np.broadcast_arrays(xs[:, None], ys[None, :], 0.0), axis=-1) - np.asarray(part.centre)
+    origin, up = grid @ rotation, rotation[2]  # in the part's own axes
+    half = np.asarray(part.half)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        match part.shape:
+            case Shape.BOX:
+                enter, leave = _slabs(origin, up, half)
+            case Shape.ELLIPSOID:
+                enter, leave = _ball(origin / half, up / half, 1.0)
+            case Shape.CYLINDER:
+                enter, leave = _can(origin, up, float(half[0]), float(half[2]))
+            case Shape.CAPSULE:
+                tips = np.array([0.0, 0.0, half[2]])
+                ends = [
+                    _can(origin, up, float(half[0]), float(half[2])),
+                    _ball(origin - tips, up, float(half[0])),
+                    _ball(origin + tips, up, float(half[0])),
+                ]
+                enter, leave = np.fmin.reduce([a for a, _ in ends]), np.fmax.reduce([b for _, b in ends])
+            case Shape.MESH:
+                enter, leave = _hull(part, origin, up)
+    return enter, leave
+
+
+def _ends(enter: Floats, leave: Floats) -> tuple[Floats, Floats]:
+    missed = ~(enter <= leave)
+    return np.where(missed, np.nan, enter), np.where(missed, np.nan, leave)
+
+
+def _slabs(origin: Floats, up: Floats, half: Floats) -> tuple[Floats, Floats]:
+    enter, leave = np.full(origin.shape[:2], -np.inf), np.full(origin.shape[:2], np.inf)
+    for axis in range(3):
+        if abs(up[axis]) < 1e-9:
+            outside = np.abs(origin[..., axis]) > half[axis]
+            enter[outside] = np.inf
+        else:
+            one, other = (
+                (-half[axis] - origin[..., axis]) / up[axis],
+                (half[axis] - origin[..., axis]) / up[axis],
+            )
+            enter, leave = (
+                np.maximum(enter, np.minimum(one, other)),
+                np.minimum(leave, np.maximum(one, other)),
+            )
+    return _ends(enter, leave)
+
+
+def _ball(origin: Floats, up: Floats, radius: float) -> tuple[Floats, Floats]:
+    a, b = float(up @ up), origin @ up
+    root = np.sqrt(b * b - a * ((origin**2).sum(axis=-1) - radius**2))
+    return (-b - root) / a, (-b + root) / a
+
+
+def _can(origin: Floats, up: Floats, radius: float, half: float) -> tuple[Floats, Floats]:
+    a = float(up[0] ** 2 + up[1] ** 2)
+    flat = origin[..., :2]
+    if a < 1e-12:
+        inside = (flat**2).sum(axis=-1) <= radius**2
+        enter = np.where(inside, -np.inf, np.inf)
+        leave = np.where(inside, np.inf, -np.inf)
+    else:
+        b = flat @ up[:2]
+        root = np.sqrt(b * b - a * ((flat**2).sum(axis=-1) - radius**2))
+        enter, leave = (-b - root) / a, (-b + root) / a
+    if abs(up[2]) < 1e-9:
+        return _ends(np.where(np.abs(origin[..., 2]) > half, np.inf, enter), leave)
+    one, other = (-half - origin[..., 2]) / up[2], (half - origin[..., 2]) / up[2]
+    return _ends(np.maximum(enter, np.minimum(one, other)), np.minimum(leave, np.maximum(one, other)))
+
+
+def _hull(part: Part, origin: Floats, up: Floats) -> tuple[Floats, Floats]:
+    """A mesh collides as its convex hull: the planes of the hull cut each line."""
+    from scipy.spatial import ConvexHull
+
+    assert part.mesh is not None
+    planes = ConvexHull(part.mesh.vertices).equations
+    enter, leave = np.full(origin.shape[:2], -np.inf), np.full(origin.shape[:2], np.inf)
+    for *normal, offset in planes:
+        slope, height = float(np.dot(normal, up)), origin @ np.asarray(normal) + offset
+        if abs(slope) < 1e-9:
+            enter = np.where(height > 0, np.inf, enter)
+        elif slope < 0:
+            enter = np.maximum(enter, -height / slope)
+        else:
+            leave = np.minimum(leave, -height / slope)
+    return _ends(enter, leave)

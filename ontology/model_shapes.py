@@ -1,0 +1,52 @@
+"""What the models are shaped like, as far as carrying and holding goes: data read off their geometry.
+
+`ontology/model_shapes.json` is written by `make shapes`; a test compares it with the models.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import msgspec
+from msgspec import Struct
+
+from ontology import MODEL_SHAPES_JSON
+from schemas.entities import Size
+
+Flat = tuple[float, float]
+Corner = tuple[float, float, float]
+
+
+class Surface(Struct, frozen=True, kw_only=True):
+    """A level patch that carries things: its height and the rectangle around it, in the model's frame [m].
+
+    `fill` is the share of the rectangle that is really there (a disc has pi / 4).
+    """
+
+    height: float
+    low: Flat
+    high: Flat
+    fill: float = 1.0
+
+
+class Interior(Struct, frozen=True, kw_only=True):
+    """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed."""
+
+    low: Corner
+    high: Corner
+    fill: float = 1.0
+    open: bool = True
+
+
+class ModelShape(Struct, frozen=True, kw_only=True):
+    """A model at the size `size_m`; an entity of another size has it stretched along each axis."""
+
+    size_m: Size
+    surfaces: tuple[Surface, ...] = ()
+    interiors: tuple[Interior, ...] = ()
+
+
+@cache
+def shapes() -> dict[str, ModelShape]:
+    """Model name to shape, for the library's models."""
+    return msgspec.json.decode(MODEL_SHAPES_JSON.read_bytes(), type=dict[str, ModelShape])

@@ -1,0 +1,45 @@
+"""Where things are relative to one another, with the measurement behind each relation."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+from schemas.entities import Metres, Text
+
+RelationName = Literal[
+    "isOn", "isInside", "isLocatedIn", "isUnder", "isAbove", "isNear",
+    "isLeftOf", "isRightOf", "isInFrontOf", "isBehind"
+]  # fmt: skip
+
+ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
+"""Where a viewer stands and looks: x, y, z [m] and yaw [rad], map frame."""
+
+
+class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """`subject` is on, in, near ... `object`, worked out from their poses, sizes and shapes.
+
+    `gap_m` is the distance that counts for the relation [m], `share` the part of the base, volume or
+    footprint that it is about (0 to 1); `text` says both in one sentence. `holds` is False only where a pair
+    was asked for.
+    """
+
+    relation: RelationName
+    subject: str
+    object: str
+    holds: bool = True
+    gap_m: float = 0.0
+    share: float = 1.0
+    text: str = ""
+
+
+class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Which entities by where they are; all that is given must hold. See `schemas.commands.List`."""
+
+    on: Text | None = None
+    in_: Text | None = None
+    near: Text | None = None
+    within: float | None = None
+    nearest: int | None = None
+    to: Text | None = None

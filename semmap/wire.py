@@ -1,0 +1,36 @@
+"""For programs that speak Zenoh themselves: the keys, the messages on them, and how those are encoded.
+
+A camera of your own publishes raw planes at `camera_key(name, plane)`, each with an encoded `CameraFrame` as
+its attachment:
+
+    publisher = session.declare_publisher(camera_key("front", "depth"))
+    publisher.put(depth_m.tobytes(), attachment=encode(CameraFrame(camera="front", encoding="depth32f", ...)))
+"""
+
+from schemas.codec import decode, encode
+from schemas.health import Health
+from schemas.keys import ACK, COMMIT, ENTITY, HEALTH, OBSERVATIONS, POSES, Topic, camera_key, entity_key
+from schemas.perception import CameraView, Observation, Observations
+from schemas.replies import Ack
+from schemas.scenes import CameraFrame, Poses
+
+__all__ = [
+    "ACK",
+    "COMMIT",
+    "ENTITY",
+    "HEALTH",
+    "OBSERVATIONS",
+    "POSES",
+    "Ack",
+    "CameraFrame",
+    "CameraView",
+    "Health",
+    "Observation",
+    "Observations",
+    "Poses",
+    "Topic",
+    "camera_key",
+    "decode",
+    "encode",
+    "entity_key",
+]

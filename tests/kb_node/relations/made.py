@@ -1,0 +1,32 @@
+"""Entities by model and place."""
+
+from ontology.model_sizes import own_size_m
+from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
+
+NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
+
+
+def thing(name, at, model=None, *, yaw=0.0, turn=None, size=None, place=False, ref=None, types=()):
+    """`model` is the name without its number; "box" of `size` without a model of that name."""
+    model = name.rstrip("0123456789") if model is None else model
+    return Entity(
+        name=name,
+        class_=model.title(),
+        iri=f"urn:{name}",
+        types=(model.title(), *types),
+        pose=None if at is None else Pose(position_m=at, orientation_wxyz=turn or orientation_from_yaw(yaw)),
+        size_m=size or (None if place else own_size_m(model)),
+        place=place,
+        model="" if place else model,
+        preferred_reference=ref,
+        provenance=NOBODY,
+        pose_provenance=NOBODY,
+        shape_provenance=NOBODY,
+        reference_provenance=NOBODY,
+    )
+
+
+ROOM = thing("kitchen1", (0.0, 0.0, 0.0), size=(6.0, 6.0, 2.5), place=True, ref="kitchen")
+CORNER = thing("corner1", (2.0, 2.0, 0.0), size=(1.5, 1.5, 2.5), place=True)
+TABLE = thing("table1", (0.0, 0.0, 0.0), ref="kitchen table")
+TOP = TABLE.size_m[2]

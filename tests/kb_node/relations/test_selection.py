@@ -1,0 +1,63 @@
+import pytest
+
+from nodes.kb_node.relations.selection import meant, selected
+from nodes.kb_node.relations.space import Space
+from schemas import errors
+from schemas.relations import Where
+from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+
+MAP = [
+    ROOM,
+    CORNER,
+    TABLE,
+    thing("tray1", (0.0, 0.0, TOP)),
+    thing("cup1", (0.0, 0.0, TOP + 0.03), ref="my cup"),
+    thing("cup2", (0.2, 0.4, TOP)),
+    thing("bowl1", (0.0, -0.4, TOP)),
+    thing("apple1", (0.0, -0.4, TOP + 0.02)),
+    thing("lamp1", (2.0, 2.0, 0.0)),
+    thing("lamp2", (9.0, 9.0, 0.0)),
+]
+
+
+def names(**where):
+    return [e.name for e in selected(Space(MAP), MAP, Where(**where), MAP)]
+
+
+def test_on_is_also_on_what_is_on_it():
+    assert names(on="table1") == ["tray1", "cup1", "cup2", "bowl1", "apple1"]
+    assert names(on="tray1") == ["cup1"]
+    assert names(on="bowl1") == []
+
+
+def test_in_is_a_place_or_a_container():
+    assert names(in_="corner1") == ["lamp1"]
+    assert "lamp1" in names(in_="kitchen1")
+    assert "lamp2" not in names(in_="kitchen1")
+    assert names(in_="bowl1") == ["apple1"]
+
+
+def test_near_within_and_nearest():
+    assert "tray1" in names(near="cup1")
+    assert names(near="lamp1", within=0.5) == []
+    assert names(nearest=2, to="cup2")[0] in ("table1", "tray1")
+    assert len(names(nearest=2, to="cup2")) == 2
+    assert names(nearest=9, to="lamp2", within=1.0) == []
+
+
+def test_all_that_is_asked_must_hold():
+    assert names(on="table1", near="cup2", within=0.02) == []
+    assert names(on="kitchen table", in_="kitchen") == names(on="table1")
+
+
+def test_words():
+    assert meant(MAP, "my cup") == {"cup1"}
+    assert meant(MAP, "Cup") == {"cup1", "cup2"}
+    with pytest.raises(errors.UnknownName, match="did you mean table1"):
+        meant(MAP, "tabel1")
+
+
+@pytest.mark.parametrize("where", [{"within": 1.0}, {"nearest": 2}, {"to": "cup1"}])
+def test_what_does_not_go_alone(where):
+    with pytest.raises(errors.BadRequest, match="--"):
+        names(**where)
