@@ -16,6 +16,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Properties,
     Relations,
     Renew,
     Sparql,
@@ -144,7 +145,21 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Export, History, LastSeen, Relations, Sparql, Watch, Renew),
+        *(
+            Classes,
+            Properties,
+            Get,
+            Check,
+            Infer,
+            Explain,
+            Export,
+            History,
+            LastSeen,
+            Relations,
+            Sparql,
+            Watch,
+            Renew,
+        ),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

@@ -153,7 +153,7 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     conflict: str = ""
     """What perception sees against this, kept beside it because an operator said it; empty for nothing."""
     properties: dict[str, Stated] = {}
-    """Other data and object properties that are asserted, by name: `{"isOpen": true, "hasColor": ["color_red"]}`."""
+    """Other asserted properties, by name: `{"isOpen": true, "hasColor": ["color_red"]}`."""
     place: bool = False
     fixed: bool = False
     model: str = ""

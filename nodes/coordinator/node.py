@@ -61,6 +61,8 @@ class Coordinator:
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
             c.Update.answered_by(self._with_body),
+            c.Set.answered_by(self._turns.change),
+            c.Unset.answered_by(self._turns.change),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._turns.change),
@@ -80,6 +82,7 @@ class Coordinator:
             c.Relations.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
+            c.Properties.answered_by(relay),
             c.Sparql.answered_by(relay),
             c.Watch.answered_by(relay),
             c.Renew.answered_by(relay),

@@ -27,7 +27,7 @@ from nodes.extern.files import read_file
 from schemas import commands, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
-from schemas.entities import Entity
+from schemas.entities import Entity, Value
 from schemas.moments import When
 from schemas.scenes import Picture
 
@@ -98,9 +98,38 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
     }
 
 
-def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
+def _remove(*names: str, dry_run: bool = False, id: str = "", reason: str = "") -> Command[replies.Changed]:
     """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
-    return commands.Remove(names=names, id=id, reason=reason)
+    return commands.Remove(names=names, dry_run=dry_run, id=id, reason=reason)
+
+
+def _set(
+    name: str,
+    property: str,
+    *values: Value,
+    if_is: Value | None = None,
+    if_unset: bool = False,
+    confidence: float | None = None,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """State a data or object property of an entity: `client.set("door1", "isOpen", True)`.
+
+    The value of a functional property replaces the one before; other properties get more values. With `if_is`
+    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none.
+    """
+    return commands.Set(
+        name=name,
+        property=property,
+        values=values,
+        if_is=if_is,
+        if_unset=if_unset,
+        confidence=confidence,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
 
 
 def _load(
@@ -109,6 +138,7 @@ def _load(
     replace: bool = False,
     skip_unknown: bool = False,
     tbox: bool = False,
+    dry_run: bool = False,
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -123,6 +153,7 @@ def _load(
         replace=replace,
         skip_unknown=skip_unknown,
         tbox=tbox,
+        dry_run=dry_run,
         id=id,
         reason=reason,
     )
@@ -183,6 +214,8 @@ class Verbs:
     # To change
     add = Verb(commands.Add)
     update = Verb(commands.Update)
+    set = Verb(_set)
+    unset = Verb(commands.Unset)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)
     load = Verb(_load)
@@ -198,6 +231,7 @@ class Verbs:
     relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
+    properties = Verb(commands.Properties)
     status = Verb(commands.Status)
     history = Verb(commands.History)
     last_seen = Verb(commands.LastSeen)

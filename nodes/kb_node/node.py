@@ -52,13 +52,14 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Properties,
     Relations,
     Renew,
     Sparql,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity
+from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.relations import Relation
@@ -100,6 +101,7 @@ class KnowledgeBase:
             StarQuery.answered_by(self.on_star),
             MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
+            Properties.answered_by(self.on_properties),
             Entities.answered_by(self.on_list),
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
@@ -218,6 +220,10 @@ class KnowledgeBase:
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
         return tuple(self.map.class_table())
+
+    def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
+        """The property table."""
+        return tuple(self.map.classes.stated.rows())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then; with `where` those that are there."""

@@ -11,12 +11,14 @@ from nodes.coordinator.door.committing import commit, new_id, once, seq
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.scene.hands import Hand
-from schemas import errors
-from schemas.commands import Add, Clear, Command, Remove, Update
-from schemas.commits import Effects
+from schemas import changes, errors
+from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
+
+UNCHANGED = "unchanged: already up to date"
 
 
 @once
@@ -44,17 +46,41 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change what is named; what is not named stays."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
-    changes = (found, command.ref, command.alt, command.size)
-    if any(change is not None for change in changes):
+    shape = (found, command.ref, command.alt, command.size)
+    if any(value is not None for value in shape):
         require_authority(command, [entity])
 
     made = yield from commit(view, transactions.update(command, found))
     return Changed(
         commit=seq(made),
-        text=f"updated {entity.name}" if made else f"{entity.name} unchanged: already up to date",
+        text=f"updated {entity.name}" if made else f"{entity.name}: {UNCHANGED}",
         names=(entity.name,),
         notes=view.classes.note(command.class_ or "", found) if found else (),
     )
+
+
+@once
+def set_(view: KnownMap, command: Set) -> Talk[Changed]:
+    """State a property of an entity."""
+    return (yield from _stated(view, command, transactions.state(command)))
+
+
+@once
+def unset(view: KnownMap, command: Unset) -> Talk[Changed]:
+    """Take back what is stated by a property of an entity."""
+    return (yield from _stated(view, command, transactions.unstate(command)))
+
+
+def _stated(view: KnownMap, command: Set | Unset, transaction: Transaction) -> Talk[Changed]:
+    entity = view.entity(command.name)
+    made = yield from commit(view, transaction)
+    return Changed(commit=seq(made), text=f"{entity.name}: {_said(entity, made)}", names=(entity.name,))
+
+
+def _said(was: Entity, made: Effects | None) -> str:
+    """What a commit has changed of an entity, in words."""
+    now = next((e for e in made.changed if e.name == was.name), None) if made is not None else None
+    return changes.in_words(changes.between(was, now)) if now is not None else UNCHANGED
 
 
 @once

@@ -119,7 +119,7 @@ class Draft:
                 self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
 
     def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
-        """Raises PreconditionFailed unless each property has one of these values, or none if none is given."""
+        """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
         for prop, terms in self._typed(only_if, name):
             known = said.get(prop.iri, ())
             if not any(same(one, other) for one in known for other in terms) and (known or terms):
