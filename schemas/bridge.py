@@ -102,9 +102,10 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     filename: str
     replace: bool
     skip_unknown: bool
+    strict: bool = False
 
 
-class LoadTBox(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
 
     VERB: ClassVar[str] = "load-tbox"

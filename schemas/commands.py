@@ -160,14 +160,16 @@ class Load(Command[Changed], frozen=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
 
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
-    class that the TBox does not have; without it, one such refuses the whole file. With `tbox` the file is
-    a TBox that takes the place of the present one, unless the map does not fit it.
+    class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
+    that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
+    file is a TBox that takes the place of the present one, unless the map does not fit it.
     """
 
     content: bytes
     filename: str = ""
     replace: bool = False
     skip_unknown: bool = False
+    strict: bool = False
     tbox: bool = False
     dry_run: bool = False
 

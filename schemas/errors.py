@@ -11,6 +11,7 @@ SemmapError
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
@@ -143,15 +144,22 @@ _MANY = 30
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
-    from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
-
-    near = process.extract(
-        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
-    )
-    names = [name for name, _, _ in near]
+    names = _nearest(word, list(known))
     if not names:
         return ""
     return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
+
+
+def _nearest(word: str, known: list[str]) -> list[str]:
+    """Up to three of `known`, nearest first. A client, which knows few names, may be without RapidFuzz."""
+    try:
+        from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
+    except ImportError:
+        return difflib.get_close_matches(word, known)
+    near = process.extract(
+        word, known, scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+    )
+    return [name for name, _, _ in near]
 
 
 def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:

@@ -20,3 +20,5 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     state: Literal["starting", "ready"]
     detail: str = ""
     last_error: str = ""
+    notes: tuple[str, ...] = ()
+    """What whoever runs the system should know once, and `status` goes on to show."""

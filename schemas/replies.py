@@ -67,6 +67,8 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     heartbeat_age_s: float
     detail: str = ""
     last_error: str = ""
+    notes: tuple[str, ...] = ()
+    """What is good to know of what it works with: of the knowledge base, on its TBox."""
 
 
 class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -46,4 +46,5 @@ class HealthView:
             heartbeat_age_s=round(age_s, 2),
             detail=health.detail,
             last_error=health.last_error,
+            notes=health.notes,
         )

@@ -16,6 +16,7 @@ import contextlib
 import functools
 import queue
 import time
+import uuid
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
@@ -32,6 +33,7 @@ from schemas.commands import Command
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
+from schemas.replies import Changed
 
 R = TypeVar("R")
 C = TypeVar("C", bound=Command)
@@ -120,11 +122,14 @@ def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> 
 def _checked(command: C, signature: dict[str, Any]) -> C:
     """The command as it is sent: signed, in Python's own numbers, with offsets in its times.
 
-    Raises BadRequest.
+    A change has an id, so that it is executed once even if the coordinator is killed before it replies and
+    the command is sent again. Raises BadRequest.
     """
     fields = msgspec.to_builtins(command, builtin_types=(bytes,), enc_hook=_plain)
     for moment in _moments(type(command)) & fields.keys():
         fields[moment] = with_offset(fields[moment])
+    if reply_type(type(command)) is Changed and not command.id:
+        fields["id"] = uuid.uuid4().hex
     return codec.convert({**signature, **fields}, type(command))
 
 

@@ -7,10 +7,10 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from functools import partial
 from pathlib import Path
-from types import MethodType
+from types import MappingProxyType, MethodType
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -24,6 +24,7 @@ from typing import (
 )
 
 from nodes.extern.files import read_file
+from nodes.extern.ontologies import ontology
 from schemas import commands, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
@@ -137,7 +138,9 @@ def _load(
     *,
     replace: bool = False,
     skip_unknown: bool = False,
+    strict: bool = False,
     tbox: bool = False,
+    imports: Mapping[str, str | Path] = MappingProxyType({}),
     dry_run: bool = False,
     id: str = "",
     reason: str = "",
@@ -145,13 +148,18 @@ def _load(
     """Add what a file describes: an ABox, a JSON scene or a HuRIC map. Raises BadFile.
 
     `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
-    that the TBox does not have. With `tbox` the file is a TBox that takes the place of the present one.
+    that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
+
+    With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
+    imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
     """
+    content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
     return commands.Load(
-        content=read_file(Path(path)),
-        filename=Path(path).name,
+        content=content,
+        filename=filename,
         replace=replace,
         skip_unknown=skip_unknown,
+        strict=strict,
         tbox=tbox,
         dry_run=dry_run,
         id=id,

@@ -14,7 +14,14 @@ from msgspec import structs
 from nodes.kb_node import answers, gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.documents import blank_nodes, document_change, rdf, tbox_validation, term_syntax
+from nodes.kb_node.documents import (
+    blank_nodes,
+    document_change,
+    rdf,
+    tbox_notes,
+    tbox_validation,
+    term_syntax,
+)
 from nodes.kb_node.pages import Pages
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
@@ -89,6 +96,7 @@ class KnowledgeBase:
         for verb in keys.OF_THE_MAP:
             node.serve_one(keys.CMD, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.note(self._notes())
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -148,6 +156,8 @@ class KnowledgeBase:
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
+        if commit.tbox:
+            self._node.note(self._notes())
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -302,15 +312,17 @@ class KnowledgeBase:
         """A commit that takes back another one."""
         return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
 
-    def on_load_tbox(self, load: LoadTBox) -> Effects | None:
-        """Another TBox, in one commit; none for the one that holds."""
+    def on_load_tbox(self, load: LoadTBox) -> Loaded:
+        """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
         read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
-            return _effects(self._journal.commit_of(load.id))
+            commit = self._journal.commit_of(load.id)
+            return Loaded(commit=_effects(commit), skipped=(), notes=self._notes())
         try:
-            return Effects.of(self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox)))
+            commit = self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
+            return Loaded(commit=Effects.of(commit), skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
@@ -344,6 +356,9 @@ class KnowledgeBase:
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
+
+    def _notes(self) -> tuple[str, ...]:
+        return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)
 
     def _summary(self) -> str:
         entities = wording.entities(len(self.map))

@@ -31,6 +31,7 @@ class Heartbeat:
         self._state: Literal["starting", "ready"] = "starting"
         self._detail = ""
         self._last_error = ""
+        self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
@@ -48,6 +49,7 @@ class Heartbeat:
             state=self._state,
             detail=self._detail,
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
+            notes=self._notes,
         )
         self._health.put(codec.encode(health))
 
@@ -65,6 +67,10 @@ class Heartbeat:
     def describe(self, detail: str) -> None:
         """Say this of the node's state, from the next beat on."""
         self._detail = detail
+
+    def note(self, notes: tuple[str, ...]) -> None:
+        """Say this of what the node works with, from now on."""
+        self._notes, self.due_s = notes, 0.0
 
     def report(self, text: str) -> None:
         """Log an error, and say it with the time of the day, from now on and for an hour."""

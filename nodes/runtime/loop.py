@@ -219,6 +219,10 @@ class Node:
         """What the heartbeats say of the node's state, from the next one on."""
         self._heartbeat.describe(detail)
 
+    def note(self, notes: tuple[str, ...]) -> None:
+        """What the heartbeats say of what the node works with, from now on."""
+        self._heartbeat.note(notes)
+
     def report(self, text: str) -> None:
         """Log an error and show it in the heartbeat, with the time of the day, for an hour."""
         self._heartbeat.report(text)

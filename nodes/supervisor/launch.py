@@ -39,7 +39,8 @@ def seed(settings: Settings) -> None:
     if begins and abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
         load = f"semmap load {shlex.quote(str(abox))}"
         raise errors.BadFile(f"{abox.name} is not an ABox; start with --abox none, then: {load}")
-    print(seed_journal(Path(settings.data), Path(settings.tbox), abox, fresh=settings.fresh))
+    imports = {iri: Path(file) for iri, file in settings.imports.items()}
+    print(seed_journal(Path(settings.data), settings.tboxes, abox, imports=imports, fresh=settings.fresh))
 
 
 def _kb_node(settings: Settings) -> None:

@@ -27,7 +27,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """All settings of a system. Paths are absolute."""
 
     data: str
-    tbox: str
+    tbox: str | tuple[str, ...]
+    """The TBox's file, or its files and folders."""
+    imports: dict[str, str] = {}
+    """In which file an ontology is that the TBox imports, where it is not found by itself."""
     abox: str | None
     """None is an empty map."""
     world: str
@@ -65,6 +68,11 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 " perception cannot look through them: add --truth perceived, or --camera-hz 0 for frames"
                 " of other cameras"
             )
+
+    @property
+    def tboxes(self) -> tuple[Path, ...]:
+        """The files and folders of the TBox."""
+        return tuple(map(Path, (self.tbox,) if isinstance(self.tbox, str) else self.tbox))
 
     @property
     def nodes(self) -> tuple[str, ...]:

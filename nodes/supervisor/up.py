@@ -119,6 +119,8 @@ class _Foreground:
                 again = " again" if health.node in self._pids else ""
                 self._pids[health.node] = health.pid
                 self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
+                for note in health.notes:
+                    self._say(f"{'TBox':<{_COLUMN}} {note}")
 
     def _require_alive(self) -> None:
         """A node that ended with an error which no restart mends ends the start, with its last words."""

@@ -298,6 +298,39 @@ def test_changes_together_are_as_if_made_one_after_the_other(door, semantic_map)
     assert door.entity("a").pose == Pose(position_m=(3.0, 0.0, 0.0))
 
 
+def test_a_change_costs_one_question_also_with_an_id(door, monkeypatch):
+    asked, ask = [], door._ask
+    monkeypatch.setattr(door, "_ask", lambda call: asked.append(call.VERB) or ask(call))
+    add(door, name="chair1", at=(1.0, 1.0, 0.0), id="a")
+    door.change(c.Update(name="chair1", at=(2.0, 1.0, 0.0), id="b"))
+    door.change(c.Remove(names=("chair1",), id="c"))
+    assert asked == ["commit"] * 3
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.Add(class_="Chair", id="x"),
+        c.Add(class_="Chair", name="chair1", id="x"),
+        c.Update(name="chair0", ref="seat", id="x"),
+        c.Remove(names=("chair0",), id="x"),
+        c.Clear(id="x"),
+        c.Load(content=b'{"entities": [{"class": "Chair"}]}', filename="scene.json", id="x"),
+        c.Undo(id="x"),
+    ],
+)
+def test_a_command_whose_reply_was_lost_with_the_coordinator_is_not_done_twice(door, semantic_map, command):
+    door.change(c.Add(class_="Chair", name="chair0"))
+    first = door.change(command)
+    next_door = Door(door._ask)  # that of the coordinator which takes its place
+    next_door.classes = door.classes
+    next_door.begin(semantic_map.snapshot())
+    again = next_door.change(command)
+    assert (again.commit, again.names) == (first.commit, first.names)
+    assert again.text.startswith("done before: ")
+    assert semantic_map.seq == 2
+
+
 def test_a_shared_reference_stays_when_all_who_use_it_change_together(door, semantic_map):
     for name in ("a", "b"):
         add(door, name=name, at=(1.0, 2.0, 0.0), ref="seat")

@@ -139,14 +139,14 @@ def test_the_tbox_that_holds_is_no_change(session):
         return ask(session, "load-tbox", order)
 
     text = TBOX_TURTLE + "dm:Chair rdfs:subClassOf [ owl:unionOf ( dm:Seat dm:Object ) ] ."
-    commit = load(1, text)
+    commit = load(1, text).commit
     assert commit.tbox
-    assert load(2, text) is None
-    assert load(1, text) == commit
-    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").seq
+    assert load(2, text).commit is None
+    assert load(1, text).commit == commit
+    seq = load(4, text + "dm:Chair rdfs:comment 'to sit on' .").commit.seq
     (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
-    assert load(3, TBOX_TURTLE).seq == commit.seq + 2
+    assert load(3, TBOX_TURTLE).commit.seq == commit.seq + 2
 
 
 def test_two_clients_see_one_map(bench, session):

@@ -12,6 +12,7 @@ from msgspec import structs
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.runtime.class_names import ClassNames
+from schemas import errors
 from schemas.bridge import MadeBy
 from schemas.commands import Classes, Command
 from schemas.commits import Effects, Transaction
@@ -22,14 +23,27 @@ Change = Callable[[KnownMap, C], Talk[Changed]]
 
 
 def once(change: Change[C]) -> Change[C]:
-    """A command that is sent again under the same id is answered with its first result."""
+    """A command that is sent again under the same id is answered with its first result.
+
+    The knowledge base executes an id once and answers it with the first commit, so the command is simply
+    executed. Only when it fails, changes nothing or comes back with an old commit is it asked whether that id
+    was executed before: a command that comes for the first time costs no additional question.
+    """
 
     @functools.wraps(change)
     def execute(view: KnownMap, command: C) -> Talk[Changed]:
         if not command.id:
             return (yield from change(view, structs.replace(command, id=new_id())))
-        done = yield from _done_before(command)
-        return done or (yield from change(view, command))
+        known_seq = view.seq
+        try:
+            changed = yield from change(view, command)
+        except (errors.Refused, errors.BadRequest):
+            if done := (yield from _done_before(command)):
+                return done
+            raise
+        if changed.commit is not None and changed.commit > known_seq:
+            return changed
+        return (yield from _done_before(command)) or changed
 
     return execute
 

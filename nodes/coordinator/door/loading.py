@@ -73,6 +73,7 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         filename=command.filename,
         replace=command.replace,
         skip_unknown=command.skip_unknown,
+        strict=command.strict,
     )
     loaded = yield from ask(document)
     commit = yield from taken(view, loaded.commit)
@@ -80,8 +81,11 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
-    if command.replace or command.skip_unknown:
-        raise errors.BadRequest("a TBox takes the place of the present one, and the map stays as it is")
+    if command.replace or command.skip_unknown or command.strict:
+        raise errors.BadRequest(
+            "--replace, --skip-unknown and --strict are for maps: a TBox takes the place of the present one,"
+            " and the map stays as it is"
+        )
     require_operator(command, "replace the TBox")
     order = LoadTBox(
         id=command.id,
@@ -91,12 +95,13 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         content=command.content,
         filename=command.filename,
     )
-    commit = yield from ask(order)
-    if commit is None:
-        return Changed(commit=None, text=f"the TBox is as in {command.filename or 'the file'} already")
+    loaded = yield from ask(order)
+    if (commit := loaded.commit) is None:
+        text = f"the TBox is as in {command.filename or 'the file'} already"
+        return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
-    return Changed(commit=commit.seq, text=text, names=commit.names)
+    return Changed(commit=commit.seq, text=text, names=commit.names, notes=loaded.notes)
 
 
 def _sort_out(

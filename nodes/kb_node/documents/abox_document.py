@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
 from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
@@ -61,6 +62,35 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         kept = _without(gone, [t for t in triples if t not in doubtful])
     notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
     return SortedOut(kept, words, list(notes))
+
+
+def strangers(
+    triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
+) -> dict[Term, Triple]:
+    """What something is related to though nobody says what it is, each with the first triple that does so.
+
+    What the reasoner holds counts, too, as far as it `stays`.
+    """
+    relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
+    found: dict[Term, Triple] = {}
+    for triple in triples:
+        if triple[1] in relations:
+            found.setdefault(triple[2], triple)
+    for s, p, _ in triples:
+        if p == v.RDF_TYPE:
+            found.pop(s, None)
+    return {
+        term: triple
+        for term, triple in found.items()
+        if not any(map(stays, reasoner.asserted(term, v.RDF_TYPE, None)))
+    }
+
+
+def of_strangers(found: Mapping[Term, Triple]) -> str:
+    """One sentence on them."""
+    few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
+    more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
+    return f"nobody says what {'this is' if len(found) == 1 else 'these are'}: {few}{more}"
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:

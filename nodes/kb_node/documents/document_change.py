@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from nodes.kb_node.documents import abox_document, tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
+from schemas import errors
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commits import Transaction
 from schemas.explanations import Triple
@@ -16,9 +17,15 @@ def of_document(
 ) -> tuple[Transaction, abox_document.SortedOut]:
     """What of an ABox may come into the map, and what is to be said of the rest.
 
-    Raises UnknownClass, BadFile for a TBox.
+    Raises UnknownClass, BadFile for a TBox, UnknownName for what nobody describes if the load is strict.
     """
     sorted_out = abox_document.sort_out(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
+    stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
+    if found := abox_document.strangers(sorted_out.triples, semantic_map.reasoner, stays):
+        said = abox_document.of_strangers(found)
+        if load.strict:
+            raise errors.UnknownName(said)
+        sorted_out.notes.append(f"{said}; --strict refuses such")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.documents import abox_document
+from nodes.kb_node.documents import abox_document, ontology_files
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from ontology import vocabulary as v
@@ -25,10 +25,8 @@ def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
         raise errors.Inconsistent(
             f"{what} is inconsistent: {error.explanation.text}", explanation=error.explanation
         ) from None
-    if not ClassTable(reasoner).spatial:
-        raise errors.BadFile(
-            f"{name or what} has no class of things in space: is it a TBox (an OWL ontology with classes)?"
-        )
+    if not ClassTable(reasoner).names:
+        raise errors.BadFile(f"{name or what} has no class: is it a TBox (an OWL ontology with classes)?")
     return reasoner
 
 
@@ -59,5 +57,5 @@ def has_individuals(tbox: Iterable[Triple]) -> bool:
 
 def imports(tbox: Iterable[Triple]) -> list[Triple]:
     """`owl:imports` of the TBox, for the ABox: it is resolved to the loaded file, never to the network."""
-    ontologies = sorted(s for s, p, o in tbox if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY)
+    ontologies = [term for term in ontology_files.header(tbox).ontologies if term.startswith("<")]
     return [(v.ABOX_ONTOLOGY, v.OWL_IMPORTS, iri) for iri in ontologies]

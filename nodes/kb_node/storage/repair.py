@@ -9,7 +9,7 @@ from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.documents import ontology_files, rdf, tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import FILENAME, Journal
@@ -111,7 +111,7 @@ def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
                 f"{_reason(error)}: the TBox that the map began with cannot be read; give it anew with"
                 f" --tbox FILE, or start anew with --fresh (the damaged file is kept)"
             ) from None
-    triples = seed.read_triples(instead, "t")
+    triples = ontology_files.gather([instead], {}).triples
     tbox_validation.compiled(triples, str(instead))
     return rdf.serialise(triples, "ntriples")
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import uuid
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
+from types import MappingProxyType
 
-from nodes.kb_node.documents import abox_document, rdf, tbox_validation
+from nodes.kb_node.documents import abox_document, ontology_files, rdf, tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
@@ -22,9 +24,17 @@ from schemas.explanations import Triple
 KEPT = "kept"
 
 
-def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> str:
+def seed(
+    data: Path,
+    tbox: Path | Sequence[Path],
+    abox: Path | None,
+    *,
+    imports: Mapping[str, Path] = MappingProxyType({}),
+    fresh: bool = False,
+) -> str:
     """Make the journal of folder `data` from a TBox and an ABox file; say what was done.
 
+    The TBox may be in several files and folders; `imports` says in which file an imported ontology is.
     A journal that is there already wins and stays as it is, unless `fresh`: then it is moved to
     `data/kept/<time>/`. Raises BadFile or Inconsistent with existing data untouched.
     """
@@ -32,13 +42,15 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
     if path.exists() and not fresh:
         Journal(path).close()  # one that cannot be read is told before anything starts
         return f"going on with the map in {data} (--fresh begins anew and keeps this one aside)"
-    tbox_triples = read_triples(tbox, "t")
-    reasoner = tbox_validation.compiled(tbox_triples, str(tbox))
+    tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
+    name = ", ".join(map(str, tboxes))
+    tbox_triples = ontology_files.gather(tboxes, imports).triples
+    reasoner = tbox_validation.compiled(tbox_triples, name)
     closed = reasoner.closed  # as it is before the ABox may add to the schema
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]
     notes: list[str] = []
     if abox is not None:
-        said = read_triples(abox, "a")
+        said = ontology_files.read(abox, "a")
         try:
             sorted_out = abox_document.sort_out(said, ClassTable(reasoner), skip_unknown=False)
         except errors.UnknownClass as error:
@@ -50,6 +62,8 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += sorted_out.triples
         notes = sorted_out.notes
+        if found := abox_document.strangers(sorted_out.triples, reasoner):
+            notes.append(abox_document.of_strangers(found))
     source = abox.name if abox is not None else "nothing"
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",
@@ -65,7 +79,7 @@ def seed(data: Path, tbox: Path, abox: Path | None, *, fresh: bool = False) -> s
         put_in_place(new, path)
         closure_cache.keep(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
-        raise type(error)(f"{abox or tbox}: {error.text}", explanation=error.explanation) from None
+        raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
     return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
@@ -126,15 +140,6 @@ def set_aside(data: Path) -> Path | None:
     for p in present:
         p.rename(kept / p.name)
     return kept
-
-
-def read_triples(path: Path, label_prefix: str = "") -> list[Triple]:
-    """The triples of a file, its blank nodes named with `label_prefix`. Raises BadFile."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    return rdf.parse(content, str(path), label_prefix=label_prefix)
 
 
 def remove(path: Path) -> None:

@@ -1,5 +1,8 @@
+import pytest
+
 from nodes.kb_node.documents import document_change
 from ontology import vocabulary as v
+from schemas import errors
 from schemas.bridge import LoadDocument, LoadTBox
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
@@ -51,3 +54,49 @@ def test_another_tbox_is_imported_instead(semantic_map):
     assert made is not None
     assert made.retract == (before,)
     assert made.insert == ((v.ABOX_ONTOLOGY, v.OWL_IMPORTS, "<urn:other>"),)
+
+
+STRANGE = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . :b a dm:Kitchen ."
+
+
+def test_what_nobody_describes_is_noted(semantic_map):
+    made, sorted_out = document_change.of_document(semantic_map, document(), turtle(STRANGE))
+    assert set(made.insert) == set(turtle(STRANGE))
+    assert sorted_out.notes == [
+        "nobody says what this is: kitchn (a isLocatedIn kitchn); --strict refuses such"
+    ]
+
+
+def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
+    many = "".join(f":a{i} a dm:Chair ; dm:isLocatedIn :k{i} ." for i in range(7))
+    with pytest.raises(errors.UnknownName) as caught:
+        document_change.of_document(semantic_map, document(strict=True), turtle(many))
+    assert caught.value.text == (
+        "nobody says what these are: "
+        + ", ".join(f"k{i} (a{i} isLocatedIn k{i})" for i in range(5))
+        + " and 2 more"
+    )
+
+
+@pytest.mark.parametrize("strict", [False, True])
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":a a dm:Chair ; dm:isLocatedIn :b . :b a dm:Kitchen .",
+        ":a a dm:Chair ; dm:isLocatedIn :hall .",  # it is in the map
+        ":a a dm:Chair ; dm:isLocatedIn dm:Kitchen .",  # it is in the TBox
+        ":a a dm:Chair ; rdfs:seeAlso <urn:a> ; owl:sameAs :c ; dm:near :d .",  # no relations
+        ":a a dm:Chair ; dm:lexicalReference 'chair' .",
+    ],
+)
+def test_what_somebody_describes_is_no_stranger(semantic_map, text, strict):
+    semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
+    _, sorted_out = document_change.of_document(semantic_map, document(strict=strict), turtle(text))
+    assert not any("nobody says" in note for note in sorted_out.notes)
+
+
+def test_what_goes_describes_nothing(semantic_map):
+    semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
+    strange = turtle(":a a dm:Chair ; dm:isLocatedIn :hall .")
+    with pytest.raises(errors.UnknownName, match="hall"):
+        document_change.of_document(semantic_map, document(replace=True, strict=True), strange)

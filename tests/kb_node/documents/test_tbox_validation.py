@@ -117,7 +117,7 @@ REFUSED = {
         errors.Inconsistent,
         "the TBox is inconsistent: x cannot be",
     ),
-    "no TBox": ("<urn:a> <urn:b> <urn:c> .", errors.BadFile, "has no class of things in space"),
+    "no TBox": ("<urn:a> <urn:b> <urn:c> .", errors.BadFile, "the TBox has no class: is it a TBox"),
     "two classes of a name": (
         TBOX_TURTLE + "<urn:x#Chair> a owl:Class .",
         errors.BadFile,

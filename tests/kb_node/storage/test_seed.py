@@ -93,12 +93,12 @@ def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
 @pytest.mark.parametrize(
     ("tbox", "abox", "error", "text"),
     [
-        (None, "", errors.BadFile, "my tbox.ttl cannot be read: No such file or directory"),
-        (TBOX_TURTLE, None, errors.BadFile, "my abox.ttl cannot be read: No such file or directory"),
+        (None, "", errors.BadFile, "there is no file .*my tbox.ttl"),
+        (TBOX_TURTLE, None, errors.BadFile, "there is no file .*my abox.ttl"),
         (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is no valid Turtle"),
         (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is no valid Turtle"),
         (TBOX_TURTLE, " ", errors.BadFile, "my abox.ttl is empty"),
-        (ABOX, ABOX, errors.BadFile, "no class of things in space: is it a TBox"),
+        (ABOX, ABOX, errors.BadFile, "has no class: is it a TBox"),
         (
             TBOX_TURTLE + "dm:x a dm:Chair , dm:Kitchen .",
             ABOX,
@@ -138,9 +138,20 @@ def test_what_the_disk_does_not_take_is_no_fault_of_the_files(data, files, monke
         seed(data, *files)
 
 
-def test_a_folder_is_no_file(data, files):
-    with pytest.raises(errors.BadFile, match="cannot be read: Is a directory"):
-        seed(data, files[0].parent, None)
+def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "stools.ofn").write_text(
+        "Ontology(<http://o.org/stools> Import(<http://o.org/home>)"
+        f" Declaration(Class(<{v.TBOX}Barstool>)) SubClassOf(<{v.TBOX}Barstool> <{v.TBOX}Seat>))"
+    )
+    imports = {"http://o.org/home": files[0]}
+    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities from nothing"
+    journal = Journal(data / FILENAME)
+    classes = SemanticMap(journal).classes
+    journal.close()
+    assert {"Barstool", "Chair"} <= classes.iris.keys()
+    with pytest.raises(errors.BadFile, match="own cannot be read: Is a directory"):
+        seed(data, files[0], tmp_path / "own", fresh=True)
 
 
 def test_a_file_is_no_data_folder(files):

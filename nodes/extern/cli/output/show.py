@@ -158,6 +158,11 @@ def status_line(status: SystemStatus) -> str:
     return f"{counts}; truth: {status.truth}; {agree}"
 
 
+def status_notes(status: SystemStatus) -> Iterable[str]:
+    """What is good to know of what the nodes work with: of the knowledge base, on its TBox."""
+    return (f"TBox: {note}" for node in status.nodes for note in node.notes)
+
+
 def changed(reply: Changed) -> Iterable[str]:
     """A change in words, with what was left out and how it was read."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")

@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterator
 from typing import Any, Literal, get_args
 
-import pyoxigraph as ox
 from rich.table import Table
 
 from nodes.extern.cli.output import tables
+from nodes.runtime import extras
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.explanations import Term
@@ -103,6 +103,9 @@ def _turtle(result: SparqlResult) -> str:
     if result.kind != "graph":
         raise errors.BadRequest("turtle is for graphs (CONSTRUCT, DESCRIBE); rows come as table, json or csv")
     lines = "".join(f"{' '.join(map(str, row))} .\n" for row in result.rows).encode()
+    extras.require("RDF as Turtle", "kb")
+    import pyoxigraph as ox
+
     triples = ox.parse(lines, ox.RdfFormat.N_TRIPLES)
     document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_PREFIXES)
     assert document is not None

@@ -176,6 +176,7 @@ def status(client: Client, format: str) -> None:
         return
     show.console().print(show.status_table(status))
     print(show.status_line(status))
+    print_lines(show.status_notes(status))
     print_lines(f"  {problem}" for problem in status.problems)
 
 

@@ -11,6 +11,7 @@ import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
+from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
@@ -126,11 +127,13 @@ def clear(client: Client, dry_run: bool) -> None:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--replace", is_flag=True, help="Instead of the present map.")
 @click.option("--skip-unknown", is_flag=True, help="Leave out what is of an unknown class.")
-@click.option("--tbox", is_flag=True, help="FILE is a TBox that takes the place of the present one.")
+@click.option("--strict", is_flag=True, help="Refuse what speaks of things that nobody says what they are.")
+@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
+@import_option
 @_dry_run
 @talks
-def load(client: Client, file: Path, **options: Any) -> None:
-    """Load an ABox (RDF/XML, Turtle, N-Triples, JSON-LD), a JSON scene or a HuRIC map; or a TBox."""
+def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
+    """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
     with progress(client):
-        reply = client.load(file, **options)
+        reply = client.load(file, imports=dict(imports), **how)
     print_lines(show.changed(reply))

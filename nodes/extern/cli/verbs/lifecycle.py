@@ -13,7 +13,9 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.extern.cli.calling import complain
+from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
@@ -28,9 +30,16 @@ _PERCEPTION_HZ = 5.0
 def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     """The options of `up` and `node`; the function gets them as Settings."""
 
-    @click.option("--tbox", type=_path, default=HOUSEHOLD_TTL, help="TBox file. Default: the household's.")
     @click.option(
-        "--abox", help="ABox file, or none for an empty map. Default: the shipped flat; none if perceived."
+        "--tbox",
+        type=_path,
+        multiple=True,
+        help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
+    )
+    @import_option
+    @click.option(
+        "--abox",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -95,6 +104,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 @settings_options
 def up(settings: Settings) -> None:
     """Start the whole system in the foreground; Ctrl-C ends it."""
+    extras.require_nodes(settings.nodes)
     from nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception:
@@ -107,6 +117,7 @@ def up(settings: Settings) -> None:
 @click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a running system of this machine."""
+    extras.require("semmap down", "kb")
     from nodes.supervisor import registry
     from nodes.supervisor.control import Supervisor
 
@@ -124,6 +135,7 @@ def down(data: Path | None, connect: str | None) -> None:
 @click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    extras.require("semmap repair", "kb")
     from nodes.kb_node.storage.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
@@ -137,6 +149,7 @@ def node(name: str, settings: Settings) -> None:
 
     The coordinator listens on --listen; the others connect to it there.
     """
+    extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
 
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
@@ -146,7 +159,8 @@ def node(name: str, settings: Settings) -> None:
 
 
 def _settings(
-    *, tbox: Path, abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
+    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], abox: str | None,
+    world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
@@ -156,16 +170,18 @@ def _settings(
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
         complain(f"--abox is for a new map, and the one in {folder} goes on; --fresh begins a new one")
+    of_the_flat = abox is None and not tbox
     if world is None:
-        world = before.world if before is not None else str(FLAT_WORLD if abox is None else EMPTY_WORLD)
+        world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
     if truth is None:
         truth = before.truth if before is not None else "map"
     world = str(EMPTY_WORLD) if world in ("empty", "none") else world
     if abox is None:
-        abox = "none" if truth == "perceived" else str(FLAT_TTL)
+        abox = str(FLAT_TTL) if of_the_flat and truth != "perceived" else "none"
     values = {
         "data": str(folder),
-        "tbox": _existing(tbox),
+        "tbox": tuple(_existing(path, or_folder=True) for path in tbox or (HOUSEHOLD_TTL,)),
+        "imports": {iri: str(file) for iri, file in imports},
         "abox": None if abox == "none" else _existing(Path(abox)),
         "world": _existing(Path(world)),
         "truth": truth,
@@ -223,8 +239,8 @@ def _folder(path: Path) -> str:
     return str(path.resolve())
 
 
-def _existing(path: Path) -> str:
-    if path.is_dir():
+def _existing(path: Path, *, or_folder: bool = False) -> str:
+    if path.is_dir() and not or_folder:
         raise errors.BadFile(f"{path} is a directory, not a file")
     if not path.exists():
         raise errors.BadFile(f"there is no file {path}")

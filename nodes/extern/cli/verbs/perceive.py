@@ -15,6 +15,7 @@ from nodes.extern.cli.calling import print_json
 from nodes.extern.cli.output.show import console
 from nodes.extern.cli.output.tables import table
 from nodes.extern.files import write_atomically
+from nodes.runtime import extras
 from schemas import errors, wording
 from schemas.perception import Observation
 
@@ -44,6 +45,7 @@ def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | No
     """
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
+    extras.require("semmap perceive", "perception")
     import numpy as np  # half of what the command line would take to start
 
     from nodes.perception_node.input.files.cloud_files import read_frames

@@ -11,6 +11,7 @@ from nodes.extern.cli.calling import given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
+from nodes.runtime import extras
 from schemas import errors
 
 
@@ -65,6 +66,7 @@ def picture(client: Client, file: Path, camera: str | None, width: int, height: 
 @click.argument("file", type=click.Path(path_type=Path))
 def replay(file: Path) -> None:
     """Open a recording in the Rerun viewer."""
+    extras.require("semmap replay", "record")
     from nodes.recorder.replay import replay as open_viewer
 
     open_viewer(file)

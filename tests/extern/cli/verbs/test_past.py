@@ -8,8 +8,9 @@ import pytest
 
 from nodes.extern.client import connect
 from ontology import HOUSEHOLD_TTL
+from ontology import vocabulary as v
 from schemas import errors
-from tests.conftest import running
+from tests.conftest import running, until
 
 DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
 MORE = f"""
@@ -114,6 +115,40 @@ def test_undo(system):
     assert commits[1]["undoes"] == [commits[0]["seq"]]
     system.cli("undo", str(commits[1]["seq"]))
     assert "chair7" in system.cli("list")
+
+
+def test_another_tbox_comes_with_its_imports(system, tmp_path):
+    (tmp_path / "house.ttl").write_text(HOUSEHOLD_TTL.read_text())
+    (tmp_path / "thrones.ofn").write_text(
+        "Ontology(<http://o.org/thrones> Import(<http://o.org/house>) Import(<http://o.org/nowhere>)"
+        f" SubClassOf(<{v.TBOX}Throne> <{v.TBOX}Chair>) Declaration(Class(<{v.TBOX}Throne>)))"
+    )
+    words = ("load", "--tbox", tmp_path / "thrones.ofn", "--import")
+    assert "is not IRI=FILE" in system.cli(*words, "http://o.org/house", status=2)
+    said = system.cli(*words, f"http://o.org/house={tmp_path / 'house.ttl'}")
+    assert "classes from thrones.ofn and 1 more file (commit" in said
+    note = "1 import was not found, and the TBox holds without: http://o.org/nowhere"
+    assert f"note: {note}" in said
+    until(lambda: f"TBox: {note}" in system.cli("status"), "the note in the status")
+    assert "Throne" in system.cli("classes")
+    assert "the TBox is as in thrones.ofn and 1 more file already" in system.cli(
+        *words, f"http://o.org/house={tmp_path / 'house.ttl'}"
+    )
+    with system.client() as client:
+        client.undo(client.status().commit)
+        until(lambda: next(n for n in client.status().nodes if n.node == "kb_node").notes == (), "no notes")
+
+
+def test_what_nobody_describes_is_told_or_refused(system, tmp_path):
+    file = tmp_path / "strange.ttl"
+    file.write_text(
+        f"@prefix : <{v.ABOX}> . @prefix dm: <{v.TBOX}> . :stool9 a dm:Chair ; dm:isLocatedIn :hal ."
+    )
+    refusal = system.cli("load", file, "--strict", status=1)
+    assert "nobody says what this is: hal (stool9 isLocatedIn hal)" in refusal
+    assert "note: nobody says what this is: hal" in system.cli("load", file)
+    with system.client() as client:
+        client.undo(client.status().commit)
 
 
 def test_another_tbox(system, tmp_path):

@@ -1,0 +1,25 @@
+"""Ontologies of whoever asks, with what they import: the system reads no files of its clients."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from nodes.extern.files import read_file
+
+
+def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
+    """A document with an ontology and all that it imports, as far as that is found, and what it is called.
+
+    `imports` says in which file an import is. The document is the file itself where there is only that one,
+    and else of N-Triples. Raises BadFile.
+    """
+    from nodes.kb_node.documents import ontology_files, rdf
+
+    gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
+    further = len(gathered.files) - 1
+    if not further:
+        return read_file(gathered.files[0]), path.name
+    more = "1 more file" if further == 1 else f"{further} more files"
+    name = path.resolve().name
+    return rdf.serialise(gathered.triples, "ntriples"), f"{name} and {more}"

@@ -1,0 +1,70 @@
+"""XML catalogues, as Protégé writes them beside an ontology: which file an import stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+from xml.etree import ElementTree
+
+from schemas import errors
+
+FILENAME = "catalog-v001.xml"
+_SPACE = "{urn:oasis:names:tc:entity:xmlns:xml:catalog}"
+_BASE = "{http://www.w3.org/XML/1998/namespace}base"
+
+
+def find(folder: Path, iri: str) -> Path | None:
+    """The file that the catalogue of a folder has for an ontology, if there is such a file.
+
+    Raises BadFile for a catalogue that is no XML.
+    """
+    return _find(folder / FILENAME, iri, set())
+
+
+def _find(catalogue: Path, iri: str, seen: set[Path]) -> Path | None:
+    if catalogue in seen or not catalogue.is_file():
+        return None
+    seen.add(catalogue)
+    try:
+        root = ElementTree.fromstring(catalogue.read_bytes())
+    except ElementTree.ParseError as error:
+        raise errors.BadFile(f"{catalogue} is no valid XML catalogue: {error}") from None
+    except OSError as error:
+        raise errors.BadFile(f"{catalogue} cannot be read: {error.strerror}") from None
+    entries = list(_entries(root, catalogue.parent))
+    for entry, folder in entries:
+        if (path := _path_of(entry, folder, iri)) is not None and path.is_file():
+            return path
+    for entry, folder in entries:
+        if entry.tag == f"{_SPACE}nextCatalog":
+            further = _path(folder, entry.get("catalog", ""))
+            if further is not None and (path := _find(further, iri, seen)) is not None:
+                return path
+    return None
+
+
+def _entries(element: ElementTree.Element, folder: Path) -> Iterator[tuple[ElementTree.Element, Path]]:
+    """The entries of a catalogue and its groups, with the folder that their paths start from."""
+    folder = _path(folder, element.get(_BASE, "")) or folder
+    for child in element:
+        yield child, folder
+        yield from _entries(child, folder)
+
+
+def _path_of(entry: ElementTree.Element, folder: Path, iri: str) -> Path | None:
+    if entry.tag in (f"{_SPACE}uri", f"{_SPACE}system"):
+        name = entry.get("name", entry.get("systemId"))
+        return _path(folder, entry.get("uri", "")) if name == iri else None
+    start = entry.get("uriStartString", entry.get("systemIdStartString"))
+    if entry.tag in (f"{_SPACE}rewriteURI", f"{_SPACE}rewriteSystem") and start and iri.startswith(start):
+        return _path(folder, entry.get("rewritePrefix", "") + iri[len(start) :])
+    return None
+
+
+def _path(folder: Path, uri: str) -> Path | None:
+    """The path of a relative reference or a file's URI; None for what is elsewhere."""
+    parts = urlsplit(uri)
+    if parts.scheme not in ("", "file") or parts.netloc not in ("", "localhost"):
+        return None
+    return (folder / unquote(parts.path)).resolve()

@@ -1,0 +1,193 @@
+"""Ontologies in files, with what they import: found by what a person says, by a catalogue or beside them.
+
+Nothing is fetched from the network. The files become one graph, in which imports have the names of the
+ontologies that were found for them, so that the graph itself tells which are missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import unquote, urlsplit
+
+from nodes.kb_node.documents import catalogue, rdf
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.explanations import Term, Triple
+
+SUFFIXES = (".owl", ".rdf", ".rdfs", ".ttl", ".nt", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx", ".xml")
+_VERSION = v.iri(f"{v.OWL}versionIRI")
+
+
+class Gathered(NamedTuple):
+    """The ontologies of some files and all that they import, as far as it is there."""
+
+    triples: list[Triple]
+    files: tuple[Path, ...]
+    """All that were read: first those that were named."""
+    found: Mapping[str, Path]
+    """Import to file."""
+    missing: tuple[str, ...]
+    """The imports for which there is no file."""
+
+
+class Header(NamedTuple):
+    """What some triples say of the ontologies that they are. IRIs are terms."""
+
+    ontologies: tuple[Term, ...]
+    versions: tuple[Term, ...]
+    imports: tuple[Term, ...]
+
+
+def header(triples: Iterable[Triple]) -> Header:
+    """The ontologies with their versions and imports."""
+    said: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, _VERSION: {}, v.OWL_IMPORTS: {}}
+    for s, p, o in triples:
+        if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY:
+            said[v.OWL_ONTOLOGY][s] = None
+        elif p in (_VERSION, v.OWL_IMPORTS):
+            said[p][o] = None
+    return Header(*(tuple(sorted(terms)) for terms in said.values()))
+
+
+def missing_imports(triples: Iterable[Triple]) -> tuple[str, ...]:
+    """The IRIs of the imports of a graph that are not in it."""
+    ontologies, versions, imports = header(triples)
+    there = {_plain(term) for term in (*ontologies, *versions)}
+    return tuple(v.bare(term) for term in imports if _plain(term) not in there)
+
+
+def gather(named: Sequence[Path], given: Mapping[str, Path]) -> Gathered:
+    """Read ontologies with all that they import, in every syntax; a folder stands for the ontologies in it.
+
+    `given` says which file an import is. Raises BadFile for what cannot be read.
+    """
+    gathering = _Gathering([path for one in named for path in _files_of(one)], given)
+    while gathering.to_read:
+        gathering.read(gathering.to_read.pop(0))
+    return gathering.gathered()
+
+
+class _Gathering:
+    def __init__(self, named: Iterable[Path], given: Mapping[str, Path]) -> None:
+        self._called = {path.resolve(): path for path in named}
+        self._named = tuple(self._called)
+        self.to_read = list(self._named)
+        self._given = {_plain(v.iri(iri)): path for iri, path in given.items()}
+        self._parsed: dict[Path, list[Triple]] = {}
+        self._read: dict[Path, list[Triple]] = {}
+        self._stands_for: dict[Term, Path] = {}
+
+    def read(self, path: Path) -> None:
+        """Take in a file, and note which others it needs."""
+        if path in self._read:
+            return
+        triples = self._read[path] = self._triples(path)
+        for term in header(triples).imports:
+            if term not in self._stands_for and (found := self._find(term, path.parent)) is not None:
+                self._stands_for[term] = found
+                self.to_read.append(found)
+
+    def gathered(self) -> Gathered:
+        """All files in one graph."""
+        names = {term: self._name_of(path, term) for term, path in self._stands_for.items()}
+        triples: dict[Triple, None] = {}
+        for content in self._read.values():
+            triples.update(
+                ((s, p, names.get(o, o)) if p == v.OWL_IMPORTS else (s, p, o), None) for s, p, o in content
+            )
+        for name in names.values():
+            triples.setdefault((name, v.RDF_TYPE, v.OWL_ONTOLOGY))
+        return Gathered(
+            list(triples),
+            tuple(self._read),
+            {v.bare(term): path for term, path in self._stands_for.items()},
+            missing_imports(triples),
+        )
+
+    def _name_of(self, path: Path, wanted: Term) -> Term:
+        """The ontology of a file that was found for an import: that one, where there are several."""
+        named = [o for o in header(self._read[path]).ontologies if o.startswith("<")]
+        return wanted if wanted in named or not named else named[0]
+
+    def _find(self, term: Term, beside: Path) -> Path | None:
+        iri = v.bare(term)
+        if (given := self._given.get(_plain(term))) is not None:
+            return given.resolve()
+        if iri.startswith("file:") and (path := Path(unquote(urlsplit(iri).path))).is_file():
+            return path.resolve()
+        for path in self._named:
+            if self._is(path, term):
+                return path
+        folders = dict.fromkeys((beside, *(path.parent for path in self._named)))
+        for folder in folders:
+            if (found := catalogue.find(folder, iri)) is not None:
+                return found
+        for folder in folders:
+            if (found := self._find_in(folder, term)) is not None:
+                return found
+        return None
+
+    def _find_in(self, folder: Path, term: Term) -> Path | None:
+        """The file in a folder that is the ontology, or else the one that is called like it."""
+        name = unquote(_plain(term).partition("#")[0].rstrip("/").rpartition("/")[2])
+        if not name:
+            return None
+        files = _ontologies_in(folder)
+        called = [path for path in files if name in (path.name, path.stem)]
+        others = [path for path in files if path not in called]
+        for path in (*called, *others):
+            if (path in called or name.encode() in path.read_bytes()) and self._is(path, term):
+                return path.resolve()
+        return called[0].resolve() if called else None
+
+    def _is(self, path: Path, term: Term) -> bool:
+        """Is it the file of that ontology? What cannot be read is none."""
+        try:
+            ontologies, versions, _ = header(self._triples(path.resolve()))
+        except errors.BadFile:
+            return False
+        return _plain(term) in {_plain(o) for o in (*ontologies, *versions)}
+
+    def _triples(self, path: Path) -> list[Triple]:
+        """The triples of a file, which is parsed once."""
+        if path not in self._parsed:
+            self._parsed[path] = read(self._called.get(path, path), f"t{len(self._parsed)}x")
+        return self._parsed[path]
+
+
+def read(path: Path, label_prefix: str = "") -> list[Triple]:
+    """The triples of a file, its blank nodes named with `label_prefix`. Raises BadFile."""
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise errors.BadFile(f"there is no file {path}") from None
+    except OSError as error:
+        raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
+    return rdf.parse(content, str(path), label_prefix=label_prefix)
+
+
+def _files_of(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    if not (files := _ontologies_in(path)):
+        raise errors.BadFile(f"there is no ontology in the folder {path}")
+    return files
+
+
+def _ontologies_in(folder: Path) -> list[Path]:
+    """The files of a folder that are called like ontologies."""
+    try:
+        return sorted(
+            path
+            for path in folder.iterdir()
+            if path.suffix.lower() in SUFFIXES and path.name != catalogue.FILENAME and path.is_file()
+        )
+    except OSError as error:
+        raise errors.BadFile(f"{folder} cannot be read: {error.strerror}") from None
+
+
+def _plain(term: Term) -> str:
+    """An IRI as it is compared: an ontology's may end in a `#` or `/`, or not."""
+    return v.bare(term).rstrip("#/") if term.startswith("<") else term

@@ -1,0 +1,78 @@
+"""What whoever runs a system should know of its TBox; it is told once."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import suppress
+
+from nodes.kb_node.documents import ontology_files
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.tbox.profile import outside_rl
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from ontology import vocabulary as v
+from schemas.explanations import Triple
+
+_FEW = 5
+_SOMETHING = ("<urn:semmap:something>", v.RDF_TYPE, v.OWL_THING)
+
+
+def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tuple[str, ...]:
+    """One sentence each on what is missing, on what has no effect, and on what makes changes slow."""
+    tbox = list(tbox)
+    said = (
+        missing(ontology_files.missing_imports(tbox)),
+        not_in_space(classes),
+        beyond(outside_rl(filter(is_schema, tbox))),
+        slow(reasoner),
+    )
+    return tuple(filter(None, said))
+
+
+def missing(imports: tuple[str, ...]) -> str:
+    """Of the imports that are missing."""
+    if not imports:
+        return ""
+    few = " and ".join(filter(None, (", ".join(imports[:_FEW]), _more(len(imports) - _FEW))))
+    return f"{_count(len(imports), 'import')} not found, and the TBox holds without: {few}"
+
+
+def not_in_space(classes: ClassTable) -> str:
+    """What it means that no class is known to be spatial."""
+    if classes.spatial:
+        return ""
+    return "no class is known to be of things in space, so nothing of it is an entity with a position"
+
+
+def beyond(kinds: Counter[str]) -> str:
+    """How many axioms say more than the reasoner draws from them, and which kinds."""
+    if not kinds:
+        return ""
+    most = kinds.most_common(_FEW)
+    few = ", ".join(f"{count} {kind}" for kind, count in most)
+    if others := kinds.total() - sum(count for _, count in most):
+        few += f", {others} of other kinds"
+    axioms = "1 axiom is" if kinds.total() == 1 else f"{kinds.total()} axioms are"
+    return f"{axioms} outside OWL 2 RL and inert ({few})"
+
+
+def slow(reasoner: Reasoner) -> str:
+    """What keeps changes from being worked out one by one, and how long one takes."""
+    if (why := reasoner.not_incremental) is None:
+        return ""
+    began_s = time.perf_counter()
+    with suppress(Inconsistent):
+        reasoner.apply(insert=[_SOMETHING])
+        reasoner.apply(delete=[_SOMETHING])
+    each_ms = (time.perf_counter() - began_s) / 2 * 1e3
+    return f"not incremental: {why}, about {each_ms:.0f} ms a change"
+
+
+def _more(count: int) -> str:
+    return f"{count} more" if count > 0 else ""
+
+
+def _count(number: int, what: str) -> str:
+    return f"1 {what} was" if number == 1 else f"{number} {what}s were"

@@ -1,0 +1,217 @@
+"""Ontologies in files, and their imports: as said, from a catalogue, from beside them, or missing."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes.kb_node.documents import ontology_files
+from nodes.kb_node.documents.ontology_files import gather, header, missing_imports
+from ontology import vocabulary as v
+from schemas import errors
+from tests.data import data_folder
+
+PREFIXES = (
+    "@prefix owl: <http://www.w3.org/2002/07/owl#> ."
+    " @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+)
+CATALOGUE = """<?xml version="1.0" encoding="UTF-8" standalone="no"?>
+<catalog prefer="public" xmlns="urn:oasis:names:tc:entity:xmlns:xml:catalog">
+    <uri id="User Entered Import Resolution" name="http://things.org/all" uri="elsewhere/my%20things.ttl"/>
+    <uri id="gone" name="http://things.org/gone" uri="elsewhere/gone.ttl"/>
+    <uri id="far" name="http://things.org/far" uri="http://things.org/far.ttl"/>
+    <group id="Folder Repository, directory=, recursive=true" prefer="public" xml:base="elsewhere/">
+        <uri id="Automatically generated entry" name="http://things.org/cups" uri="cups.ofn"/>
+    </group>
+    <rewriteURI uriStartString="http://things.org/v2/" rewritePrefix="elsewhere/two/"/>
+    <nextCatalog catalog="elsewhere/catalog-v001.xml"/>
+</catalog>
+"""
+
+
+def ontology(iri: str, *imports: str, more: str = "") -> str:
+    said = "".join(f" ; owl:imports <{i}>" for i in imports)
+    return f"{PREFIXES}<{iri}> a owl:Ontology{said} .\n<{iri}#C> a owl:Class .\n{more}"
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(name: str, text: str):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path.resolve()
+
+    return write
+
+
+def classes(gathered):
+    return {
+        v.bare(s).partition("#")[0] for s, p, o in gathered.triples if (p, o) == (v.RDF_TYPE, v.OWL_CLASS)
+    }
+
+
+def test_one_file_is_what_is_in_it(write):
+    path = write("a.ttl", ontology("http://o.org/a"))
+    gathered = gather([path], {})
+    assert (gathered.files, gathered.found, gathered.missing) == ((path,), {}, ())
+    assert len(gathered.triples) == 2
+
+
+@pytest.mark.parametrize(
+    ("file", "iri", "wanted"),
+    [
+        ("other name.ttl", "http://o.org/b", "http://o.org/b"),
+        ("other name.ttl", "http://o.org/b", "http://o.org/b#"),
+        ("other name.ttl", "http://o.org/b/", "http://o.org/b"),
+        ("b.owl", "http://o.org/unlike", "package://robot/owl/b.owl"),
+        ("b.owl", "http://o.org/unlike", "http://o.org/b.owl"),
+        ("b.ttl", "http://o.org/unlike", "http://o.org/b/"),
+        ("b c.ttl", "http://o.org/unlike", "http://o.org/b%20c.ttl"),
+    ],
+)
+def test_an_import_is_found_beside_the_file(write, file, iri, wanted):
+    path, other = write("a.ttl", ontology("http://o.org/a", wanted)), write(file, ontology(iri))
+    gathered = gather([path], {})
+    assert gathered.files == (path, other)
+    assert gathered.found == {wanted: other}
+    assert gathered.missing == missing_imports(gathered.triples) == ()
+    assert header(gathered.triples).imports == (v.iri(iri),)
+
+
+def test_the_name_of_the_ontology_counts_more_than_that_of_the_file(write):
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b.ttl"))
+    write("b.ttl", ontology("http://o.org/something-else"))
+    right = write("c.ttl", ontology("http://o.org/b.ttl"))
+    assert gather([path], {}).files == (path, right)
+
+
+def test_a_version_is_the_ontology_too(write):
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b/1.0"))
+    other = write(
+        "x.ttl", ontology("http://o.org/b", more="<http://o.org/b> owl:versionIRI <http://o.org/b/1.0> .")
+    )
+    gathered = gather([path], {})
+    assert (gathered.files, gathered.missing) == ((path, other), ())
+
+
+def test_imports_go_on_and_may_go_round(write):
+    a = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
+    b = write("b.ttl", ontology("http://o.org/b", "http://o.org/c"))
+    c = write("c.ttl", ontology("http://o.org/c", "http://o.org/a", "http://o.org/b"))
+    gathered = gather([a], {})
+    assert gathered.files == (a, b, c)
+    assert classes(gathered) == {"http://o.org/a", "http://o.org/b", "http://o.org/c"}
+    assert set(gather([c], {}).triples) == set(gathered.triples)
+
+
+def test_what_is_said_comes_first(write):
+    path, beside = write("a.ttl", ontology("http://o.org/a", "http://o.org/b")), "b.ttl"
+    write(beside, ontology("http://o.org/b"))
+    mine = write("mine/b2.ttl", ontology("http://o.org/mine", "http://o.org/d"))
+    further = write("mine/d.ttl", ontology("http://o.org/d"))
+    gathered = gather([path], {"http://o.org/b": mine})
+    assert gathered.files == (path, mine, further)  # and what that one imports is beside it
+    assert gathered.missing == ()
+
+
+def test_a_catalogue_says_where_imports_are(write):
+    all_ = write("elsewhere/my things.ttl", ontology("http://things.org/all", "http://things.org/cups"))
+    cups = write(
+        "elsewhere/cups.ofn",
+        "Ontology(<http://things.org/cups> Declaration(Class(<http://things.org/cups#C>)))",
+    )
+    two = write("elsewhere/two/knives", ontology("http://things.org/v2/knives"))
+    write("catalog-v001.xml", CATALOGUE)
+    write("elsewhere/catalog-v001.xml", CATALOGUE.replace("elsewhere/", "").replace("all", "next"))
+    wanted = [f"http://things.org/{name}" for name in ("all", "cups", "v2/knives", "next", "gone", "far")]
+    path = write("a.ttl", ontology("http://o.org/a", *wanted))
+    gathered = gather([path], {})
+    assert gathered.found == dict(zip(wanted[:4], (all_, cups, two, all_), strict=True))
+    assert gathered.missing == ("http://things.org/far", "http://things.org/gone")
+
+
+def test_a_catalogue_that_is_no_xml_is_told(write):
+    write("catalog-v001.xml", "<catalog>\n<uri>")
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
+    with pytest.raises(errors.BadFile, match=r"catalog-v001.xml is no valid XML catalogue: .*line 2"):
+        gather([path], {})
+
+
+def test_a_missing_import_is_no_refusal(write):
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/nowhere", "http://o.org/b"))
+    write("b.ttl", ontology("http://o.org/b"))
+    gathered = gather([path], {})
+    assert gathered.missing == missing_imports(gathered.triples) == ("http://o.org/nowhere",)
+    assert classes(gathered) == {"http://o.org/a", "http://o.org/b"}
+
+
+def test_broken_files_beside_are_passed_over_and_those_that_are_imported_are_told(write):
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
+    write("other.ttl", "http://o.org/b this is\nno Turtle")
+    assert gather([path], {}).missing == ("http://o.org/b",)
+    write("b.ttl", PREFIXES + "\n<http://o.org/b> a owl:Ontology\n:x")
+    with pytest.raises(errors.BadFile, match=r"b\.ttl is no valid Turtle: .*line 4"):
+        gather([path], {})
+
+
+def test_a_folder_stands_for_the_ontologies_in_it(write, tmp_path):
+    b = write("o/b.ttl", ontology("http://o.org/b", "http://o.org/a"))
+    a = write(
+        "o/a.owx", '<Ontology xmlns="http://www.w3.org/2002/07/owl#" ontologyIRI="http://o.org/a"></Ontology>'
+    )
+    write("o/readme.md", "# read me")
+    write("o/catalog-v001.xml", CATALOGUE)
+    gathered = gather([tmp_path / "o"], {})
+    assert (gathered.files, gathered.missing) == ((a, b), ())
+    write("empty/readme.md", "# nothing")
+    with pytest.raises(errors.BadFile, match=r"there is no ontology in the folder .*empty"):
+        gather([tmp_path / "empty"], {})
+
+
+def test_several_files_know_each_other(write):
+    a = write("one/a.ttl", ontology("http://o.org/a", "http://o.org/b", "http://o.org/c"))
+    b = write("two/x.ttl", ontology("http://o.org/b"))
+    c = write("two/c.ttl", ontology("http://o.org/c"))
+    gathered = gather([a, b], {})
+    assert (gathered.files, gathered.missing) == ((a, b, c), ())
+
+
+def test_blank_nodes_of_two_files_do_not_meet(write):
+    blank = "_:x a owl:Class ; rdfs:comment '{}' ."
+    a = write("a.ttl", ontology("http://o.org/a", "http://o.org/b", more=blank.format("a")))
+    write("b.ttl", ontology("http://o.org/b", more=blank.format("b")))
+    assert len({s for s, _, _ in gather([a], {}).triples if s.startswith("_:")}) == 2
+
+
+def test_a_file_without_a_name_of_its_own_gets_that_of_the_import(write):
+    path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
+    write("b.ttl", "<http://o.org/b#C> a <http://www.w3.org/2002/07/owl#Class> .")
+    gathered = gather([path], {})
+    assert gathered.missing == missing_imports(gathered.triples) == ()
+
+
+@pytest.mark.parametrize("name", ["nowhere.ttl", "."])
+def test_what_cannot_be_read_is_told(tmp_path, name):
+    with pytest.raises(errors.BadFile, match="there is no"):
+        gather([tmp_path / name], {})
+
+
+@pytest.mark.parametrize(
+    ("files", "given", "count", "missing"),
+    [
+        (["soma/SOMA-ALL.owl"], {}, 12, ()),
+        (["soma"], {}, 16, ()),
+        (["knowrob/PR2.owl"], {}, 6, ("http://www.ease-crc.org/ont/SOMA.owl",)),
+        (["knowrob/PR2.owl"], {"http://www.ease-crc.org/ont/SOMA.owl": "soma/SOMA.owl"}, 8, ()),
+        (["knowrob/knowrob.owl", "soma/SOMA-HOME.owl"], {}, 15, ()),
+        (["oro/oro.owl"], {}, 1, ()),
+        (["bfo"], {}, 2, ()),
+    ],
+)
+def test_real_ontologies_come_with_their_imports(files, given, count, missing):
+    folder = data_folder() / "ontologies"
+    if not folder.is_dir():
+        pytest.skip(f"there is no {folder}")
+    gathered = gather([folder / file for file in files], {iri: folder / file for iri, file in given.items()})
+    assert (len(gathered.files), gathered.missing) == (count, missing)
+    assert ontology_files.missing_imports(gathered.triples) == missing

@@ -1,0 +1,44 @@
+import re
+
+from nodes.kb_node.documents import rdf, tbox_notes
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
+from tests.kb_node import home
+
+
+def notes(text: str = ""):
+    tbox = rdf.parse((home.TBOX_TURTLE + text).encode(), "tbox", label_prefix="t")
+    reasoner = Reasoner(tbox)
+    return tbox_notes.notes(tbox, reasoner, ClassTable(reasoner))
+
+
+def test_of_a_plain_tbox_nothing_is_to_be_said():
+    assert notes() == ()
+
+
+def test_missing_imports_are_named():
+    assert notes("<urn:o> a owl:Ontology ; owl:imports <urn:p> , <urn:o> .") == (
+        "1 import was not found, and the TBox holds without: urn:p",
+    )
+    many = " , ".join(f"<urn:p{i}>" for i in range(7))
+    assert notes(f"<urn:o> owl:imports {many} .") == (
+        "7 imports were not found, and the TBox holds without:"
+        " urn:p0, urn:p1, urn:p2, urn:p3, urn:p4 and 2 more",
+    )
+
+
+def test_what_is_outside_owl_2_rl_is_counted():
+    some = "[ a owl:Restriction ; owl:onProperty dm:hasSize ; owl:someValuesFrom dm:Chair ]"
+    assert notes(f"dm:Chair rdfs:subClassOf {some} .") == (
+        "1 axiom is outside OWL 2 RL and inert (1 existential restriction as a superclass)",
+    )
+    (said,) = notes(f"dm:Chair rdfs:subClassOf {some} , {some} . dm:near a owl:ReflexiveProperty .")
+    assert said.startswith("3 axioms are outside OWL 2 RL and inert (2 existential restriction")
+    assert said.endswith("1 reflexive property)")
+
+
+def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():
+    (said,) = notes("owl:inverseOf rdfs:domain dm:Chair .")
+    assert re.fullmatch(
+        r"not incremental: the meaning of OWL's own vocabulary .*, about \d+ ms a change", said
+    )

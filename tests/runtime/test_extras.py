@@ -1,0 +1,108 @@
+"""What is not installed is asked for by name, and what is asked for is what the project's extras install."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+from nodes.runtime import extras
+from schemas import errors
+from schemas.keys import NODES
+from tests.conftest import free_endpoint
+
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+NOT_EVERYWHERE = {"open3d", "open3d-cpu"}
+
+
+def names(requirements):
+    return {re.split(r"[><;\[ ]", requirement)[0] for requirement in requirements}
+
+
+@pytest.fixture
+def without(monkeypatch):
+    def pretend(*modules):
+        found = extras.find_spec
+        monkeypatch.setattr(extras, "find_spec", lambda name: None if name in modules else found(name))
+
+    return pretend
+
+
+def test_the_modules_of_an_extra_are_what_it_installs():
+    distributions = {m: {d.lower() for d in found} for m, found in packages_distributions().items()}
+    for extra, modules in extras.MODULES.items():
+        installed = names(PROJECT["optional-dependencies"][extra]) - NOT_EVERYWHERE
+        assert {name for module in modules for name in distributions[module] & installed} == installed
+        assert all(distributions[module] & installed for module in modules)
+
+
+def test_all_is_every_extra():
+    assert PROJECT["optional-dependencies"]["all"] == [f"semmap[{','.join(sorted(extras.MODULES))}]"]
+
+
+def test_every_node_has_an_extra():
+    assert set(extras.OF_NODE) == set(NODES)
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES)
+
+
+def test_with_everything_nothing_is_missing():
+    assert extras.missing(extras.MODULES) == []
+    extras.require_nodes(NODES)
+
+
+def test_what_is_missing_is_said_with_how_to_install_it(without):
+    without("mujoco", "rerun")
+    with pytest.raises(errors.BadRequest) as caught:
+        extras.require("semmap replay", "record")
+    assert caught.value.text == "semmap replay needs more than is installed: pip install 'semmap[record]'"
+    assert caught.value.exit_status == 2
+
+
+def test_up_says_how_to_do_without(without):
+    without("mujoco", "rerun")
+    with pytest.raises(errors.BadRequest) as caught:
+        extras.require_nodes((*NODES[:3], "recorder"))
+    assert caught.value.text == (
+        "semmap up needs more than is installed: pip install 'semmap[sim,record]',"
+        " or go without: semmap up --no-sim --no-record"
+    )
+    extras.require_nodes(("coordinator", "kb_node"))
+
+
+def test_without_the_knowledge_base_there_is_no_way_around(without):
+    without("supervisor")
+    with pytest.raises(errors.BadRequest, match=r"pip install 'semmap\[kb\]'$"):
+        extras.require_nodes(("coordinator", "kb_node"))
+
+
+@pytest.mark.parametrize(
+    ("words", "module", "extra"),
+    [
+        (["up", "--listen", free_endpoint()], "mujoco", "sim"),
+        (["node", "recorder"], "rerun", "record"),
+        (["replay", "x.rrd"], "rerun", "record"),
+        (["perceive", "x.pcd"], "scipy", "perception"),
+        (["repair"], "pyoxigraph", "kb"),
+        (["down"], "supervisor", "kb"),
+    ],
+)
+def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp_path, words, module, extra):
+    from nodes.extern.cli.app import execute
+
+    without(module)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    assert execute(words) == 2
+    said = capsys.readouterr().err.strip()
+    assert f"pip install 'semmap[{extra}]'" in said
+    assert len(said.splitlines()) == 1
+
+
+def test_names_are_guessed_without_rapidfuzz_too(monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "rapidfuzz", None)
+    assert errors.did_you_mean("lst", ["list", "get", "add"]) == "; did you mean list?"
+    assert errors.did_you_mean("xyzzy", ["list", "get", "add"]) == ""

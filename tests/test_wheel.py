@@ -1,0 +1,125 @@
+"""The wheel: what is in it, and that a system runs from it where there is no checkout."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from benchmarks.install import built_wheel, environment
+from tests.conftest import free_endpoint
+
+ROOT = Path(__file__).parents[1]
+DATA = {
+    "nodes/perception_node/recognition/recognition.npz",
+    "nodes/perception_node/segmentation/segmentation.npz",
+    "nodes/py.typed",
+    "ontology/empty_world.xml",
+    "ontology/flat.ttl",
+    "ontology/flat_world.xml",
+    "ontology/household.ttl",
+    "ontology/py.typed",
+    "schemas/py.typed",
+    "schemas/scene.schema.json",
+    "semmap/py.typed",
+}
+CLIENT = """
+import sys, semmap
+assert "site-packages" in semmap.__file__, semmap.__file__
+with semmap.connect(sys.argv[1]) as client:
+    print(client.add("Cup", "cup77", at=(8.0, 2.2, 0.76), wait="--no-sim" not in sys.argv).text)
+    print(sorted(client.get("cup77").types))
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    return built_wheel(tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def files(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_it_has_the_four_packages_and_nothing_else(files):
+    assert {name.split("/")[0] for name in files if ".dist-info/" not in name} == {
+        "nodes",
+        "ontology",
+        "schemas",
+        "semmap",
+    }
+
+
+def test_it_has_their_data(files):
+    assert set(files) >= DATA
+
+
+def test_it_has_every_module_but_the_trainers(files):
+    for package in ("nodes", "ontology", "schemas", "semmap"):
+        for path in (ROOT / package).rglob("*"):
+            name = str(path.relative_to(ROOT))
+            if path.is_file() and "__pycache__" not in name and not name.startswith("nodes/training/"):
+                assert name in files, name
+    assert not [name for name in files if name.startswith(("nodes/training", "benchmarks", "tests"))]
+
+
+def test_nothing_in_it_needs_what_is_not_in_it(files):
+    for name, content in files.items():
+        if name.endswith(".py"):
+            for missing in (b"nodes.training", b"from benchmarks", b"from tests", b"from demo"):
+                assert missing not in content, name
+
+
+def test_it_names_its_commands_and_codecs(files):
+    (name,) = (name for name in files if name.endswith("entry_points.txt"))
+    said = files[name].decode()
+    assert "semmap = nodes.extern.cli.app:main" in said
+    assert said.count("msgpack = nodes.extern.zenoh_codec:") == 2
+
+
+def test_a_client_and_a_kb_need_only_their_extras(files):
+    (name,) = (name for name in files if name.endswith("METADATA"))
+    required = [line for line in files[name].decode().splitlines() if line.startswith("Requires-Dist:")]
+    base = {line.split()[1].split(">")[0] for line in required if "extra ==" not in line}
+    assert base == {"click", "eclipse-zenoh", "msgpack", "msgspec", "platformdirs", "rich"}
+
+
+def run_a_system(python: Path, folder: Path, *words: str) -> str:
+    """What a client prints before `semmap up WORDS`, both from the environment of `python`."""
+    endpoint = free_endpoint()
+    away = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    up = [python.with_name("semmap"), "up", "--data", folder / "map", "--listen", endpoint, *words]
+    with subprocess.Popen(up, cwd=folder, env=away, stdout=subprocess.PIPE, text=True) as system:
+        try:
+            assert any(line.startswith("stop ") for line in system.stdout), "it did not start"
+            command = [python, "-P", "-c", CLIENT, endpoint, *words]
+            return subprocess.check_output(command, cwd=folder, env=away, text=True)
+        finally:
+            system.send_signal(signal.SIGINT)
+            system.communicate(timeout=30)
+
+
+@pytest.mark.long
+def test_the_knowledge_base_runs_from_it_with_its_extra_alone(wheel, tmp_path):
+    python = environment(tmp_path / "env", f"semmap[kb] @ {wheel.as_uri()}")
+    said = run_a_system(python, tmp_path, "--no-sim", "--no-record")
+    assert "added Cup cup77" in said
+    assert "Dishware" in said
+    refused = subprocess.run([python.with_name("semmap"), "up"], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert "pip install 'semmap[sim,record]', or go without: semmap up --no-sim --no-record" in refused.stderr
+
+
+@pytest.mark.long
+def test_all_of_it_runs_from_it_and_so_does_the_tour(wheel, tmp_path):
+    python = environment(tmp_path / "env", f"semmap[all] @ {wheel.as_uri()}", "zenoh-cli")
+    assert "body: present" in run_a_system(python, tmp_path)
+    environ = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    tour = subprocess.run([python, "-m", "demo.tour"], cwd=ROOT, env=environ, capture_output=True, text=True)
+    assert tour.returncode == 0, tour.stdout[-3000:] + tour.stderr[-1000:]
