@@ -103,6 +103,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     replace: bool
     skip_unknown: bool
     strict: bool = False
+    dry_run: bool = False
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -116,6 +117,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     reason: str = ""
     content: bytes
     filename: str
+    dry_run: bool = False
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -130,7 +132,7 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     where: Where | None = None
 
 
-class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"
@@ -139,6 +141,7 @@ class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=T
     agent: str = ""
     reason: str = ""
     commit: int | None = None
+    dry_run: bool = False
 
 
 BRIDGE: dict[str, type[Call]] = {

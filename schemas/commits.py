@@ -142,6 +142,20 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
+class Trial(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a dry run would commit: how many triples, and what would follow and no longer follow.
+
+    The latter in words, of the first entities that it touches.
+    """
+
+    inserted: int
+    retracted: int
+    changed: tuple[str, ...]
+    """The names of the entities that it would change, all of them."""
+    gained: tuple[str, ...]
+    lost: tuple[str, ...]
+
+
 class Effects(Struct, frozen=True, kw_only=True):
     """What became of the entities: all that a follower of the map needs of a commit.
 
@@ -156,6 +170,8 @@ class Effects(Struct, frozen=True, kw_only=True):
     abridged: Extent | None = None
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+    trial: Trial | None = None
+    """Of a dry run: nothing was done."""
 
     @classmethod
     def of(cls, commit: Commit) -> Effects:
@@ -209,6 +225,8 @@ class Transaction(
     require: tuple[Triple, ...] = ()
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
+    dry_run: bool = False
+    """Answered with what it would do, and not done."""
 
 
 MANY_ENTITIES = 10_000

@@ -180,7 +180,7 @@ class Coordinator:
     def _with_body(self, command: c.Add | c.Update) -> Future[Changed]:
         """The reply waits for the body if that is wanted."""
         made = self._noted(command)
-        if not command.wait:
+        if not command.wait or command.dry_run:
             return made
         future: Future[Changed] = Future()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))

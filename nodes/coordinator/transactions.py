@@ -30,6 +30,7 @@ def transaction(
         remove=tuple(remove),
         edit=tuple(edit),
         add=tuple(add),
+        dry_run=getattr(command, "dry_run", False),
     )
 
 

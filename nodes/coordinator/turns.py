@@ -112,7 +112,9 @@ class Turns:
 
 
 def _entity(change: Change) -> str | None:
-    """The one that it is about; None when it depends on others."""
+    """The one that it is about; None when it depends on others, or is to go alone."""
+    if change.dry_run:
+        return None
     if isinstance(change, Add):
         return change.name if change.at is not None else None
     return change.name if isinstance(change, (Update, Set, Unset)) else None

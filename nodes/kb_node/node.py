@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, undo
+from nodes.kb_node import answers, gc_pause, trials, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
@@ -129,10 +129,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return _effects(self._commit(transaction))
+        return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
 
-    def _commit(self, transaction: Transaction) -> Commit | None:
-        return self._published_if_new(lambda: self.map.commit(transaction))
+    def _changed(self, change: Callable[[], Commit | None], dry_run: bool) -> Effects | None:
+        """What `change` commits, and publishes; or would commit, in a dry run."""
+        return trials.of(self.map, change) if dry_run else _effects(self._published_if_new(change))
 
     def _published_if_new(self, change: Callable[[], C]) -> C:
         """What `change` commits; published unless it is the answer to an old command."""
@@ -166,6 +167,8 @@ class KnowledgeBase:
         """
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)
+            if transaction.dry_run:
+                raise errors.BadRequest("a dry run goes alone")
         before = self.map.seq
         results = self.map.commit_together(several.transactions)
         for error in results:
@@ -188,14 +191,21 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
-            commit = self._commit(transaction)
-            names = () if commit is None else tuple(entity.name for entity in commit.changed)
+            names, effects = self._loaded(transaction, load.dry_run)
             return Loaded(
-                commit=_effects(commit),
+                commit=effects,
                 names=names,
                 skipped=tuple(sorted_out.skipped),
                 notes=tuple(sorted_out.notes),
             )
+
+    def _loaded(self, transaction: Transaction, dry_run: bool) -> tuple[tuple[str, ...], Effects | None]:
+        """What a load commits, with the names of all entities that it changes, or would change."""
+        if dry_run:
+            tried = trials.of(self.map, lambda: self.map.commit(transaction))
+            return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
+        commit = self._published_if_new(lambda: self.map.commit(transaction))
+        return (() if commit is None else tuple(e.name for e in commit.changed), _effects(commit))
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -308,9 +318,9 @@ class KnowledgeBase:
             return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
-    def on_undo(self, command: TakeBack) -> Effects:
+    def on_undo(self, command: TakeBack) -> Effects | None:
         """A commit that takes back another one."""
-        return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
+        return self._changed(lambda: undo.undo(self.map, self._journal, command), command.dry_run)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
@@ -321,8 +331,8 @@ class KnowledgeBase:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=_effects(commit), skipped=(), notes=self._notes())
         try:
-            commit = self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
-            return Loaded(commit=Effects.of(commit), skipped=(), notes=self._notes())
+            effects = self._changed(lambda: self.map.replace_tbox(transaction, tbox), load.dry_run)
+            return Loaded(commit=effects, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"

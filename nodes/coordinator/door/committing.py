@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import uuid
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from msgspec import structs
 
@@ -64,7 +64,9 @@ def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
 
 def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
-    if commit is not None and not view.take(commit) and commit.abridged is not None:
+    if commit is None or commit.trial is not None:
+        return commit
+    if not view.take(commit) and commit.abridged is not None:
         pages = view.begin_pages()
         while not pages.are_complete:
             pages.take((yield from ask(pages.query)))
@@ -75,7 +77,7 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
 def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
     yield from taken(view, commit)
-    if commit.tbox:
+    if commit.tbox and commit.trial is None:
         view.classes = ClassNames((yield from ask(Classes())))
 
 
@@ -84,6 +86,10 @@ def new_id() -> str:
     return uuid.uuid4().hex
 
 
-def seq(commit: Effects | None) -> int | None:
-    """Its number."""
-    return None if commit is None else commit.seq
+def changed(commit: Effects | None, text: str, **fields: Any) -> Changed:
+    """The reply to a command that has made `commit`, or would have; `fields` are those of `Changed`."""
+    if commit is None:
+        return Changed(commit=None, text=text, **fields)
+    if (trial := commit.trial) is None:
+        return Changed(commit=commit.seq, text=text, **fields)
+    return Changed(commit=None, text=text, follows=trial.gained, no_longer_follows=trial.lost, **fields)

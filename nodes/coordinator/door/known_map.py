@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
@@ -16,6 +18,14 @@ class KnownMap(map_replica.MapReplica[Effects]):
         super().__init__()
         self.classes = ClassNames()
         self.doubted = False
+        self._places: dict[str, Entity] | None = None
+
+    @property
+    def places(self) -> Collection[Entity]:
+        """The entities that are places, in no order."""
+        if self._places is None:
+            self._places = {name: entity for name, entity in self.entities.items() if entity.place}
+        return self._places.values()
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -37,8 +47,17 @@ class KnownMap(map_replica.MapReplica[Effects]):
         """Take over a snapshot, unless it is older than what is known and not doubted."""
         if snapshot.seq >= self.seq or self.doubted:
             self.doubted = False
+            self._places = None
             super().begin(snapshot)
 
     def take(self, commit: Effects) -> bool:
         """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
-        return super().take(commit) and not self.doubted
+        taken = super().take(commit)
+        if self._places is not None:
+            for name in commit.names:
+                entity = self.entities.get(name)
+                if entity is not None and entity.place:
+                    self._places[name] = entity
+                else:
+                    self._places.pop(name, None)
+        return taken and not self.doubted

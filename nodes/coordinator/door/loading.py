@@ -9,7 +9,7 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import commit, once, seq, taken, taken_with_classes
+from nodes.coordinator.door.committing import changed, commit, once, taken, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
@@ -74,6 +74,7 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         replace=command.replace,
         skip_unknown=command.skip_unknown,
         strict=command.strict,
+        dry_run=command.dry_run,
     )
     loaded = yield from ask(document)
     commit = yield from taken(view, loaded.commit)
@@ -94,6 +95,7 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         reason=command.reason or f"load the TBox {command.filename}",
         content=command.content,
         filename=command.filename,
+        dry_run=command.dry_run,
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:
@@ -101,7 +103,9 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
-    return Changed(commit=commit.seq, text=text, names=commit.names, notes=loaded.notes)
+    if commit.trial is not None:
+        text = f"the TBox of {command.filename or 'the file'} takes the place of the present one"
+    return changed(commit, text, names=commit.names, notes=loaded.notes)
 
 
 def _sort_out(
@@ -137,4 +141,4 @@ def _loaded(
         text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
     if skipped:
         text += f", left out {len(skipped)}"
-    return Changed(commit=seq(commit), text=text, names=names, skipped=skipped, notes=notes)
+    return changed(commit, text, names=names, skipped=skipped, notes=notes)

@@ -49,7 +49,8 @@ def last_seen(client: Client, name: str, format: str) -> None:
 
 @click.command()
 @click.argument("commit", type=int, required=False)
+@click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
 @talks
-def undo(client: Client, commit: int | None) -> None:
+def undo(client: Client, commit: int | None, dry_run: bool) -> None:
     """Take back a commit, unless later ones rest on it; without one, the newest that a client asked for."""
-    print_lines(show.changed(client.undo(commit)))
+    print_lines(show.changed(client.undo(commit, dry_run=dry_run)))
