@@ -17,8 +17,7 @@ import pyoxigraph
 from msgspec import Struct
 from msgspec.json import decode
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.entailment import entails
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, entails
 from schemas.explanations import Triple
 
 

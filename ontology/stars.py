@@ -59,11 +59,12 @@ def coordinates(node: Term, pose: Pose) -> list[Triple]:
 
 def size(entity: Term, node: Term, size_m: Size) -> list[Triple]:
     """Extent along the entity's own axes."""
-    return [
-        (entity, v.HAS_SIZE, node),
-        (node, v.RDF_TYPE, v.THREE_DIM_SIZE),
-        *_numbers(node, v.SIZE_XYZ, size_m),
-    ]
+    return [(entity, v.HAS_SIZE, node), (node, v.RDF_TYPE, v.THREE_DIM_SIZE), *extent(node, size_m)]
+
+
+def extent(node: Term, size_m: Size) -> list[Triple]:
+    """The numbers of a size."""
+    return _numbers(node, v.SIZE_XYZ, size_m)
 
 
 def preferred_reference(entity: Term, node: Term, text: str) -> list[Triple]:

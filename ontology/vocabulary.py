@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import re
 from typing import Final
+from urllib.parse import unquote
 
+from schemas.entities import composed
 from schemas.explanations import Term, Triple
 
 TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
@@ -46,11 +48,17 @@ def bare(term: Term) -> str:
 
 
 def local_name(term: Term) -> str:
-    """What follows the last `#`, or else the last `/`, of an IRI term; any other term as it is."""
+    """What follows the last `#`, or else the last `/` or `:`, of an IRI term; any other term as it is."""
     if not term.startswith("<"):
         return term
     text = term[1:-1]
-    return text.rpartition("#" if "#" in text else "/")[2]
+    return text.rpartition("#" if "#" in text else "/" if "/" in text else ":")[2]
+
+
+def entity_name(term: Term) -> str:
+    """The name of an individual with this IRI: its local name, composed (NFC) and without percent escapes."""
+    name = local_name(term)
+    return composed(unquote(name) if "%" in name else name)
 
 
 _ESCAPES: Final = {"\t": "\\t", "\b": "\\b", "\n": "\\n", "\r": "\\r", "\f": "\\f", '"': '\\"', "\\": "\\\\"}
@@ -176,6 +184,8 @@ IS_LOCATED_IN: Final = dm("isLocatedIn")
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
 """Annotation of an entity: what perception sees against what the map says of it."""
 
+SPATIAL: Final = dm("spatial")
+"""Annotation of a class: true for a root of the classes of things in space."""
 MODEL: Final = dm("model")
 """Annotation of a class: the name or file of its body model."""
 FIXED: Final = dm("fixed")
@@ -197,6 +207,9 @@ RDFS_SUB_CLASS_OF: Final = iri(f"{RDFS}subClassOf")
 RDFS_SUB_PROPERTY_OF: Final = iri(f"{RDFS}subPropertyOf")
 RDFS_DOMAIN: Final = iri(f"{RDFS}domain")
 RDFS_RANGE: Final = iri(f"{RDFS}range")
+
+SKOS_PREF_LABEL: Final = iri("http://www.w3.org/2004/02/skos/core#prefLabel")
+SKOS_ALT_LABEL: Final = iri("http://www.w3.org/2004/02/skos/core#altLabel")
 
 OWL_CLASS: Final = iri(f"{OWL}Class")
 OWL_THING: Final = iri(f"{OWL}Thing")

@@ -10,6 +10,7 @@ from schemas.calls import Call
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -149,21 +150,8 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(
-            Classes,
-            Properties,
-            Get,
-            Check,
-            Infer,
-            Explain,
-            Export,
-            History,
-            LastSeen,
-            Relations,
-            Sparql,
-            Watch,
-            Renew,
-        ),
+        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Sparql, Watch, Renew),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

@@ -15,6 +15,8 @@ from schemas.wording import sentence
 
 T = TypeVar("T")
 
+MALFORMED: Final = "malformed message: "
+"""How an error about a message that cannot be read begins."""
 DENSE_FROM: Final = 64 << 20
 """Bytes; Zenoh carries messages of up to 256 MB, and a map of a million triples is more."""
 LARGEST: Final = 4 << 30
@@ -56,7 +58,7 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
         return decoder.decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+        raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
 
 
 def _unfolded(payload: bytes) -> bytes:
@@ -64,10 +66,10 @@ def _unfolded(payload: bytes) -> bytes:
     try:
         content = unfolding.decompress(payload, LARGEST)
     except zlib.error as error:
-        raise BadRequest(f"malformed message: it is no valid MessagePack, JSON or zlib: {error}") from None
+        raise BadRequest(f"{MALFORMED}it is no valid MessagePack, JSON or zlib: {error}") from None
     if not unfolding.eof:
         reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
-        raise BadRequest(f"malformed message: it {reason}")
+        raise BadRequest(f"{MALFORMED}it {reason}")
     return content
 
 
@@ -86,7 +88,7 @@ def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
     try:
         return msgspec.convert(values, type=kind, strict=strict)
     except msgspec.MsgspecError as error:
-        raise BadRequest(f"malformed message: {sentence(error, kind)}") from None
+        raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
 
 
 def looks_like_json(payload: bytes) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, field
+from msgspec import Meta, field, structs
 
 from schemas.calls import Call, R
 from schemas.entities import (
@@ -26,6 +26,7 @@ from schemas.entities import (
     Text,
     Value,
     Vector,
+    composed,
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
@@ -38,6 +39,7 @@ from schemas.replies import (
     Inferred,
     LoggedCommit,
     Moved,
+    Possible,
     Sighting,
     SystemStatus,
 )
@@ -62,6 +64,11 @@ class Command(
     source: Source = "operator"
     agent: str = ""
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Names are compared in composed form, however they were typed."""
+        if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
+            structs.force_setattr(self, "name", composed(name))
 
 
 # To change
@@ -148,6 +155,10 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
     names: tuple[str, ...]
     dry_run: bool = False
+
+    def __post_init__(self) -> None:
+        """As for `name`."""
+        structs.force_setattr(self, "names", tuple(map(composed, self.names)))
 
 
 class Clear(Command[Changed], frozen=True, tag="clear"):
@@ -238,7 +249,24 @@ class Infer(Command[Inferred], frozen=True, tag="infer"):
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
-    """Why a triple holds: `name`, `predicate` and `value` are local names, IRIs in <> or literals."""
+    """Why a triple holds, or with `negated` why it cannot.
+
+    `name`, `predicate` and `value` are local names, IRIs in <> or literals. What no rule derives is decided
+    by refutation: two are different if their being the same would be a contradiction.
+    """
+
+    name: str
+    predicate: str
+    value: str
+    negated: bool = False
+
+
+class Could(Command[Possible], frozen=True, tag="could"):
+    """Would it be consistent with the map that a triple holds, and if not, why not? Nothing is changed.
+
+    `name`, `predicate` and `value` are written as for `Explain`; the value of a data property is typed by the
+    property's range.
+    """
 
     name: str
     predicate: str

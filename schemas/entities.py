@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Container
 from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, field
 
-NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_.-]{0,127}$(?!\n)"
-"""A name is the local part of an IRI, a chunk of a key and the name of a body, so it is kept this plain.
-(Alone, `$` would let a line end pass.)"""
+_MARKS = (
+    "\u0300-\u036f\u0483-\u0487\u0591-\u05bd\u05bf\u05c1\u05c2\u05c4\u05c5\u05c7\u0610-\u061a\u064b-\u065f\u0670"
+    "\u06d6-\u06dc\u06df-\u06e4\u06e7\u06e8\u06ea-\u06ed\u0711\u0730-\u074a\u07a6-\u07b0\u0900-\u0963\u0971-\u0e3a"
+    "\u0e40-\u0e4e\u0e81-\u0ece\u0f18\u0f19\u0f35\u0f37\u0f39\u0f3e-\u0f84\u0f86-\u0fbc\u1000-\u1049\u1050-\u109d"
+    "\u1780-\u17d3\u17dd\u3099\u309a"
+)
+"""Vowel signs and the like, without which words of many scripts cannot be written; `\\w` lacks them."""
+
+NAME_PATTERN = rf"^[^\W\d][\w.\-{_MARKS}]{{0,127}}$(?!\n)"
+"""A name is the local part of an IRI, a chunk of a key and the name of a body: letters of any script, digits,
+`_`, `.` and `-`, beginning with a letter or `_`. (Alone, `$` would let a line end pass.)"""
 
 REACH_M = 10_000.0
 """Coordinates beyond this are taken for a mistake."""
@@ -66,13 +75,18 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def free_name(class_name: str, taken: Container[str]) -> str:
-    """The class in lower case and the first number that is free: `chair1`."""
-    stem = re.sub(r"[^a-z0-9_.-]", "", class_name.lower())
+    """The class in lower case, without a prefix, and the first number that is free: `chair1`."""
+    stem = re.sub(r"[^\w.-]", "", composed(class_name.rpartition(":")[2].lower()))[:120]
     stem = stem if stem[:1].isalpha() else f"_{stem}"
     number = 1
     while f"{stem}{number}" in taken:
         number += 1
     return f"{stem}{number}"
+
+
+def composed(name: str) -> str:
+    """A name in Unicode's composed form (NFC), in which names are kept and compared."""
+    return name if name.isascii() else unicodedata.normalize("NFC", name)
 
 
 def orientation_from_yaw(yaw_rad: float) -> Quaternion:
@@ -165,14 +179,21 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One named class of the TBox, as commands need it."""
+    """One named class of the TBox, as commands need it.
+
+    `name` is the local name of its IRI, or `prefixed` where other classes share that.
+    """
 
     name: str
     iri: str
+    prefixed: str = ""
+    """The name with its prefix: `dm:Chair`. It always means this class."""
     parents: tuple[str, ...]
     ancestors: tuple[str, ...]
     labels: dict[str, str]
-    """Language tag (or "") to text."""
+    """Language tag (or "") to text, one a language."""
+    also: tuple[str, ...] = ()
+    """Its other labels."""
     comment: str = ""
     spatial: bool
     """Its individuals are in space: they may be added."""

@@ -144,22 +144,25 @@ _MANY = 30
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
-    names = _nearest(word, list(known))
-    if not names:
-        return ""
-    return "; did you mean " + " or ".join(filter(None, (", ".join(names[:-1]), names[-1]))) + "?"
+    names = nearest(word, known)
+    return f"; did you mean {enumerated(names)}?" if names else ""
 
 
-def _nearest(word: str, known: list[str]) -> list[str]:
+def nearest(word: str, known: Iterable[str]) -> list[str]:
     """Up to three of `known`, nearest first. A client, which knows few names, may be without RapidFuzz."""
     try:
         from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
     except ImportError:
-        return difflib.get_close_matches(word, known)
+        return difflib.get_close_matches(word, list(known))
     near = process.extract(
-        word, known, scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
     )
     return [name for name, _, _ in near]
+
+
+def enumerated(names: Sequence[str]) -> str:
+    """`A, B or C`."""
+    return " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:

@@ -20,7 +20,7 @@ class Step(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """None when the rule concludes that the map is inconsistent."""
 
 
-class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """A proof: `steps` lead from the asserted triples in `support` (a minimal set) to `conclusion`.
 
     `steps` are in order: each premise is in `support` or is the conclusion of an earlier step.
@@ -28,8 +28,14 @@ class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """
 
     conclusion: Triple | None
-    """None for an inconsistency."""
+    """None for an inconsistency, and for what no single triple says."""
     support: tuple[Triple, ...]
     steps: tuple[Step, ...]
     text: str
-    """The same in one sentence, with names instead of IRIs."""
+    """The same in one sentence, with labels instead of IRIs."""
+    supposed: Triple | None = None
+    """For a proof by refutation, what cannot be: with it, `support` is contradictory, as `steps` show.
+
+    `conclusion` is then what follows from that, if a triple says it, or else None. Each premise is also this
+    triple, then.
+    """

@@ -5,8 +5,10 @@ A prefix for one robot (`robot1/semmap/...`) is Zenoh's own `namespace` setting.
 
 from __future__ import annotations
 
-from functools import cache
+import re
+from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple
+from urllib.parse import quote, unquote
 
 from schemas.commits import Commit, Effects
 from schemas.entities import Entity
@@ -17,6 +19,7 @@ from schemas.scenes import Poses
 from schemas.sparql import RowsChanged
 
 ROOT = "semmap"
+_RESERVED = re.compile(r"[/*$?#%@\s]")
 
 # Queries: <prefix>/<verb>
 CMD = f"{ROOT}/cmd"
@@ -59,7 +62,19 @@ TOPICS = (ACK, COMMIT, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH
 
 def entity_key(class_name: str, name: str) -> str:
     """Where the state of one entity is published under one of its classes."""
-    return f"{ROOT}/jena/entity/{class_name}/{name}"
+    return f"{ROOT}/jena/entity/{_chunk(class_name)}/{_chunk(name)}"
+
+
+def of_entity(key: str) -> tuple[str, str]:
+    """The class and the name in the key of an entity."""
+    class_chunk, name_chunk = key.split("/")[-2:]
+    return unquote(class_chunk), unquote(name_chunk)
+
+
+@lru_cache(10_000)
+def _chunk(text: str) -> str:
+    """`text` as one chunk of a key: what means something in a key is percent-escaped, letters are not."""
+    return _RESERVED.sub(lambda match: quote(match[0], safe=""), text)
 
 
 def query_key(watch: str) -> str:

@@ -40,6 +40,16 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     explanation: Explanation | None = None
 
 
+class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Whether something could be without contradicting the map."""
+
+    possible: bool
+    text: str
+    """The answer in one sentence; if it could not be, why not."""
+    explanation: Explanation | None = None
+    """Why it could not be."""
+
+
 class Inferred(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Triples that follow, grouped by subject in the order of names."""
 
@@ -72,7 +82,7 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The whole system."""
+    """The whole system. `version` is that of semmap in the coordinator."""
 
     truth: str
     commit: int
@@ -82,6 +92,7 @@ class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Map and scene are the same, to within the thresholds; None when no simulator runs."""
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
+    version: str = ""
 
 
 class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -15,6 +15,7 @@ from msgspec import Meta, Struct, field
 
 from schemas import codec
 from schemas.entities import (
+    NAME_PATTERN,
     Angle,
     Name,
     Pose,
@@ -22,6 +23,7 @@ from schemas.entities import (
     Size,
     Text,
     Vector,
+    composed,
     orientation_from_yaw,
     require_unit,
 )
@@ -48,6 +50,8 @@ class Described(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     """Affordances, by their names in the TBox: `containing`, `supporting`, ..."""
 
     def __post_init__(self) -> None:
+        if self.name is not None and not self.name.isascii():
+            msgspec.structs.force_setattr(self, "name", composed(self.name))
         if self.orientation is not None:
             if self.yaw is not None:
                 raise ValueError("give yaw or orientation, not both")
@@ -107,6 +111,8 @@ def pose_of(
 
 
 _BOM = b"\xef\xbb\xbf"
+_NAME_IN_JSON_SCHEMA = r"^[\p{L}_][\p{L}\p{M}\p{N}_.-]{0,127}$"
+"""NAME_PATTERN for editors, whose regular expressions are those of JavaScript."""
 _NO_JSON = re.compile(rb"[\[:,]\s*-?(?:NaN|Infinity)\b")
 
 
@@ -138,7 +144,8 @@ def read(content: bytes, filename: str) -> SceneFile:
 def json_schema() -> str:
     """The JSON Schema of scene files."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "semmap scene"}
-    return json.dumps({**schema, **msgspec.json.schema(SceneFile)}, indent=2) + "\n"
+    text = json.dumps({**schema, **msgspec.json.schema(SceneFile)}, indent=2)
+    return text.replace(json.dumps(NAME_PATTERN), json.dumps(_NAME_IN_JSON_SCHEMA)) + "\n"
 
 
 if __name__ == "__main__":

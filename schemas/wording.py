@@ -119,8 +119,7 @@ def _describe(info: inspect.Type | None) -> str:
         case inspect.FloatType() | inspect.IntType():
             return ("a number" if isinstance(info, inspect.FloatType) else "a whole number") + _bounds(info)
         case inspect.StrType(pattern=pattern) if pattern == NAME_PATTERN:
-            signs = "letters a to z, digits, '_', '.' and '-'"
-            return f"a valid name: {signs}, at most 128, not beginning with a digit"
+            return "a valid name: up to 128 letters, digits, '_', '.' and '-', beginning with a letter or '_'"
         case inspect.StrType(min_length=least, max_length=most):
             return f"a text{f' of {least} to {most} characters' if least and most else ''}"
         case inspect.BoolType():

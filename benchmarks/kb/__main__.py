@@ -13,25 +13,33 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TypeVar
 
-from benchmarks.kb import disk, engine, table, wire
+from benchmarks.kb import disk, engine, scale, table, wire
 from benchmarks.table import Row, lines
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
+LARGE = "scale"
+"""A part that is measured when it is asked for: it takes minutes and gigabytes."""
+CORE_SIZES, LARGE_SIZES = "10,100,1000,10000,100000", "10000,100000"
 T = TypeVar("T")
 
 
 def arguments() -> argparse.Namespace:
     """What the command line says."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.kb", description="Speed and memory.")
-    parser.add_argument("--sizes", default="10,100,1000,10000,100000", help="entities in the engine alone")
+    parser.add_argument(
+        "--sizes",
+        nargs="+",
+        help=f"entities in the engine alone ({CORE_SIZES}), or in {LARGE} ({LARGE_SIZES})",
+    )
     parser.add_argument("--entities", type=int, default=10_000, help="in the node, on disk and over Zenoh")
     parser.add_argument("--sim-entities", type=int, default=300, help="with bodies in the simulator")
     parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, LARGE))}")
     parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
+    words.sizes = ",".join(words.sizes) if words.sizes else None
     if words.quick:
         words.sizes, words.entities, words.sim_entities, words.repeat = "10,100,1000", 1000, 30, 100
     return words
@@ -56,7 +64,9 @@ def main() -> None:
                 seen = wire.measure(Path(folder), size, sim=part == "sim", repeat=words.repeat)
             rows += table.of_wire(seen)
             report[part] = seen._asdict()
-    report["rows"] = [{**row._asdict(), "met": row.met} for row in rows]
+    if LARGE in parts:
+        rows += _large(words, report)
+    report["rows"] = [{**row._asdict(), "now": row.value, "met": row.met} for row in rows]
     print(lines(rows))
     print("load average: {:.1f} before, {:.1f} now".format(report["load_average"][0], os.getloadavg()[0]))
     if words.json_file:
@@ -65,7 +75,9 @@ def main() -> None:
 
 def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool) -> list[Row]:
     """The engine at each size, a crowded room, and if wanted owlrl on a map of 100."""
-    engines = [_alone(engine.measure, int(size), words.repeat) for size in words.sizes.split(",")]
+    engines = [
+        _alone(engine.measure, int(size), words.repeat) for size in (words.sizes or CORE_SIZES).split(",")
+    ]
     add, remove = _alone(engine.room, words.repeat)
     rows = table.of_engine(engines) + table.of_room(add, remove)
     report["core"] = [e._asdict() for e in engines]
@@ -81,6 +93,17 @@ def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool
         rows += table.of_owlrl(figures, alike)
         report["owlrl_add_check"] = [{"entities": size, **figures}]
     return rows
+
+
+def _large(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
+    """Whole systems of growing size."""
+    found = []
+    for size in map(int, (words.sizes or LARGE_SIZES).split(",")):
+        with tempfile.TemporaryDirectory(dir=words.folder) as folder:
+            found.append(scale.measure(Path(folder), size))
+        print(found[-1], flush=True)
+    report[LARGE] = [one._asdict() for one in found]
+    return table.of_scale(found)
 
 
 def _alone(function: Callable[..., T], *values: Any) -> T:

@@ -39,10 +39,19 @@ def things(count: int) -> Iterator[Thing]:
         return round(random_.uniform(low, high), 3)
 
     for i in range(count):
-        class_name = RARE_CLASS if i % RARE_EVERY == 0 else CLASSES[i % len(CLASSES)]
+        class_name = _class(i)
         at = (i % 1000 + number(0, 1), i // 1000 + number(0, 1), number(0, 2))
         size_m = (number(0.1, 1), number(0.1, 1), number(0.1, 1))
         yield Thing(f"thing{i}", class_name, Pose(position_m=at), size_m, class_name.lower())
+
+
+def count_of(class_name: str, count: int) -> int:
+    """How many of so many things are of a class."""
+    return sum(_class(i) == class_name for i in range(count))
+
+
+def _class(i: int) -> str:
+    return RARE_CLASS if i % RARE_EVERY == 0 else CLASSES[i % len(CLASSES)]
 
 
 def write_turtle(path: Path, count: int) -> None:

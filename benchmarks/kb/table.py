@@ -7,8 +7,11 @@ from collections.abc import Sequence
 from benchmarks.kb.disk import Disk
 from benchmarks.kb.engine import Engine
 from benchmarks.kb.made import Figures
+from benchmarks.kb.scale import Scale
 from benchmarks.kb.wire import Wire
 from benchmarks.table import Row
+
+Bounds = tuple[float | None, float | None]
 
 
 def of_engine(engines: Sequence[Engine]) -> list[Row]:
@@ -74,7 +77,48 @@ def of_wire(wire: Wire) -> list[Row]:
     return rows
 
 
-Bounds = tuple[float | None, float | None]
+_OF_SIZE: dict[int, dict[str, Bounds]] = {
+    100_000: {
+        "load_turtle": (11.5, 5.75),
+        "load_json": (8.0, 4.0),
+        "start": (5.0, 2.0),
+        "first_sparql": (3.0, 1.0),
+        "sparql": (0.2, 0.16),
+        "list": (0.15, 0.05),
+    },
+    1_000_000: {"load_turtle": (150.0, 60.0), "memory_gb": (6.0, 4.0), "start": (60.0, 25.0)},
+}
+"""Reach and aim at the sizes for which there are any."""
+
+
+def of_scale(found: Sequence[Scale]) -> list[Row]:
+    """Very many entities."""
+    rows: list[Row] = []
+    for one in found:
+        bounds, of = _OF_SIZE.get(one.entities, {}), f"{one.entities:,} entities"
+        measured: list[tuple[str, str, float | None, str]] = [
+            ("load_turtle", f"load of {of}, Turtle", one.load_turtle_s, "s"),
+            ("load_json", f"load of {of}, JSON", one.load_json_s, "s"),
+            ("", f"memory of all processes after it, {of}", one.memory_loaded_mb / 1e3, "GB"),
+            ("memory_gb", f"the same with SPARQL's store, {of}", one.memory_queried_mb / 1e3, "GB"),
+            ("", f"first SPARQL after a load, {of}", one.first_sparql_after_load_s, "s"),
+            ("start", f"start until get answers, {of}", one.start_s, "s"),
+            ("first_sparql", f"first SPARQL after a start, {of}", one.first_sparql_s, "s"),
+            ("sparql", f"later SPARQL by the client, {of}", one.sparql_s, "s"),
+            ("sparql", f"later SPARQL by the command line, {of}", one.sparql_by_command_line_s, "s"),
+            ("list", f"list of one class in a hundred, {of}", one.list_class_s, "s"),
+            ("", f"add over Zenoh, {of}, p50", one.add_ms, "ms"),
+            ("", f"move over Zenoh, {of}, p50", one.update_ms, "ms"),
+        ]
+        for key, what, value, unit in measured:
+            if value is not None:
+                rows.append(Row(what, value, unit, *bounds.get(key, (None, None))))
+    first, last = found[0], found[-1]
+    if last is not first:
+        growth = last.add_ms / first.add_ms
+        what = f"add over Zenoh, {last.entities:,} against {first.entities:,}"
+        rows.append(Row(what, growth, "times", 1.2, 1.0))
+    return rows
 
 
 def _pair(what: str, figures: Figures, reach: Bounds, aim: Bounds) -> list[Row]:

@@ -6,6 +6,7 @@ until that is noticed nobody has, and it waits for its time-out.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -42,6 +43,11 @@ class Lifelines:
         gone = keys.live_node(key)
         for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
             self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]
+
+
+def appear(session: zenoh.Session, node: str) -> Any:
+    """Let this process be seen as a ready `node`, for as long as it lives and keeps what is returned."""
+    return session.liveliness().declare_token(keys.live_key(node, str(os.getpid())))
 
 
 def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import zenoh
+from zenoh import Session as Session
 
 from schemas import errors
 

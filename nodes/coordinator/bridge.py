@@ -11,6 +11,7 @@ from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import Call, Relay
 from schemas.commands import Command
+from schemas.commits import Transaction
 
 R = TypeVar("R")
 
@@ -19,6 +20,8 @@ _LONG = frozenset({"load", "load-tbox", "undo"})
 _BUSY_S = 6 * 3600.0
 """However long the knowledge base works: it is watched, and its end ends the question."""
 _AT_ONCE_S = 3.0
+_FEW = 1000
+"""Entities that are changed at once."""
 _OVER_A_START_S = 900.0
 """A large map takes its time to start."""
 
@@ -39,7 +42,7 @@ class Bridge:
 
     def change(self, call: Call[R]) -> Future[R]:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        beating = call.VERB in _LONG
+        beating = _takes_long(call)
         timeout_s = _BUSY_S if beating else _AT_ONCE_S
         future: Future[R] = Future()
         settle(
@@ -53,12 +56,18 @@ class Bridge:
 
         What is asked has the id of its command, so that it is done once.
         """
-        patience_s = _OVER_A_START_S if call.VERB in _LONG else bus.RESTART_S
+        patience_s = _OVER_A_START_S if _takes_long(call) else bus.RESTART_S
         return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def relay(self, command: Command[R]) -> Relay[R]:
         """Let the knowledge base answer a command itself."""
         return Relay(keys.BRIDGE, command, _BUSY_S)
+
+
+def _takes_long(call: Call[Any]) -> bool:
+    if isinstance(call, Transaction):
+        return len(call.add) + len(call.remove) + len(call.edit) > _FEW
+    return call.VERB in _LONG
 
 
 def _is_unanswered(asked: Future[Any]) -> bool:

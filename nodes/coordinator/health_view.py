@@ -18,11 +18,9 @@ class HealthView:
         self._last: dict[str, tuple[Health, float]] = {}
         self._told_from = time.monotonic() + _HEARD_WITHIN_S
 
-    def take(self, health: Health) -> bool:
-        """Remember a heartbeat. True when the node is another process than before."""
-        before = self._last.get(health.node)
+    def take(self, health: Health) -> None:
+        """Remember a heartbeat."""
         self._last[health.node] = (health, time.monotonic())
-        return before is not None and before[0].pid != health.pid
 
     def alive(self, node: str) -> bool:
         """Was the node heard of lately?"""

@@ -12,9 +12,9 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.coordinator import authority
-from nodes.coordinator.answers import Answers
 from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
@@ -22,11 +22,12 @@ from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime.class_names import ClassNames
+from nodes.runtime.following import Begun, Follower
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import calls, errors, keys, wording
 from schemas import commands as c
-from schemas.commits import Effects, Snapshot
+from schemas.commits import Effects
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
@@ -50,7 +51,6 @@ class Coordinator:
         self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
-        self._fetching = False
         self._changed: set[str] = set()
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
@@ -79,6 +79,7 @@ class Coordinator:
             c.Check.answered_by(relay),
             c.Infer.answered_by(relay),
             c.Explain.answered_by(relay),
+            c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
@@ -91,7 +92,7 @@ class Coordinator:
             **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
             **calls.by_verb(c.Status.answered_by(answers.status)),
         }
-        node.follow(keys.EFFECTS, self._on_commit)
+        Follower(node, door.map, keys.EFFECTS, heard=self._on_commit, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map)
@@ -104,10 +105,15 @@ class Coordinator:
 
     # Following
 
-    def _on_commit(self, commit: Effects) -> None:
-        if not self._door.take(commit) or commit.tbox:
-            self._fetch_map()
+    def _on_commit(self, commit: Effects, _: bool) -> None:
         self._changed.update(commit.names)
+
+    def _on_map(self, begun: Begun) -> None:
+        self._door.map.classes = ClassNames(begun.classes)
+        self._has_map = True
+        gc.freeze()  # most of the map stays as it is: the collector need not look through it again
+        self._node.ready(wording.entities(len(self._door.map.entities)))
+        self._keep()
 
     def _on_poses(self, poses: Poses) -> None:
         if self._has_map:
@@ -115,13 +121,9 @@ class Coordinator:
             self._answer_waiting()
 
     def _on_health(self, health: Health) -> None:
-        if self._health.take(health) and health.node == "kb_node":
-            self._door.doubt()
-            self._fetch_map()
+        self._health.take(health)
 
     def _tick(self) -> None:
-        if not self._has_map or self._door.doubted or self._door.is_behind:
-            self._fetch_map()
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
         self._answer_early()
@@ -134,7 +136,7 @@ class Coordinator:
             self._answer_waiting()
             scene = self._keeping.scene
             bodies = f", {wording.bodies(len(scene.bodies))}" if scene.known else ""
-            self._node.describe(f"{wording.entities(len(self._door.entities))}{bodies}")
+            self._node.describe(f"{wording.entities(len(self._door.map.entities))}{bodies}")
 
     def _catch_up(self) -> None:
         """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""
@@ -143,37 +145,6 @@ class Coordinator:
             names, self._changed = self._changed, set()
             self._keeping.keep(names)
             self._answer_waiting()
-
-    def _fetch_map(self) -> None:
-        """Ask for the class table and a snapshot: the first time, and when a commit was missed."""
-        if self._fetching:
-            return
-        self._fetching = True
-        fetched: list[Any] = []
-        pages = self._door.begin_pages()
-
-        def on_classes(future: Future[Any]) -> None:
-            if future.exception() is None:
-                fetched.append(future.result())
-            self._bridge.ask_later(pages.query).add_done_callback(on_page)
-
-        def on_page(future: Future[Snapshot]) -> None:
-            if future.exception() is not None or not fetched:
-                self._fetching = False
-                return
-            pages.take(future.result())
-            if not pages.are_complete:
-                self._bridge.ask_later(pages.query).add_done_callback(on_page)
-                return
-            self._fetching = False
-            self._door.classes = ClassNames(fetched[0])
-            self._door.begin(pages.snapshot)
-            self._has_map = True
-            gc.freeze()  # most of the map stays as it is: the collector need not look through it again
-            self._node.ready(wording.entities(len(self._door.entities)))
-            self._keep()
-
-        self._bridge.ask_later(c.Classes()).add_done_callback(on_classes)
 
     # Changing
 
@@ -201,7 +172,7 @@ class Coordinator:
         if self._health.may_be_there("sim_node"):
             undecided.add("unknown")  # its scene is still to come
         for name, deadline, changed, future in self._waiting:
-            entity = self._door.entities.get(name)
+            entity = self._door.map.entities.get(name)
             state = self._keeping.body_state(entity) if entity is not None else None
             if state is not None and state.status in undecided and time.monotonic() < deadline:
                 still.append((name, deadline, changed, future))

@@ -21,15 +21,15 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import msgspec
-import zenoh
 
 from nodes import bus
 from nodes.extern.client_verbs import Verbs
 from nodes.extern.connection import endpoint, open_session
 from nodes.extern.sparql_client import StandingQuery
+from nodes.runtime import version
 from schemas import codec, errors, keys
 from schemas.calls import reply_type
-from schemas.commands import Command
+from schemas.commands import Command, Status
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
@@ -40,6 +40,7 @@ C = TypeVar("C", bound=Command)
 
 LONG_S = 700.0
 """Seconds: longer than any command takes."""
+_VERSION_S = 2.0
 
 
 @contextlib.contextmanager
@@ -57,9 +58,9 @@ def connect(
 class Client(Verbs):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
-    def __init__(self, session: zenoh.Session, *, source: Source = "operator", agent: str = "") -> None:
+    def __init__(self, session: bus.Session, *, source: Source = "operator", agent: str = "") -> None:
         self.session = session
-        self._ask = functools.partial(bus.ask, session, keys.CMD, lifelines=bus.Lifelines(session))
+        self._lifelines = bus.Lifelines(session)
         self._signature: dict[str, Any] = {"source": source, "agent": agent}
 
     def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
@@ -73,6 +74,24 @@ class Client(Verbs):
             command.VERB, signed, reply_type(type(command)), timeout_s=timeout_s, first_hand=first_hand
         )
         return reply
+
+    def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
+        """As `bus.ask`; a misunderstanding between versions is told as one."""
+        try:
+            return bus.ask(self.session, keys.CMD, verb, command, kind, lifelines=self._lifelines, **how)
+        except errors.SemmapError as error:
+            if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
+                raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None
+            raise
+
+    def _version_of_system(self) -> str:
+        """What its status says; this client's own where nobody says."""
+        ask = functools.partial(bus.ask, timeout_s=_VERSION_S, patience_s=0.0)
+        try:
+            said = ask(self.session, keys.CMD, Status.VERB, Status(), dict[str, Any])
+        except errors.SemmapError:
+            return version.version()
+        return str(said.get("version", ""))
 
     def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
         """Make a command, send it, and `read` its reply: what each verb does."""
@@ -117,6 +136,12 @@ def _each(events: queue.SimpleQueue[Commit | None], timeout_s: float | None) -> 
         if commit is None:
             return
         yield commit
+
+
+def _may_be_of_versions(error: errors.SemmapError) -> bool:
+    """A message that one end cannot read, a verb that it does not have, or an error of an unknown kind."""
+    malformed = isinstance(error, errors.BadRequest) and error.text.startswith(codec.MALFORMED)
+    return malformed or isinstance(error, errors.UnknownVerb) or type(error) is errors.SemmapError
 
 
 def _checked(command: C, signature: dict[str, Any]) -> C:

@@ -236,6 +236,7 @@ class Verbs:
     check = Verb(commands.Check)
     infer = Verb(commands.Infer)
     explain = Verb(commands.Explain)
+    could = Verb(commands.Could)
     relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)

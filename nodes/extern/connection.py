@@ -7,8 +7,6 @@ import os
 import time
 from collections.abc import Iterator
 
-import zenoh
-
 from nodes import bus
 from nodes.supervisor import presence, registry
 from schemas import errors
@@ -39,7 +37,7 @@ def endpoint() -> str:
 
 
 @contextlib.contextmanager
-def open_session(where: str, namespace: str) -> Iterator[zenoh.Session]:
+def open_session(where: str, namespace: str) -> Iterator[bus.Session]:
     """A session with whoever listens at `where`, or will do so when the system has started.
 
     On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.

@@ -11,8 +11,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import zenoh
-
 from nodes import bus
 from schemas import commands, errors, keys, replies
 from schemas.sparql import Row, RowsChanged, Watching
@@ -29,7 +27,7 @@ class StandingQuery:
     asks again and tells what changed in between, too.
     """
 
-    def __init__(self, session: zenoh.Session, ask: Callable[..., Any], query: str, inferred: bool) -> None:
+    def __init__(self, session: bus.Session, ask: Callable[..., Any], query: str, inferred: bool) -> None:
         """`ask(verb, command, kind)` asks the system. Raises BadRequest, Refused for no query to watch."""
         self._ask = ask
         self._name = f"q{uuid.uuid4().hex[:12]}"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import zenoh
-
 from nodes import bus
 from schemas import codec, keys
 from schemas.commits import Commit, abridged
@@ -15,7 +13,7 @@ from schemas.entities import Entity
 class Announcer:
     """Publishes each commit, and under each of its classes an entity or, where it is no more, a delete."""
 
-    def __init__(self, session: zenoh.Session, entities: Iterable[Entity]) -> None:
+    def __init__(self, session: bus.Session, entities: Iterable[Entity]) -> None:
         """`entities` are those that are in the map already."""
         self._session = session
         self._commits = bus.publisher(session, keys.COMMIT)

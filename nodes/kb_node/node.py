@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, trials, undo
+from nodes.kb_node import answers, gc_pause, questions, trials, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
@@ -23,13 +23,16 @@ from nodes.kb_node.documents import (
     term_syntax,
 )
 from nodes.kb_node.pages import Pages
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.sparql.news import NewsStand
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.standing_queries.news import NewsStand
+from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -53,6 +56,7 @@ from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
+    Could,
     Explain,
     Export,
     Get,
@@ -70,11 +74,14 @@ from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.relations import Relation
-from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Sighting
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
+R = TypeVar("R", Explanation, Possible)
 
 
 class KnowledgeBase:
@@ -90,7 +97,11 @@ class KnowledgeBase:
         self._surroundings = Surroundings(self.map.entities, self.map.find)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
-        self._sparql = SparqlService(lambda: self.map.reasoner.asserted(), NewsStand(node.session).publish)
+        self._sparql = SparqlService(
+            lambda: self.map.reasoner.asserted(),
+            NewsStand(node.session).publish,
+            LargeMap(journal, lambda: self.map.reasoner, node.soon),
+        )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
@@ -114,6 +125,7 @@ class KnowledgeBase:
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
             Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
@@ -129,7 +141,11 @@ class KnowledgeBase:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
-        return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+        if len(transaction.add) <= _FEW:
+            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
 
     def _changed(self, change: Callable[[], Commit | None], dry_run: bool) -> Effects | None:
         """What `change` commits, and publishes; or would commit, in a dry run."""
@@ -285,24 +301,35 @@ class KnowledgeBase:
         """What follows."""
         return answers.infer(self.map, query.name)
 
-    def on_explain(self, query: Explain) -> Explanation:
-        """Why it follows, or what was measured of where a thing is; or why it does not hold."""
-        space = self._surroundings.space() if query.predicate in SPOKEN else None
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        asked = questions.of_explain(self.map, query)
+        space = self._surroundings.space() if query.predicate in SPOKEN and not query.negated else None
         seen = space and explained(space, query.name, query.predicate, query.value)
-        try:
-            explanation = answers.explain(self.map, query)
-        except errors.Refused:
-            if not seen:
-                raise
-            if not seen.holds:
-                raise errors.Refused(seen.text) from None
-            subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
-            conclusion = (subject, v.dm(seen.relation), object_)
-            return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
         if not seen:
-            return explanation
-        link = "; and" if seen.holds else "; but as it stands"
-        return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
+            return self._tried(questions.explain, asked)
+        explanation = questions.why(self.map.reasoner, asked)
+        if explanation is not None:
+            link = "; and" if seen.holds else "; but as it stands"
+            return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
+        conclusion = (subject, v.dm(seen.relation), object_)
+        return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Whether it could be."""
+        return self._tried(questions.could, questions.of_could(self.map, query))
+
+    def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
+        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        reasoner = self.map.reasoner
+        if questions.is_quick(reasoner, asked):
+            with suppress(NotCompilable):
+                return answer(reasoner, asked, anew=False)
+        asserted = list(reasoner.asserted())
+        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

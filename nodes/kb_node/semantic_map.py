@@ -65,7 +65,7 @@ class SemanticMap:
         self._journal = journal
         self._progress = progress
         journal.verify(progress)
-        start = journal.last_checkpoint()
+        start = journal.last_checkpoint(progress)
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
@@ -115,7 +115,8 @@ class SemanticMap:
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, iri, self.seq, leaving, self.tbox) for iri in iris
+            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
@@ -124,7 +125,8 @@ class SemanticMap:
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
-        return [t for t in self.reasoner.asserted() if t not in self.tbox]
+        tbox = self.tbox
+        return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
@@ -283,7 +285,8 @@ class SemanticMap:
                 triples=tuple(self.abox()),
                 entities=tuple(self._entities.values()),
                 read_by=conclusions_format.mark(),
-            )
+            ),
+            self._progress,
         )
         self._checkpointed = self.seq
 
@@ -375,7 +378,7 @@ class SemanticMap:
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
         owners = subjects.union(
-            *(entity_reading.owners(self.reasoner, s) for s in steadily(known, self._progress))
+            *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:

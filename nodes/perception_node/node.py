@@ -26,15 +26,14 @@ from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy, hiera
 from nodes.perception_node.tracking.map_updates import subject_of
 from nodes.perception_node.tracking.occupancy import occupancy_in
 from nodes.perception_node.tracking.tracks import Tracks
+from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
 from schemas import codec, keys, wording
-from schemas.bridge import SnapshotQuery
-from schemas.commands import Add, Classes, Command, LastSeen
-from schemas.commits import Effects, Snapshot
+from schemas.commands import Add, Command, LastSeen
+from schemas.commits import Effects
 from schemas.entities import Size
 from schemas.errors import UnknownName
-from schemas.health import Health
 from schemas.replies import Sighting
 
 _COMPLAINT_S = 60.0
@@ -65,8 +64,6 @@ class Perception:
         self._map = MapReplica[Effects]()
         self._classes = ClassHierarchy()
         self._tracks = Tracks()
-        self._fetching = False
-        self._kb_started_ns = 0
         self._untold = 0
         self._told_commit = 0
         self._refused: dict[str, float] = {}
@@ -76,8 +73,7 @@ class Perception:
         self._looked_at = time.monotonic()
         self._cloud = bus.publisher(node.session, keys.CLOUD)
         self._cloud_is_wanted = bus.watched(node.session, keys.CLOUD)
-        node.follow(keys.EFFECTS, self._on_commit)
-        node.follow(keys.HEALTH, self._on_health)
+        Follower(node, self._map, keys.EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
         node.every(0.5, self._tick)
         self._worker = FrameWorker(look, self._hand_over, self._complain)
         for plane in ("rgb", "depth"):
@@ -173,45 +169,14 @@ class Perception:
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
         self._on_complaint(f"the map did not take what was seen: {error}")
 
-    def _on_commit(self, commit: Effects) -> None:
-        if not self._map.take(commit) or commit.tbox:
-            self._fetch_map()
-
-    def _on_health(self, health: Health) -> None:
-        """A new knowledge base may know another map."""
-        if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
-            self._kb_started_ns = health.started_ns
-            self._map.doubt()
-            self._fetch_map()
+    def _on_map(self, begun: Begun) -> None:
+        self._classes = hierarchy_of(begun.classes, self._usual_m)
+        self._told_commit = min(self._told_commit, self._map.seq)
+        self._node.ready("no camera frames yet")
 
     def _tick(self) -> None:
-        if self._map.seq < 0 or self._map.is_behind:
-            self._fetch_map()
-        elif time.monotonic() - self._looked_at > _NO_FRAMES_S:
-            self._node.describe("no frames of cameras come")
-
-    def _fetch_map(self) -> None:
-        """Ask for the class table and a snapshot: at the start, and when a commit was missed."""
-        if self._fetching:
-            return
-        self._fetching = True
-        classes: list[ClassHierarchy] = []
-
-        def on_classes(future: Future[Any]) -> None:
-            if future.exception() is None:
-                classes.append(hierarchy_of(future.result(), self._usual_m))
-            self._node.ask_later(keys.BRIDGE, SnapshotQuery()).add_done_callback(on_snapshot)
-
-        def on_snapshot(future: Future[Snapshot]) -> None:
-            self._fetching = False
-            if future.exception() is not None or not classes:
-                return
-            (self._classes,) = classes
-            self._map.begin(future.result())
-            self._told_commit = min(self._told_commit, self._map.seq)
-            self._node.ready("no frames of cameras yet")
-
-        self._node.ask_later(keys.BRIDGE, Classes()).add_done_callback(on_classes)
+        if self._map.seq >= 0 and time.monotonic() - self._looked_at > _NO_FRAMES_S:
+            self._node.describe("no camera frames received")
 
 
 def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:

@@ -1,10 +1,9 @@
-"""The recorder on the wire: it follows commits, poses, what is seen, and the knowledge base's heartbeat."""
+"""The recorder on the wire: it follows the map, the poses, and what is seen."""
 
 from __future__ import annotations
 
 import time
 from concurrent.futures import Future
-from typing import Any
 
 from nodes.recorder.config import RecorderConfig
 from nodes.recorder.drawing.graph import graph_of
@@ -12,13 +11,14 @@ from nodes.recorder.drawing.stage import Stage
 from nodes.recorder.drawing.surfaces import Kind
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
-from nodes.recorder.state.map_state import MapState, missed
+from nodes.recorder.state.asserted_relations import Relations, missed
 from nodes.recorder.state.scene_state import SceneState
+from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node
+from nodes.runtime.map_replica import MapReplica
 from schemas import keys, wording
-from schemas.bridge import Recall, SnapshotQuery, StarQuery
-from schemas.commits import Commit, Snapshot
-from schemas.health import Health
+from schemas.bridge import Recall, StarQuery
+from schemas.commits import Commit, Star
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 _SCENE_LOST_S = 10.0
@@ -35,78 +35,72 @@ class Recorder:
         self._recording = recording
         self._live = live
         self._stage = Stage(recording)
-        self._map = MapState()
+        self._map = MapReplica[Commit]()
+        self._relations = Relations()
+        self._related = False
+        self._asking_stars = False
+        self._since_asked: list[Commit] = []
+        self._unknown: list[Commit] = []
         self._scene = SceneState()
-        self._early: list[Commit] = []
-        self._has_map = False
         self._arranged = False
-        self._fetching_map = False
         self._fetching_scene = False
         self._poses_at = 0.0
-        self._kb_started_ns = 0
-        node.follow(keys.COMMIT, self._on_commit)
+        Follower(node, self._map, keys.COMMIT, heard=self._on_commit, begun=self._on_map)
         node.follow(keys.POSES, self._on_poses)
-        node.follow(keys.HEALTH, self._on_health)
         node.every(0.5, self._tick)
         PerceptionRecorder(node, recording, self._at)
 
     # The map
 
-    def _on_commit(self, commit: Commit) -> None:
+    def _on_commit(self, commit: Commit, known: bool) -> None:
         """Record it at once, whatever is known of the map; the map follows in order."""
         self._at(commit.stamp_ns, commit.seq)
         self._recording.commit(commit)
-        if self._has_map and self._map.take(commit):
+        self._relations.take(commit)
+        if self._asking_stars:
+            self._since_asked.append(commit)
+        if not known:
+            self._unknown.append(commit)
+        elif self._related:
             self._show_commit(commit)
-        else:
-            self._early.append(commit)
-            self._has_map = False
-            self._fetch_map()
 
     def _show_commit(self, commit: Commit) -> None:
         touched = {entity.name for entity in commit.changed} | {gone.name for gone in commit.removed}
         self._stage.show(sorted(touched), self._map.entities, self._scene.bodies, simulated=self._scene.known)
         self._shown()
 
-    def _fetch_map(self) -> None:
-        """Ask for a snapshot and for the relations: at the start, and when a commit was missed."""
-        if self._fetching_map:
-            return
-        self._fetching_map = True
-        snapshots: list[Snapshot] = []
-
-        def on_snapshot(future: Future[Snapshot]) -> None:
-            if future.exception() is not None:
-                self._fetching_map = False
-                return
-            snapshots.append(future.result())
-            names = tuple(entity.name for entity in snapshots[0].entities)
-            self._node.ask_later(keys.BRIDGE, StarQuery(names=names)).add_done_callback(on_stars)
-
-        def on_stars(future: Future[Any]) -> None:
-            self._fetching_map = False
-            if future.exception() is None:
-                self._begin(snapshots[0], future.result())
-
-        self._node.ask_later(keys.BRIDGE, SnapshotQuery()).add_done_callback(on_snapshot)
-
-    def _begin(self, snapshot: Snapshot, stars: Any) -> None:
-        first = self._map.seq < 0
-        after = snapshot.seq - 1 if first else self._map.seq
-        lost = missed(after, snapshot.seq, self._early)
-        anew = snapshot.seq < self._map.seq
-        self._map.begin(snapshot)
-        self._map.relate(stars)
-        early = sorted(self._early, key=lambda commit: commit.seq)
-        self._has_map = all(self._map.take(commit) for commit in early)  # else one between is missing
-        self._early.clear()
+    def _on_map(self, begun: Begun) -> None:
+        first = begun.before < 0
+        lost = missed(begun.seq - 1 if first else begun.before, begun.seq, self._unknown)
+        self._unknown.clear()
         self._at(time.time_ns(), self._map.seq)
-        if first or anew:
+        if first or begun.seq < begun.before:
             known = wording.entities(len(self._map.entities))
             self._recording.note(f"{self._map.seq}  the recording goes on from here with {known}")
         self._recall(lost)
-        self._show_all()
-        self._shown()
+        self._related = False
+        self._ask_stars()
+
+    def _ask_stars(self) -> None:
+        """Ask for the relations; commits that come meanwhile may be newer than they."""
+        if self._asking_stars:
+            return
+        self._asking_stars = True
+
+        def on_stars(future: Future[tuple[Star, ...]]) -> None:
+            since, self._since_asked, self._asking_stars = self._since_asked, [], False
+            if future.exception() is not None:
+                return  # it is asked again at the next tick
+            self._related = True
+            self._relations.begin(future.result())
+            for commit in since:
+                self._relations.take(commit)
+            self._at(time.time_ns(), self._map.seq)
+            self._show_all()
+            self._shown()
+
+        query = StarQuery(names=tuple(self._map.entities))
+        self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_stars)
 
     def _recall(self, seqs: list[int]) -> None:
         """Record what was committed while nobody listened, and the commit that the recording starts with."""
@@ -121,13 +115,6 @@ class Recorder:
         for commit in future.result():
             self._at(commit.stamp_ns, commit.seq)
             self._recording.commit(commit)
-
-    def _on_health(self, health: Health) -> None:
-        """A new knowledge base may know another map, or have made commits that nobody heard."""
-        if health.node == "kb_node" and health.state == "ready" and health.started_ns != self._kb_started_ns:
-            self._kb_started_ns = health.started_ns
-            self._has_map = False
-            self._fetch_map()
 
     # The scene
 
@@ -176,8 +163,8 @@ class Recorder:
         self._node.ask_later(keys.SIM, query).add_done_callback(on_surfaces)
 
     def _tick(self) -> None:
-        if not self._has_map:
-            self._fetch_map()
+        if self._map.seq >= 0 and not self._related:
+            self._ask_stars()
         if self._scene.known and time.monotonic() - self._poses_at > _SCENE_LOST_S:
             self._scene = SceneState()
             self._at(time.time_ns())
@@ -193,7 +180,7 @@ class Recorder:
         self._stage.show_all(self._map.entities, self._scene.bodies, simulated=self._scene.known)
 
     def _shown(self) -> None:
-        self._stage.show_graph(graph_of(self._map.entities, self._map.relations()))
+        self._stage.show_graph(graph_of(self._map.entities, self._relations.between(self._map.entities)))
         if not self._arranged and self._map.entities:
             self._arranged = True
             self._recording.arrange(self._stage.poses)

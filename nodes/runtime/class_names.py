@@ -4,44 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas.entities import ClassInfo
-from schemas.errors import UnknownClass, did_you_mean
+from schemas.errors import UnknownClass, enumerated
+
+
+class AmbiguousClass(UnknownClass):
+    """Several classes may be meant."""
 
 
 class ClassNames:
-    """The classes of the TBox by name: exact, or else without regard to case and underscores."""
+    """The classes of the TBox by what people call them.
+
+    A name or an IRI is taken literally. Else case, underscores and spaces do not matter, and labels count, in
+    every language that the TBox has.
+    """
 
     def __init__(self, classes: Iterable[ClassInfo] = ()) -> None:
         self.by_name = {c.name: c for c in classes}
-        self._folded: dict[str, list[str]] = {}
-        self._labelled: dict[str, list[str]] = {}
-        for name, c in self.by_name.items():
-            self._folded.setdefault(_fold(name), []).append(name)
-            for label in c.labels.values():
-                self._labelled.setdefault(label.casefold(), []).append(name)
+        self._index = NameIndex(
+            Named(c.name, c.iri, c.prefixed, (*c.labels.values(), *c.also)) for c in self.by_name.values()
+        )
+        self._has_spatial = any(c.spatial for c in self.by_name.values())
 
     def find(self, word: str) -> ClassInfo:
-        """The class that `word` means. Raises UnknownClass with the nearest names."""
-        if word in self.by_name:
-            return self.by_name[word]
-        same = self._folded.get(_fold(word), [])
-        if len(same) == 1:
-            return self.by_name[same[0]]
-        same = same or self._labelled.get(word.casefold(), [])
-        hint = f"; did you mean {' or '.join(same)}?" if same else did_you_mean(word, self.by_name)
-        raise UnknownClass(f"unknown class '{word}'{hint}")
+        """The class that `word` means. Raises AmbiguousClass, UnknownClass with the nearest names."""
+        try:
+            name = self._index.find(word)
+        except Ambiguous as error:
+            raise AmbiguousClass(f"'{word}' may be {enumerated(error.names)}; say which class") from None
+        if name is None:
+            raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
+        return self.by_name[name]
 
     def spatial(self, word: str) -> ClassInfo:
         """The class of a thing in space that `word` means. Raises UnknownClass."""
         found = self.find(word)
+        if not found.spatial and not self._has_spatial:
+            raise UnknownClass(
+                "nothing can be placed: the TBox does not say which of its classes are of things in space;"
+                " load it again with --spatial-root CLASS"
+            )
         if not found.spatial:
-            raise UnknownClass(f"'{found.name}' is no class of things in space; see: semmap classes")
+            raise UnknownClass(f"'{found.name}' is not a class of things in space; see: semmap classes")
         return found
 
     def note(self, word: str, found: ClassInfo) -> tuple[str, ...]:
-        """How `word` was read, where it was not taken literally."""
-        return () if word == found.name else (f"'{word}' is read as {found.name}",)
-
-
-def _fold(name: str) -> str:
-    return name.replace("_", "").casefold()
+        """How `word` was understood, where it was not taken literally."""
+        if word in (found.name, found.prefixed, found.iri, f"<{found.iri}>"):
+            return ()
+        return (f"'{word}' is read as {found.name}",)

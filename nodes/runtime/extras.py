@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from schemas import errors
 
 MODULES: Mapping[str, tuple[str, ...]] = {
-    "kb": ("numpy", "owlrl", "pyhornedowl", "pyoxigraph", "rapidfuzz", "rdflib", "supervisor"),
-    "sim": ("PIL", "mujoco", "numpy", "trimesh"),
+    "kb": ("numpy", "owlrl", "psutil", "pyhornedowl", "pyoxigraph", "rapidfuzz", "rdflib", "supervisor"),
+    "sim": ("PIL", "mujoco", "numpy", "scipy", "trimesh"),
     "perception": ("PIL", "numpy", "scipy"),  # and Open3D, where there is one
     "record": ("PIL", "numpy", "rerun"),
 }

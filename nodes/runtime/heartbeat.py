@@ -7,8 +7,6 @@ import os
 import time
 from typing import Literal
 
-import zenoh
-
 from nodes import bus
 from schemas import codec, keys
 from schemas.health import Health
@@ -22,7 +20,7 @@ _ERROR_SHOWN_S = 3600.0
 class Heartbeat:
     """Beats for the thread that owns the node's state, and on it: when that hangs, it falls silent."""
 
-    def __init__(self, name: str, session: zenoh.Session) -> None:
+    def __init__(self, name: str, session: bus.Session) -> None:
         self.due_s = 0.0
         """When it beats next, by the monotonic clock."""
         self._name = name
@@ -57,8 +55,7 @@ class Heartbeat:
         """Say so, at once, and let the liveliness token appear."""
         if self._state != "ready":
             self._state = "ready"
-            key = keys.live_key(self._name, str(os.getpid()))
-            self._token = self._session.liveliness().declare_token(key)
+            self._token = bus.appear(self._session, self._name)
             log.info("ready: %s", detail)
             self.due_s = 0.0
         self.describe(detail)

@@ -19,8 +19,6 @@ from contextlib import contextmanager
 from itertools import count
 from typing import Any, TypeVar
 
-import zenoh
-
 from nodes import bus
 from nodes.runtime.heartbeat import Heartbeat
 from schemas import errors, keys
@@ -42,7 +40,7 @@ Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
 class Node:
     """A running node: bind handlers, then `run`. Use `open_node`."""
 
-    def __init__(self, name: str, session: zenoh.Session) -> None:
+    def __init__(self, name: str, session: bus.Session) -> None:
         self.name = name
         self.session = session
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()

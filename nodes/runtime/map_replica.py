@@ -49,28 +49,43 @@ class MapReplica(Generic[C]):
         self.seq = -1
         self.entities: dict[str, Entity] = {}
         self._heard = -1
+        self._doubted = False
         self._during_pages: dict[int, C] | None = None
 
     @property
-    def is_behind(self) -> bool:
-        """Was a commit heard of that it lacks? One may come before a snapshot that was made without it."""
-        return self.seq < self._heard
+    def is_current(self) -> bool:
+        """Whether it is in force and has every commit that was heard of.
+
+        One may be heard of before a snapshot that was made without it.
+        """
+        return self.seq >= 0 and self._heard <= self.seq and not self._doubted
 
     def begin_pages(self) -> SnapshotPages:
         """A snapshot in pages, to `begin` with when they are complete; commits are kept in mind meanwhile."""
         self._during_pages = {}
         return SnapshotPages()
 
-    def begin(self, snapshot: Snapshot) -> None:
-        """Take over a snapshot, and the commits that came while its pages did."""
+    def begin(self, snapshot: Snapshot) -> bool:
+        """Take over a snapshot, and the commits that came while its pages did.
+
+        False, and nothing is taken, if it is older than what is known and that is not in doubt.
+        """
+        if snapshot.seq < self.seq and not self._doubted:
+            self._during_pages = None
+            return False
+        self._doubted = False
         self.seq = snapshot.seq
         self.entities = {entity.name: entity for entity in snapshot.entities}
         since, self._during_pages = self._during_pages or {}, None
         for _, commit in sorted(since.items()):
             self.take(commit)
+        return True
 
     def take(self, commit: C) -> bool:
-        """Take over a commit. False if it is abridged or one before it was missed: a snapshot is needed."""
+        """Take over a commit. False if a snapshot is needed.
+
+        That is so if the commit is abridged, one before it was missed, or all of it is in doubt.
+        """
         self._heard = max(self._heard, commit.seq)
         if self._during_pages is not None:
             self._during_pages[commit.seq] = commit
@@ -79,8 +94,9 @@ class MapReplica(Generic[C]):
             for gone in commit.removed:
                 self.entities.pop(gone.name, None)
             self.entities.update({entity.name: entity for entity in commit.changed})
-        return commit.seq <= self.seq
+        return commit.seq <= self.seq and not self._doubted
 
     def doubt(self) -> None:
-        """Another knowledge base may know less than what was heard of the one before."""
+        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
         self._heard = -1
+        self._doubted = True

@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-import zenoh
 from msgspec import structs
 
 from nodes import bus
@@ -100,7 +99,7 @@ class _Foreground:
     def _on_signal(self, *_: object) -> None:
         self._stopping = True
 
-    def _follow(self, stack: contextlib.ExitStack) -> zenoh.Session | None:
+    def _follow(self, stack: contextlib.ExitStack) -> bus.Session | None:
         """Join the network as soon as the coordinator listens."""
         try:
             session = stack.enter_context(bus.open_session(bus.Network(connect=(self._settings.reachable,))))
@@ -137,7 +136,7 @@ class _Foreground:
             self._say(f"{node:<{_COLUMN}} {reason}: restarting it")
             self._supervisor.restart(node)
 
-    def _tell_of_models(self, session: zenoh.Session) -> None:
+    def _tell_of_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""
         if self._settings.models is None or not self._settings.sim:
             return

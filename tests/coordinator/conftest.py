@@ -58,8 +58,8 @@ def door(semantic_map):
         "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
     }
     door = Door(lambda call: answers[call.VERB](call))
-    door.classes = ClassNames(semantic_map.class_table())
-    door.begin(semantic_map.snapshot())
+    door.map.classes = ClassNames(semantic_map.class_table())
+    door.map.begin(semantic_map.snapshot())
     return door
 
 

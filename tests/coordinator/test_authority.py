@@ -25,19 +25,19 @@ changes = pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys()
 @pytest.mark.parametrize("source", ["scene", "perception"])
 def test_what_an_operator_said_only_an_operator_changes(door, source, change):
     add(door, name="chair1", alt=("seat",))
-    before = door.entity("chair1")
+    before = door.map.entity("chair1")
     with pytest.raises(errors.Refused, match="an operator said what chair1 is, so only an operator may"):
         change(door, source)
-    assert door.entity("chair1") == before
+    assert door.map.entity("chair1") == before
     change(door, "operator")
-    assert door.entities.get("chair1") != before
+    assert door.map.entities.get("chair1") != before
 
 
 @pytest.mark.parametrize("source", ["scene", "perception"])
 def test_anybody_may_say_where_it_is(door, source):
     add(door, name="chair1")
     door.change(c.Update(name="chair1", at=AT, source=source, agent="camera", confidence=0.5))
-    chair1 = door.entity("chair1")
+    chair1 = door.map.entity("chair1")
     assert (chair1.pose.position_m, chair1.pose_provenance.source) == (AT, source)
     assert (chair1.pose_provenance.agent, chair1.pose_provenance.confidence) == ("camera", 0.5)
 
@@ -45,9 +45,9 @@ def test_anybody_may_say_where_it_is(door, source):
 @changes
 def test_what_perception_said_perception_changes(door, change):
     add(door, name="chair1", alt=("seat",), source="perception")
-    before = door.entity("chair1")
+    before = door.map.entity("chair1")
     change(door, "perception")
-    assert door.entities.get("chair1") != before
+    assert door.map.entities.get("chair1") != before
 
 
 @changes
@@ -71,9 +71,9 @@ def test_only_an_operator_replaces_the_tbox_or_undoes_what_an_operator_did(door)
 
 def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic_map):
     add(door, name="chair1", ref="seat")
-    before = door.entity("chair1")
+    before = door.map.entity("chair1")
     door.change(c.Update(name="chair1", conflict="looks like a Cup", source="perception", confidence=0.9))
-    chair1 = door.entity("chair1")
+    chair1 = door.map.entity("chair1")
     assert (chair1.conflict, chair1.provenance.source) == ("looks like a Cup", "perception")
     assert chair1.provenance.confidence == 0.9
     assert (chair1.class_, chair1.shape_provenance) == (before.class_, before.shape_provenance)
@@ -82,9 +82,9 @@ def test_what_is_seen_against_an_operators_word_is_kept_beside_it(door, semantic
         before.reference_provenance,
     )
     door.change(c.Update(name="chair1", conflict="not seen", source="perception"))
-    assert door.entity("chair1").conflict == "not seen"
+    assert door.map.entity("chair1").conflict == "not seen"
     door.change(c.Update(name="chair1", conflict="", source="perception"))
-    assert door.entity("chair1").conflict == ""
+    assert door.map.entity("chair1").conflict == ""
     assert not any("conflict" in triple[1] for triple in semantic_map.abox())
 
 

@@ -1,7 +1,5 @@
 """Who is alive."""
 
-import pytest
-
 from nodes.coordinator import health_view
 from nodes.coordinator.health_view import HealthView
 from schemas.health import Health
@@ -18,13 +16,6 @@ def test_a_silent_node_is_not_alive(monkeypatch):
     assert view.alive("kb_node")
     monkeypatch.setattr(health_view, "SILENT_AFTER_S", 0.0)
     assert not view.alive("kb_node")
-
-
-@pytest.mark.parametrize(("pid", "is_another"), [(1, False), (2, True)])
-def test_another_process_is_noticed(pid, is_another):
-    view = HealthView()
-    assert not view.take(beat("ready"))
-    assert view.take(beat("ready", pid)) is is_another
 
 
 def test_just_after_a_start_a_node_that_was_not_heard_of_may_be_there(monkeypatch):

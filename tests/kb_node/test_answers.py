@@ -3,9 +3,9 @@ import pytest
 from nodes.kb_node import answers
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.abox_document import sort_out
+from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commands import Explain
 from tests.kb_node import home
 from tests.kb_node.graphs import canonical
 from tests.kb_node.home import chair, transaction, turtle
@@ -44,60 +44,6 @@ def test_infer_says_what_was_not_said(furnished):
     assert "chair1 type Seat" in answers.infer(furnished, None).text
     with pytest.raises(errors.UnknownName):
         answers.infer(furnished, "sofa1")
-
-
-@pytest.mark.parametrize(
-    ("name", "predicate", "value", "support"),
-    [
-        ("chair1", "a", "Chair", {"chair1 type Chair"}),
-        ("chair1", "type", "Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
-        ("chair1", "rdf:type", "dm:Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
-        ("kitchen1", "a", "Location", {"chair1 isLocatedIn kitchen1", "isLocatedIn range Location"}),
-        ("chair1", "isLocatedIn", "kitchen1", {"chair1 isLocatedIn kitchen1"}),
-        (":chair1", "a", "Chair", {"chair1 type Chair"}),
-        (v.entity_iri("chair1"), "a", "Chair", {"chair1 type Chair"}),
-        (
-            "chair1_preferred_reference",
-            "lexicalReference",
-            "two\nlines",
-            {"chair1_preferred_reference lexicalReference two\nlines"},
-        ),
-        ("Chair", "rdfs:subClassOf", "dm:Object", {"Chair subClassOf Seat", "Seat subClassOf Object"}),
-        ("chair1", "dm:isLocatedIn", ":kitchen1", {"chair1 isLocatedIn kitchen1"}),
-        ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
-    ],
-)
-def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value, support):
-    explanation = answers.explain(furnished, Explain(name=name, predicate=predicate, value=value))
-    assert {v.spoken(triple) for triple in explanation.support} == support
-
-
-@pytest.mark.parametrize(
-    ("name", "predicate", "value", "error", "text"),
-    [
-        ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
-        ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
-        ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
-        (
-            "chair1",
-            "xyz",
-            "kitchen1",
-            errors.BadRequest,
-            "'xyz'; there are type and the properties of the TBox",
-        ),
-        ("chair1", "a", "Door", errors.Refused, "it does not hold that chair1 is of class Door"),
-        (
-            "chair1",
-            "isLocatedIn",
-            "chair2",
-            errors.Refused,
-            "it does not hold that chair1 isLocatedIn chair2",
-        ),
-    ],
-)
-def test_what_cannot_be_explained(furnished, name, predicate, value, error, text):
-    with pytest.raises(error, match=text):
-        answers.explain(furnished, Explain(name=name, predicate=predicate, value=value))
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
@@ -145,3 +91,15 @@ def test_owlrl_is_of_the_same_opinion(more, consistent):
     checked = answers.check([*home.TBOX, *turtle(f":a a dm:Chair {more} .")], "owlrl")
     assert (checked.consistent, checked.engine) == (consistent, "owlrl")
     assert checked.text.startswith("consistent" if consistent else "inconsistent: ")
+
+
+def test_what_follows_is_the_same_on_both_engines(furnished):
+    """The one that works change by change, and the one for graphs that it cannot take."""
+    compiled = answers.infer(furnished, None), answers.picture(furnished, inferred=True)
+    assert furnished.reasoner.is_compiled
+    furnished.reasoner._engine = GeneralEngine(furnished.reasoner.asserted())
+    assert not furnished.reasoner.is_compiled
+    general = answers.infer(furnished, None), answers.picture(furnished, inferred=True)
+    assert set(general[0].triples) == set(compiled[0].triples)
+    assert general[0].text == compiled[0].text
+    assert set(general[1].written) == set(compiled[1].written)

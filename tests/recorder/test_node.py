@@ -15,6 +15,7 @@ from nodes.recorder.recording import open_recording
 from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
+from schemas.commands import Classes
 from schemas.commits import Snapshot
 from schemas.health import Health
 from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
@@ -63,6 +64,7 @@ class World:
                 "snapshot": (SnapshotQuery, lambda _: self.snapshot),
                 "recall": (Recall, lambda query: tuple(self.past[n] for n in query.seqs if n in self.past)),
                 "star": (StarQuery, lambda query: tuple(map(star, query.names))),
+                "classes": (Classes, lambda _: ()),
             },
         )
         self.asked = []

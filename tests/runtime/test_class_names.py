@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from msgspec import structs
 
 from nodes.runtime.class_names import ClassNames
 from schemas.entities import ClassInfo
@@ -38,9 +39,50 @@ def test_case_and_underscores_do_not_matter(word, found):
     assert NAMES.find(word).name == found
 
 
-def test_a_label_is_a_hint():
-    with pytest.raises(UnknownClass, match="unknown class 'Sedia'; did you mean Chair"):
-        NAMES.find("Sedia")
+@pytest.mark.parametrize("word", ["sedia", "Sedia", "se_dia"])
+def test_a_label_is_understood(word):
+    found = NAMES.find(word)
+    assert found.name == "Chair"
+    assert NAMES.note(word, found) == (f"'{word}' is read as Chair",)
+
+
+def test_a_name_wins_over_a_label():
+    names = ClassNames([info("Table"), info("Desk", italian="table")])
+    assert names.find("table").name == "Table"
+
+
+def test_a_label_of_several_is_refused_with_the_candidates():
+    names = ClassNames([info("Cup", italian="tazza"), info("Mug", italian="Tazza")])
+    with pytest.raises(UnknownClass, match="'tazza' may be Cup or Mug; say which class"):
+        names.find("tazza")
+
+
+def test_the_nearest_label_is_suggested_with_its_class():
+    with pytest.raises(UnknownClass, match=r"unknown class 'sedla'; did you mean Chair \('sedia'\)\?"):
+        NAMES.find("sedla")
+
+
+def twins() -> ClassNames:
+    """Two classes of one local name."""
+    color = info("dul:Color"), info("soma:Color")
+    return ClassNames(structs.replace(c, iri=f"http://{c.name[:3]}#Color", prefixed=c.name) for c in color)
+
+
+@pytest.mark.parametrize("word", ["Color", "color"])
+def test_a_name_of_several_classes_is_refused_with_the_candidates(word):
+    with pytest.raises(UnknownClass, match=f"'{word}' may be dul:Color or soma:Color; say which class"):
+        twins().find(word)
+
+
+@pytest.mark.parametrize("word", ["soma:Color", "SOMA:color", "http://som#Color", "<http://som#Color>"])
+def test_a_prefix_or_an_iri_says_which(word):
+    assert twins().find(word).name == "soma:Color"
+
+
+def test_without_classes_of_things_in_space_it_is_said_what_to_do():
+    names = ClassNames([info("Pizza", spatial=False)])
+    with pytest.raises(UnknownClass, match=r"nothing can be placed: .* --spatial-root CLASS"):
+        names.spatial("Pizza")
 
 
 def test_what_was_not_taken_literally_is_said():
@@ -51,7 +93,7 @@ def test_what_was_not_taken_literally_is_said():
 def test_an_exact_name_wins_over_a_folded_one():
     names = ClassNames([info("TV"), info("Tv")])
     assert names.find("Tv").name == "Tv"
-    with pytest.raises(UnknownClass, match="did you mean TV or Tv"):
+    with pytest.raises(UnknownClass, match="'tv' may be TV or Tv"):
         names.find("tv")
 
 
@@ -61,5 +103,5 @@ def test_an_unknown_class_is_told_with_the_nearest():
 
 
 def test_nothing_can_be_of_an_abstract_class():
-    with pytest.raises(UnknownClass, match="no class of things in space"):
+    with pytest.raises(UnknownClass, match="is not a class of things in space"):
         NAMES.spatial("Color")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+import sys
 import tomllib
 from importlib.metadata import packages_distributions
 from pathlib import Path
@@ -14,8 +16,26 @@ from schemas import errors
 from schemas.keys import NODES
 from tests.conftest import free_endpoint
 
-PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NOT_EVERYWHERE = {"open3d", "open3d-cpu"}
+OURS = {"nodes", "ontology", "schemas", "semmap"}
+NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
+"""What comes with another one, is done without, or is for type checkers only."""
+AREAS = {
+    "nodes/bus": (),
+    "nodes/coordinator": ("kb",),
+    "nodes/extern": tuple(extras.MODULES),  # which asks for them first
+    "nodes/kb_node": ("kb",),
+    "nodes/perception_node": ("perception",),
+    "nodes/recorder": ("record",),
+    "nodes/runtime": (),
+    "nodes/sim_node": ("sim",),
+    "nodes/supervisor": ("kb",),
+    "ontology": (),
+    "schemas": (),
+    "semmap": (),
+}
 
 
 def names(requirements):
@@ -37,6 +57,25 @@ def test_the_modules_of_an_extra_are_what_it_installs():
         installed = names(PROJECT["optional-dependencies"][extra]) - NOT_EVERYWHERE
         assert {name for module in modules for name in distributions[module] & installed} == installed
         assert all(distributions[module] & installed for module in modules)
+
+
+def third_party(path):
+    """What a file imports that neither Python nor this project has."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom) and node.level == 0:
+            names = [node.module]
+        yield from {name.split(".")[0] for name in names} - sys.stdlib_module_names - OURS
+
+
+@pytest.mark.parametrize("folder", AREAS)
+def test_what_an_area_imports_its_extra_installs(folder):
+    distributions = {m: {d.lower() for d in found} for m, found in packages_distributions().items()}
+    base = names(PROJECT["dependencies"])
+    allowed = {module for module, found in distributions.items() if found & base} | NOT_ASKED_FOR
+    allowed |= {module for extra in AREAS[folder] for module in extras.MODULES[extra]}
+    for path in (ROOT / folder).rglob("*.py"):
+        assert set(third_party(path)) <= allowed, path
 
 
 def test_all_is_every_extra():
@@ -101,8 +140,6 @@ def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp
 
 
 def test_names_are_guessed_without_rapidfuzz_too(monkeypatch):
-    import sys
-
     monkeypatch.setitem(sys.modules, "rapidfuzz", None)
     assert errors.did_you_mean("lst", ["list", "get", "add"]) == "; did you mean list?"
     assert errors.did_you_mean("xyzzy", ["list", "get", "add"]) == ""

@@ -46,9 +46,9 @@ def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
     view = MapReplica()
     view.take(commit(2, entity("sink1", "Sink")))
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
-    assert view.is_behind
+    assert not view.is_current
     view.begin(Snapshot(seq=2, entities=(entity("cup1", "Cup"), entity("sink1", "Sink"))))
-    assert not view.is_behind
+    assert view.is_current
 
 
 def test_another_knowledge_base_may_know_less():
@@ -56,17 +56,35 @@ def test_another_knowledge_base_may_know_less():
     view.take(commit(2, entity("sink1", "Sink")))
     view.doubt()
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
-    assert not view.is_behind
+    assert view.is_current
+
+
+def test_an_older_snapshot_counts_only_in_doubt():
+    view = begun()
+    view.take(commit(2, entity("sink1", "Sink")))
+    old = Snapshot(seq=1, entities=())
+    assert not view.begin(old)
+    assert (view.seq, len(view.entities), view.is_current) == (2, 3, True)
+    view.doubt()
+    assert not view.is_current
+    assert view.begin(old)
+    assert (view.seq, view.entities, view.is_current) == (1, {}, True)
+
+
+def test_in_doubt_a_commit_is_not_known():
+    view = begun()
+    view.doubt()
+    assert not view.take(commit(1))
 
 
 def test_an_abridged_commit_needs_a_snapshot():
     view = begun()
     left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)
     assert not view.take(msgspec.structs.replace(commit(2), abridged=left_out))
-    assert view.is_behind
+    assert not view.is_current
     assert (view.seq, set(view.entities)) == (1, {"cup1", "table1"})
     view.begin(Snapshot(seq=2, entities=(entity("sink1", "Sink"),)))
-    assert not view.is_behind
+    assert view.is_current
 
 
 def test_commits_between_two_pages_of_a_snapshot_are_taken_in_order():

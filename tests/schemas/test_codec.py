@@ -62,9 +62,7 @@ def test_what_unfolds_without_bounds_is_refused(monkeypatch):
 NUMBER = "must be a number from -10000 to 10000"
 SIZE = "must be a number above 0 and up to 10000"
 TEXT = "must be a text of 1 to 1000 characters"
-NAME = (
-    "must be a valid name: letters a to z, digits, '_', '.' and '-', at most 128, not beginning with a digit"
-)
+NAME = "must be a valid name: up to 128 letters, digits, '_', '.' and '-', beginning with a letter or '_'"
 
 
 @pytest.mark.parametrize(

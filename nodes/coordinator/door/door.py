@@ -27,7 +27,7 @@ _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
 }
 
 
-class Door(KnownMap):
+class Door:
     """Executes the commands that change the map, and sees it as they leave it.
 
     Owned by the coordinator's thread. Errors are those that the command deserves, and those of the knowledge
@@ -36,7 +36,7 @@ class Door(KnownMap):
 
     def __init__(self, ask: Ask) -> None:
         """`ask(call)` asks the knowledge base."""
-        super().__init__()
+        self.map = KnownMap()
         self._ask = ask
         self.hands = Hands()
 
@@ -49,9 +49,9 @@ class Door(KnownMap):
         return in_step([self._changing(command) for command in commands])
 
     def _changing(self, command: Change) -> Talk[Changed]:
-        return _CHANGING[type(command)](self, command)
+        return _CHANGING[type(command)](self.map, command)
 
     def follow(self, name: str, pose: Pose) -> None:
         """The map takes over where a body came to rest."""
         with self.hands.that_moved(name) as hand:
-            hold(changing.follow(self, name, pose, hand), self._ask)
+            hold(changing.follow(self.map, name, pose, hand), self._ask)

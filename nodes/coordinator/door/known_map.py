@@ -12,12 +12,11 @@ from schemas.entities import Entity
 
 
 class KnownMap(map_replica.MapReplica[Effects]):
-    """Besides the entities the classes, and whether another knowledge base may know less."""
+    """Besides the entities the classes, and both by name."""
 
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
-        self.doubted = False
         self._places: dict[str, Entity] | None = None
 
     @property
@@ -38,20 +37,13 @@ class KnownMap(map_replica.MapReplica[Effects]):
         known = sorted(self.entities.items())
         return tuple(e for _, e in known if class_name is None or class_name in e.types)
 
-    def doubt(self) -> None:
-        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
-        super().doubt()
-        self.doubted = True
-
-    def begin(self, snapshot: Snapshot) -> None:
-        """Take over a snapshot, unless it is older than what is known and not doubted."""
-        if snapshot.seq >= self.seq or self.doubted:
-            self.doubted = False
-            self._places = None
-            super().begin(snapshot)
+    def begin(self, snapshot: Snapshot) -> bool:
+        """See `MapReplica.begin`."""
+        self._places = None
+        return super().begin(snapshot)
 
     def take(self, commit: Effects) -> bool:
-        """Show a commit in `entities`. False when a snapshot is needed, because one before it was missed."""
+        """See `MapReplica.take`."""
         taken = super().take(commit)
         if self._places is not None:
             for name in commit.names:
@@ -60,4 +52,4 @@ class KnownMap(map_replica.MapReplica[Effects]):
                     self._places[name] = entity
                 else:
                     self._places.pop(name, None)
-        return taken and not self.doubted
+        return taken

@@ -13,7 +13,7 @@ from nodes.coordinator.door.committing import changed, commit, once, taken, take
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
-from nodes.runtime.class_names import ClassNames
+from nodes.runtime.class_names import AmbiguousClass, ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
@@ -118,6 +118,8 @@ def _sort_out(
     for i, item in enumerate(described, start=1):
         try:
             found = classes.spatial(item.class_)
+        except AmbiguousClass:
+            raise
         except errors.UnknownClass:
             unknown.setdefault(item.class_, []).append(item.name or f"entity {i}")
             continue

@@ -110,7 +110,7 @@ class Keeping:
     def wanted(self, names: Collection[str] | None = None) -> Actions:
         """What map and scene still differ in: all of it, or what concerns these entities and bodies."""
         failed = {name: commit for name, (commit, _) in self._failed.items()}
-        entities, bodies = self._door.entities, self.scene.bodies
+        entities, bodies = self._door.map.entities, self.scene.bodies
         if names is not None:
             entities, bodies = _only(names, entities), _only(names, bodies)
         return reconcile(entities, bodies, self._config.truth, self._config.thresholds, failed)
@@ -134,7 +134,7 @@ class Keeping:
         self.keep()
         placements = tuple(
             Placement(name=e.name, pose=e.pose, commit=e.pose_provenance.commit)
-            for e in self._door.entities.values()
+            for e in self._door.map.entities.values()
             if e.pose is not None and e.name in self.scene.bodies
         )
         return self._ask(MoveBodies(placements=placements))
@@ -160,7 +160,7 @@ class Keeping:
 
     def problems(self) -> list[str]:
         """What is amiss between map and scene, one sentence each."""
-        entities = sorted(self._door.entities.items())
+        entities = sorted(self._door.map.entities.items())
         states = ((name, self.body_state(entity)) for name, entity in entities)
         amiss = [
             f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
@@ -218,7 +218,7 @@ class Keeping:
 
     def _placed(self, reply: BodiesMoved) -> None:
         """A body that cannot be put where the map says is made anew there, or there is a reason why not."""
-        entities = self._door.entities
+        entities = self._door.map.entities
         anew = tuple(
             order(entity, entity.pose)
             for name in reply.failed
@@ -234,7 +234,7 @@ class Keeping:
             self._door.follow(placement.name, rounded(placement.pose))
         except errors.Refused as error:
             self._report(f"{placement.name} goes back, because the map refused its new place: {error.text}")
-            entity = self._door.entities[placement.name]
+            entity = self._door.map.entities[placement.name]
             if entity.pose is not None:
                 commit = entity.pose_provenance.commit
                 return Placement(name=placement.name, pose=entity.pose, commit=commit)

@@ -35,7 +35,7 @@ class Running:
         """Take a body and put it elsewhere, as a hand would."""
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
-            state = self._keeping.body_state(self._door.entity(command.name))
+            state = self._keeping.body_state(self._door.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from nodes.extern.cli.verbs import ask, completion, edit, lifecycle, past, perceive, run, scene
+from nodes.extern.cli.verbs import ask, completion, edit, lifecycle, past, perceive, run, scene, tbox
 from schemas import errors
 
 _VERBS = (
@@ -15,6 +15,7 @@ _VERBS = (
         ask.check,
         ask.infer,
         ask.explain,
+        ask.could,
         ask.relations,
         ask.export,
         ask.classes,
@@ -24,7 +25,7 @@ _VERBS = (
     *(ask.sparql, ask.watch, past.history, past.last_seen),
     perceive.perceive,
     *(scene.move, scene.pause, scene.step, scene.reset, scene.picture, scene.replay),
-    *(lifecycle.up, lifecycle.down, lifecycle.node, lifecycle.repair, completion.completion),
+    *(lifecycle.up, lifecycle.down, lifecycle.node, lifecycle.repair, tbox.tbox, completion.completion),
 )
 
 

@@ -99,11 +99,6 @@ def given(fields: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in fields.items() if value not in (None, (), False)}
 
 
-def command(kind: type[Any], **fields: Any) -> Any:
-    """A command of the options that were given. Raises BadRequest."""
-    return codec.convert(given(fields), kind)
-
-
 def complain(text: str) -> None:
     """What is wrong, in one line on stderr."""
     print(f"semmap: {' '.join(text.split())}", file=sys.stderr)

@@ -16,6 +16,8 @@ from schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"
+_OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
+"""The classes of what describes an entity, in which semmap writes whatever the TBox."""
 _FEW = 5
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
@@ -42,7 +44,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     triples = _with_floats(list(triples))
     types_said = [t for t in triples if t[1] == v.RDF_TYPE]
     declared = {s for s, _, o in types_said if o in (v.OWL_CLASS, v.RDFS_CLASS)}
-    known = declared.union(classes.names)
+    known = declared.union(classes.names, _OF_STARS)
     built_in = {o for o in {o for _, _, o in types_said} if is_built_in(o)}
     types = [(s, o) for s, _, o in types_said if o not in built_in]
     spatial = _with_subclasses(classes.spatial, triples)
@@ -51,7 +53,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
     for s, c in unknown:
-        users.setdefault(v.local_name(c), []).append(v.local_name(s))
+        users.setdefault(v.local_name(c), []).append(_called(s))
     if unknown and not skip_unknown:
         raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
@@ -117,6 +119,8 @@ def _with_float(triple: Triple) -> Triple:
 
 def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
     """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
+    if not any(p.startswith(_TBOX) for p in classes.properties):
+        return []  # the TBox is somebody else's, and these are the words of stars
     used = {p for p in set(map(itemgetter(1), triples)) if p.startswith(_TBOX)} - classes.properties
     unknown = used and used - {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
     if not unknown:

@@ -17,7 +17,7 @@ from schemas import errors
 from schemas.explanations import Term, Triple
 
 SUFFIXES = (".owl", ".rdf", ".rdfs", ".ttl", ".nt", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx", ".xml")
-_VERSION = v.iri(f"{v.OWL}versionIRI")
+VERSION = v.iri(f"{v.OWL}versionIRI")
 
 
 class Gathered(NamedTuple):
@@ -42,11 +42,11 @@ class Header(NamedTuple):
 
 def header(triples: Iterable[Triple]) -> Header:
     """The ontologies with their versions and imports."""
-    said: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, _VERSION: {}, v.OWL_IMPORTS: {}}
+    said: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, VERSION: {}, v.OWL_IMPORTS: {}}
     for s, p, o in triples:
         if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY:
             said[v.OWL_ONTOLOGY][s] = None
-        elif p in (_VERSION, v.OWL_IMPORTS):
+        elif p in (VERSION, v.OWL_IMPORTS):
             said[p][o] = None
     return Header(*(tuple(sorted(terms)) for terms in said.values()))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable
+from types import MappingProxyType
 from xml.parsers import expat
 
 import pyoxigraph
@@ -16,6 +17,7 @@ import pyoxigraph
 from nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from ontology import vocabulary as v
+from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.commands import RdfFormat
 from schemas.explanations import Triple
@@ -150,7 +152,18 @@ def _require_within(name: str, _: bool, text: str | None, *where: str | None) ->
         )
 
 
-def serialise(triples: Iterable[Triple], syntax: RdfFormat) -> bytes:
+def prefixes(content: bytes) -> dict[str, str]:
+    """Prefix to namespace, as a document that `parse` reads declares them."""
+    content = content.removeprefix(_BOM)
+    quads = pyoxigraph.parse(content, _SYNTAX[syntax_of(content)], base_iri=v.ABOX, without_named_graphs=True)
+    for _ in quads:
+        break  # they come before the first triple
+    return dict(quads.prefixes)
+
+
+def serialise(
+    triples: Iterable[Triple], syntax: RdfFormat, prefixes: Prefixes = MappingProxyType(v.PREFIXES)
+) -> bytes:
     """A document in which `triples` are sorted and prefixed; `parse` gives them back.
 
     Raises Refused for a text that the syntax cannot hold.
@@ -159,7 +172,7 @@ def serialise(triples: Iterable[Triple], syntax: RdfFormat) -> bytes:
     if syntax == "ntriples":
         return lines
     quads = pyoxigraph.parse(lines, pyoxigraph.RdfFormat.N_TRIPLES)
-    document = pyoxigraph.serialize(quads, format=_SYNTAX[syntax], prefixes=dict(v.PREFIXES))
+    document = pyoxigraph.serialize(quads, format=_SYNTAX[syntax], prefixes=dict(prefixes))
     assert document is not None
     if syntax == "jsonld":
         return json.dumps(json.loads(document), indent=1, ensure_ascii=False).encode()

@@ -54,8 +54,8 @@ def beyond(kinds: Counter[str]) -> str:
     few = ", ".join(f"{count} {kind}" for kind, count in most)
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
-    axioms = "1 axiom is" if kinds.total() == 1 else f"{kinds.total()} axioms are"
-    return f"{axioms} outside OWL 2 RL and inert ({few})"
+    axioms = "1 axiom says" if kinds.total() == 1 else f"{kinds.total()} axioms say"
+    return f"{axioms} more than OWL 2 RL can, and that part has no effect ({few})"
 
 
 def slow(reasoner: Reasoner) -> str:

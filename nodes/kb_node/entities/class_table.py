@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 from msgspec import structs
 
+from nodes.kb_node.entities import alignments
+from nodes.kb_node.entities.alignments import Alignment
 from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
+from ontology import prefixes, stars
 from ontology import vocabulary as v
+from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import errors
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term
 
-_CHUNK = re.compile(r"[^/*$?#\s]+")
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
+_CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
+_TRUE = frozenset(v.literal(text, v.XSD_BOOLEAN) for text in ("true", "1"))
+_LABELS = (v.RDFS_LABEL, v.SKOS_PREF_LABEL, v.SKOS_ALT_LABEL)
 
 
 class Kind(NamedTuple):
-    """What the classes of an entity say of it. Names are local names of the TBox."""
+    """What the classes of an entity say of it. Names are those of the class table."""
 
     class_name: str
     """The most special spatial class that is asserted, or else the most special one that follows."""
@@ -35,25 +40,54 @@ class ClassTable:
     """The named classes of a TBox: which are of things in space, which are places, what they look like."""
 
     def __init__(self, reasoner: Reasoner) -> None:
-        """Raises BadFile when the classes cannot be told apart by their local names, in commands and keys."""
         self._reasoner = reasoner
-        self.names: dict[Term, str] = {
-            c: v.local_name(c)
-            for c, _, _ in sorted(reasoner.asserted(None, v.RDF_TYPE, v.OWL_CLASS))
-            if c.startswith("<") and c not in _BUILT_IN
-        }
-        self.spatial: frozenset[Term] = frozenset().union(*map(self._named_below, self._spatial_roots()))
-        self.places: frozenset[Term] = self._named_below(v.LOCATION)
+        declared = {s for kind in _CLASSES for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)}
+        classes = sorted(c for c in declared if c.startswith("<") and c not in _BUILT_IN)
         self.properties = frozenset(
             s for kind in v.PROPERTY_KINDS for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
         )
-        self.iris = _by_name(self.names)
-        self.stated = PropertyTable(reasoner)
+        self.prefixes = prefixes.prefixes_of(
+            (prefixes.split(term)[0] for term in (*classes, *self.properties) if term.startswith("<")),
+            prefixes.declared_in(reasoner.asserted(None, prefixes.PREFERRED_PREFIX, None)),
+        )
+        """Those of the namespaces in which the TBox has classes and properties."""
+        self.names: dict[Term, str] = prefixes.names(classes, self.prefixes)
+        """Class to name: its local name, with a prefix where several classes share that."""
+        self.iris = {name: c for c, name in self.names.items()}
+        self.alignments: tuple[Alignment, ...] = alignments.of_namespaces(self.prefixes.values())
+        """Those that say how the TBox's vocabulary tells positions, sizes and names."""
+        self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
+        """The properties that lead from an entity to the individuals that describe it, and on."""
+        self.first_words = frozenset[Term]().union(*(known.first_words for known in self.alignments))
+        """The alignments' properties by which an entity begins to describe itself."""
+        self.declared_roots = tuple(
+            sorted(s for s, _, o in reasoner.asserted(None, v.SPATIAL, None) if o in _TRUE)
+        )
+        """Those that the TBox or whoever loaded it calls so, in so many words."""
+        self.spatial_roots: tuple[Term, ...] = tuple(self._spatial_roots())
+        """The classes whose instances, and those of whose subclasses, are things in space."""
+        self.spatial: frozenset[Term] = self._named_below(*self.spatial_roots)
+        self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
+        places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
+        self.places: frozenset[Term] = places - self._solid
+        self.stated = PropertyTable(reasoner, self.prefixes, self.edges | self.first_words)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
-        self.fixed: frozenset[Term] = frozenset(c for c in self.names if self._nearest(c, v.FIXED) == "true")
+        built_in = self._named_below(*(c for known in self.alignments for c in known.fixed))
+        self.fixed: frozenset[Term] = frozenset(
+            c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
+        )
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
+
+    @property
+    def ambiguous(self) -> dict[str, tuple[str, ...]]:
+        """Each local name that several classes share, with the names that tell them apart."""
+        sharing: dict[str, list[str]] = {}
+        for c, name in self.names.items():
+            if name == prefixes.prefixed(c, self.prefixes):
+                sharing.setdefault(v.local_name(c), []).append(name)
+        return {local: tuple(sorted(names)) for local, names in sorted(sharing.items()) if len(names) > 1}
 
     def special_first(self, types: Iterable[Term]) -> list[Term]:
         """Those of `types` that are named classes of the TBox, the most special one first."""
@@ -79,7 +113,7 @@ class ClassTable:
         return Kind(
             class_name=self.names[said[0]],
             types=tuple(self.names[t] for t in named),
-            place=any(t in self.places for t in named),
+            place=any(t in self.places for t in named) and self._solid.isdisjoint(named),
             fixed=any(t in self.fixed for t in said),
             model=self.models[said[0]],
         )
@@ -102,18 +136,62 @@ class ClassTable:
             for row in self.rows
         )
 
+    @cached_property
+    def index(self) -> NameIndex:
+        """Finds a class by what people call it."""
+        return NameIndex(
+            Named(row.name, row.iri, row.prefixed, (*row.labels.values(), *row.also)) for row in self.rows
+        )
+
+    @cached_property
+    def property_names(self) -> dict[Term, str]:
+        """Property to name: its local name, with a prefix where several properties share that."""
+        return prefixes.names([p for p in self.properties if p.startswith("<")], self.prefixes)
+
+    @cached_property
+    def _properties_by_word(self) -> tuple[NameIndex, dict[str, Term]]:
+        named = [
+            Named(
+                name,
+                v.bare(p),
+                prefixes.prefixed(p, self.prefixes),
+                tuple(
+                    v.lexical(o) for _, _, o in self._reasoner.asserted(p, v.RDFS_LABEL, None) if o[0] == '"'
+                ),
+            )
+            for p, name in self.property_names.items()
+        ]
+        return NameIndex(named), {name: p for p, name in self.property_names.items()}
+
+    def property_named(self, word: str) -> Term:
+        """The property that `word` means: its name, IRI or label. Raises BadRequest with the candidates."""
+        index, by_name = self._properties_by_word
+        try:
+            name = index.find(word)
+        except Ambiguous as error:
+            raise errors.BadRequest(f"'{word}' may be {error}; say which property") from None
+        if name is None:
+            hint = index.did_you_mean(word) or "; there are type and the properties of the TBox"
+            raise errors.BadRequest(f"unknown property '{word}'{hint}")
+        return by_name[name]
+
     def _row(self, c: Term) -> ClassInfo:
-        labels = {
-            v.language_of(o) or "": v.lexical(o)
-            for _, _, o in sorted(self._reasoner.asserted(c, v.RDFS_LABEL, None))
-        }
-        comments = sorted(o for _, _, o in self._reasoner.asserted(c, v.RDFS_COMMENT, None))
+        labels: dict[str, str] = {}
+        also: dict[str, None] = {}
+        for label in _LABELS:
+            for _, _, o in sorted(self._reasoner.asserted(c, label, None)):
+                text = v.lexical(o) if o.startswith('"') else ""
+                if text and labels.setdefault(v.language_of(o) or "", text) != text:
+                    also[text] = None
+        comments = sorted(o for _, _, o in self._reasoner.asserted(c, v.RDFS_COMMENT, None) if o[0] == '"')
         return ClassInfo(
             name=self.names[c],
             iri=v.bare(c),
+            prefixed=prefixes.prefixed(c, self.prefixes),
             parents=tuple(self.names[p] for p in self._parents[c]),
             ancestors=tuple(self.names[a] for a in self.special_first(self._reasoner.superclasses(c) - {c})),
             labels=labels,
+            also=tuple(also),
             comment=v.lexical(comments[0]) if comments else "",
             spatial=c in self.spatial,
             place=c in self.places,
@@ -122,19 +200,21 @@ class ClassTable:
         )
 
     def _spatial_roots(self) -> list[Term]:
-        """The domain of hasPosition; if there is none, Physical_Thing, or else whatever is no Property."""
-        said = [
-            o for _, _, o in self._reasoner.asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None) if o in self.names
-        ]
-        if said:
-            return said
-        if v.PHYSICAL_THING in self.names:
-            return [v.PHYSICAL_THING]
-        properties = self._named_below(v.PROPERTY)
-        return [c for c in self.names if c not in properties]
+        """What the TBox says (`dm:spatial`, the domain of hasPosition, Physical_Thing), else its alignments.
 
-    def _named_below(self, root: Term) -> frozenset[Term]:
-        return frozenset(c for c in self._reasoner.subclasses(root) if c in self.names)
+        A TBox that speaks the household's language and says none of it means all but its Properties. Of any
+        other TBox nobody knows, and nothing of it is in space until somebody says what is.
+        """
+        asserted = self._reasoner.asserted
+        said = set(self.declared_roots) or {o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)}
+        said = {c for c in said if c in self.names} or {v.PHYSICAL_THING}.intersection(self.names)
+        said = said or {c for known in self.alignments for c in known.things if self._named_below(c)}
+        if not said and v.TBOX in self.prefixes.values():
+            said = set(self.names) - self._named_below(v.PROPERTY)
+        return sorted(said)
+
+    def _named_below(self, *roots: Term) -> frozenset[Term]:
+        return frozenset(c for root in roots for c in self._reasoner.subclasses(root) if c in self.names)
 
     def _named_parents(self, c: Term) -> list[Term]:
         return sorted(
@@ -151,13 +231,3 @@ class ClassTable:
             seen.update(level)
             level = [p for a in level for p in self._parents.get(a, ()) if p not in seen]
         return ""
-
-
-def _by_name(names: dict[Term, str]) -> dict[str, Term]:
-    iris: dict[str, Term] = {}
-    for c, name in names.items():
-        if not _CHUNK.fullmatch(name):
-            raise errors.BadFile(f"the class {c} of the TBox needs an IRI that ends in a name")
-        if iris.setdefault(name, c) != c:
-            raise errors.BadFile(f"the TBox has two classes named {name}, {iris[name]} and {c}: rename one")
-    return iris

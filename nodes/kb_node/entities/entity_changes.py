@@ -91,7 +91,7 @@ def of(
 
 def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     """The entity with this IRI."""
-    entity = by_name.get(v.local_name(iri))
+    entity = by_name.get(v.entity_name(iri))
     return entity if entity is not None and v.iri(entity.iri) == iri else None
 
 

@@ -9,6 +9,7 @@ from itertools import islice
 
 from msgspec import structs
 
+from nodes.kb_node.entities import aligned
 from nodes.kb_node.entities.class_table import ClassTable, Kind
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
@@ -20,6 +21,7 @@ from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
+_LONGEST_WAY = 8
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
@@ -59,15 +61,24 @@ def read_entity(
         return None
     about = about or reasoner.about
     said = about(iri)
+    if classes.alignments and iri.startswith("_:"):
+        return None  # a part that somebody describes without naming it: nobody could ask for it
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
+    size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
+    pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
+    preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
+    if classes.alignments:
+        size_m = size_m or aligned.size(classes.alignments, about, iri)
+        pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
+        preferred = preferred or aligned.names(classes.alignments, about, iri)[:1]
     return entity_of(
         iri,
         kind,
         provenance,
-        pose=_pose(about, iri, said.get(v.HAS_POSITION, ())),
-        size_m=_size(about, iri, said.get(v.HAS_SIZE, ())),
-        preferred=_references(about, said.get(v.HAS_PREFERRED_REFERENCE, ())),
+        pose=pose,
+        size_m=size_m,
+        preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         properties=classes.stated.stated(said),
@@ -154,28 +165,45 @@ def _name(iri: Term, class_name: str) -> str:
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):
         raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
-    name = v.local_name(iri)
+    name = v.entity_name(iri)
     if not _NAME.match(name):
         raise errors.BadRequest(
-            f"the {class_name} {iri} needs an IRI that ends in a name of letters a to z, digits, '_', '.'"
-            " and '-', not beginning with a digit"
+            f"the {class_name} {iri} needs an IRI that ends in a valid name: up to 128 letters, digits, '_',"
+            " '.' and '-', beginning with a letter or '_'"
         )
     return name
 
 
-def owners(reasoner: Reasoner, subject: Term) -> set[Term]:
-    """The individuals to whose star a triple about `subject` may belong: itself, and who points to it."""
-    return {subject, *users(reasoner, subject)}
+def owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
+    """The individuals to whose star a triple about `subject` may belong: itself, and who points to it.
+
+    With alignments also who points to these, as far as the way to a pose or a size may be long.
+    """
+    found = {subject, *users(reasoner, subject)}
+    if classes.alignments:
+        latest = {subject}
+        for _ in range(_LONGEST_WAY):
+            pointing = (triple for node in latest for triple in reasoner.asserted(None, None, node))
+            latest = {s for s, p, _ in pointing if p in classes.edges} - found
+            found |= latest
+    return found
 
 
-def read_star(reasoner: Reasoner, iri: Term, seq: int, leaving: Set[Term], tbox: frozenset[Triple]) -> Star:
+def read_star(
+    reasoner: Reasoner,
+    classes: ClassTable,
+    iri: Term,
+    seq: int,
+    leaving: Set[Term],
+    tbox: frozenset[Triple],
+) -> Star:
     """The triples about an entity, as `star_of` has them. Raises Refused."""
-    own, incoming = star_of(reasoner, iri, leaving, tbox)
-    return Star(seq=seq, name=v.local_name(iri), iri=iri, own=tuple(own), incoming=tuple(incoming))
+    own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
+    return Star(seq=seq, name=v.entity_name(iri), iri=iri, own=tuple(own), incoming=tuple(incoming))
 
 
 def star_of(
-    reasoner: Reasoner, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
+    reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
 ) -> tuple[list[Triple], list[Triple]]:
     """The triples about an entity: its own, and what others say of it.
 
@@ -189,7 +217,26 @@ def star_of(
     for node in sorted(nodes):
         if all(user in leaving for user in users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
+    if classes.alignments:
+        for node in sorted(_belongings(reasoner, classes, iri, leaving) - nodes):
+            own += [t for t in reasoner.asserted(node) if t not in tbox]
     return own, [t for t in reasoner.asserted(None, None, iri) if t[0] != iri]
+
+
+def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term]) -> set[Term]:
+    """The individuals that describe an entity by an alignment's words, or namelessly, and nobody else."""
+    found: set[Term] = set()
+    pending = [iri]
+    while pending:
+        for p, objects in reasoner.about(pending.pop()).items():
+            for o in objects:
+                describes = o.startswith("_:") or (p in classes.edges and o.startswith("<"))
+                if p == v.RDF_TYPE or not describes or o in found or o in leaving:
+                    continue
+                if all(s in leaving or s in found or s == o for s, _, _ in reasoner.asserted(None, None, o)):
+                    found.add(o)
+                    pending.append(o)
+    return found
 
 
 def users(reasoner: Reasoner, node: Term) -> Iterator[Term]:

@@ -2,13 +2,16 @@
 
 The counterpart of `entity_reading`. It runs where the triples are, so an intent needs no look at them
 beforehand, finds free names for the individuals of a star by itself, and cannot be out of date.
+
+What is said in the words of an alignment is said anew in these words, where it stands, so that others read an
+export as before. What nobody has said yet is said in semmap's own words.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from nodes.kb_node.entities import entity_reading
+from nodes.kb_node.entities import aligned, entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.entity_reading import Objects
 from nodes.kb_node.entities.property_table import Property
@@ -18,7 +21,7 @@ from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Edit, NewEntity, Statement
-from schemas.entities import Entity, Pose
+from schemas.entities import Entity, Pose, Size
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
@@ -46,7 +49,7 @@ class Draft:
         iris = [v.iri(entity.iri) for entity in leaving]
         together = frozenset(iris)
         for iri in iris:
-            own, incoming = entity_reading.star_of(self._reasoner, iri, together, self._tbox)
+            own, incoming = entity_reading.star_of(self._reasoner, self._classes, iri, together, self._tbox)
             self.retract.update(dict.fromkeys(own))
             self.retract.update(dict.fromkeys(incoming))
 
@@ -93,15 +96,14 @@ class Draft:
             raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
         self._require(entity.name, said, edit.only_if)
         self._state(entity, said, edit)
-        if edit.places:
-            self._place(entity, said.get(v.HAS_POSITION, ()), _pose(entity, edit))
+        if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
+            self._place(entity, said.get(v.HAS_POSITION, ()), _pose(entity, edit), edit.size or entity.size_m)
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
             self._require_class(edit.class_iri)
             self._go((iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL)
             self._come([(iri, v.RDF_TYPE, v.iri(edit.class_iri))])
         if edit.size is not None:
-            node = self._numbers(entity, v.HAS_SIZE, said.get(v.HAS_SIZE, ()), "size", v.SIZE_XYZ)
-            self._come(stars.size(iri, node, edit.size))
+            self._resize(entity, said.get(v.HAS_SIZE, ()), edit.size)
         if edit.ref is not None and edit.ref != entity.preferred_reference:
             nodes = said.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
@@ -156,13 +158,42 @@ class Draft:
         iri = v.iri(entity.iri) if entity is not None else v.entity_iri(name)
         return iri if iri in self._new or self._is_described(iri) else None
 
-    def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose) -> None:
+    def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
+        about = self._reasoner.about
+        said = None if nodes else aligned.said_pose(self._classes.alignments, about, v.iri(entity.iri))
+        if said is not None and self._is_own_way(said.nodes):
+            self._change(aligned.pose_triples(said, pose, size_m, about))
+            return
+        if said is not None:
+            self._leave(said.nodes, said.words.path, said.words.position)
         numbers = stars.COORDINATE_PROPERTIES
         node = self._numbers(entity, v.HAS_POSITION, nodes, "coordinates", numbers)
         if list(nodes) == [node]:
             self._come(stars.coordinates(node, pose))
         else:
             self._come(stars.position(v.iri(entity.iri), node, pose))
+
+    def _resize(self, entity: Entity, nodes: Sequence[Term], size_m: Size) -> None:
+        iri, about = v.iri(entity.iri), self._reasoner.about
+        said = None if nodes else aligned.said_size(self._classes.alignments, about, iri)
+        if said is not None and self._is_own_way(said.nodes):
+            self._change(aligned.size_triples(said, size_m, about))
+            return
+        if said is not None:
+            self._leave(said.nodes, said.words.path, said.words.x)
+        node = self._numbers(entity, v.HAS_SIZE, nodes, "size", v.SIZE_XYZ)
+        self._come(stars.size(iri, node, size_m))
+
+    def _is_own_way(self, nodes: Sequence[Term]) -> bool:
+        """Do the individuals between an entity and its pose or size describe nothing else?"""
+        return all(s in nodes for node in nodes[1:] for s, _, _ in self._reasoner.asserted(None, None, node))
+
+    def _leave(self, nodes: Sequence[Term], path: Sequence[Term], last: Term) -> None:
+        """An entity no longer has what it shares with others; the others keep it."""
+        for s, p, o in zip(nodes, (*path, last), (*nodes[1:], None), strict=True):
+            self._go(self._reasoner.asserted(s, p, o))
+            if o is not None and not self._is_own_way((s, o)):
+                return
 
     def _numbers(
         self, entity: Entity, edge: Term, nodes: Sequence[Term], word: str, numbers: Sequence[Term]
@@ -229,6 +260,10 @@ class Draft:
 
     def _go(self, triples: Iterable[Triple]) -> None:
         self.retract.update(dict.fromkeys(triples))
+
+    def _change(self, changes: tuple[list[Triple], list[Triple]]) -> None:
+        self._go(changes[0])
+        self._come(changes[1])
 
     def _come(self, triples: Iterable[Triple]) -> None:
         self.insert.update(dict.fromkeys(triples))

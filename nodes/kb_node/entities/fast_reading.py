@@ -6,7 +6,7 @@ are its own. Whatever is not so regular, or makes no sense, is left to `entities
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from itertools import count
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
@@ -130,7 +130,7 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | Non
     if not are_entities[0] or any(are_entities[1:]):
         return None
     said = _Said(run)
-    if said.has_conflict:
+    if said.has_conflict or said.speaks(classes.first_words):
         return None
     kind = classes.kind(reasoner.types(said.entity), frozenset(said.classes))
     assert kind is not None
@@ -174,6 +174,10 @@ class _Said:
     def has_conflict(self) -> bool:
         """Whether perception is against it."""
         return any((0, v.CONFLICTING_OBSERVATION) in by for by in (self._nodes, self._places))
+
+    def speaks(self, words: Set[Term]) -> bool:
+        """Whether the entity says anything by one of these properties."""
+        return any(place == 0 and p in words for by in (self._nodes, self._places) for place, p in by)
 
     def node(self, predicate: Term) -> int | None:
         """The only node that the entity has by a predicate, if it has any."""

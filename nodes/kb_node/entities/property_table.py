@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from functools import cached_property
+from types import MappingProxyType
 from typing import NamedTuple
 
 from nodes.kb_node.entities import property_values
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.sparql.text import PREFIXES
+from nodes.kb_node.sparql.queries.text import query_prefixes
+from ontology import prefixes
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.entities import PropertyInfo
@@ -40,8 +42,15 @@ class Property(NamedTuple):
 class PropertyTable:
     """The data and object properties of a TBox, by IRI, local name and label; and its individuals."""
 
-    def __init__(self, reasoner: Reasoner) -> None:
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        known_prefixes: Mapping[str, str] = MappingProxyType({}),
+        edges: Set[Term] = frozenset(),
+    ) -> None:
+        """`edges` are more properties that make up an entity's star."""
         self._reasoner = reasoner
+        self._prefixes = query_prefixes(known_prefixes)
         typed = [(s, o) for s, _, o in reasoner.asserted(None, v.RDF_TYPE) if s.startswith("<")]
         classes = {s for s, o in typed if o == v.OWL_CLASS}
         self._of_the_tbox = {s for s, o in typed if o == v.OWL_NAMED_INDIVIDUAL or o in classes}
@@ -51,18 +60,15 @@ class PropertyTable:
             for p, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
             if p.startswith("<") and p not in _OF_A_STAR
         }
-        locals_: dict[str, int] = {}
-        for p in declared:
-            locals_[v.local_name(p)] = locals_.get(v.local_name(p), 0) + 1
+        names = prefixes.names(declared.keys(), known_prefixes)
         self.by_iri: dict[Term, Property] = {}
         for p, is_data in sorted(declared.items()):
-            if p in STRUCTURAL:
+            if p in STRUCTURAL or p in edges:
                 continue
             above = self._above(p)
-            local = v.local_name(p)
             self.by_iri[p] = Property(
                 iri=p,
-                name=local if locals_[local] == 1 else p,
+                name=names[p],
                 is_data=is_data,
                 functional=any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
                 ranges=frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
@@ -81,7 +87,7 @@ class PropertyTable:
         Raises BadRequest with the nearest names; for what makes up the star of entity `name`, with the
         option that changes it.
         """
-        term = _term(word)
+        term = self._term(word)
         found = {term} if term is not None else set(self._words.get(_fold(word), ()))
         if len(found) > 1:
             exact = {p for p in found if v.local_name(p) == word}
@@ -106,7 +112,7 @@ class PropertyTable:
         """
         if prop.is_data:
             return property_values.literal(prop.name, prop.ranges, text)
-        term = _term(text)
+        term = self._term(text)
         if term is not None:
             if any(self._reasoner.asserted(term)):
                 return term
@@ -168,6 +174,13 @@ class PropertyTable:
             self._note(words, i)
         return words
 
+    def _term(self, word: str) -> Term | None:
+        """A term as it is written, or a name with a prefix that queries know; None for another word."""
+        prefix, colon, name = word.partition(":")
+        if word.startswith("<") and word.endswith(">"):
+            return word
+        return v.iri(self._prefixes[prefix] + name) if colon and prefix in self._prefixes else None
+
     def _note(self, words: dict[str, set[Term]], term: Term) -> None:
         for word in (v.local_name(term), *self._labels(term).values()):
             words.setdefault(_fold(word), set()).add(term)
@@ -198,14 +211,6 @@ class PropertyTable:
 def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
     values = tuple(sorted(map(property_values.plain, terms), key=str))
     return prop.name, values[0] if prop.functional and len(values) == 1 else values
-
-
-def _term(word: str) -> Term | None:
-    """A term as it is written, or a name with a prefix that queries know; None for another word."""
-    prefix, colon, name = word.partition(":")
-    if word.startswith("<") and word.endswith(">"):
-        return word
-    return v.iri(PREFIXES[prefix] + name) if colon and prefix in PREFIXES else None
 
 
 def _names(terms: Iterable[Term]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from nodes.kb_node.reasoner.explain.proof import Prover
 from nodes.kb_node.reasoner.explain.reasons import Clash
 from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.explain.support import Support
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
 from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
 from nodes.kb_node.reasoner.rules.closure import Closure
@@ -46,7 +47,7 @@ class CompiledEngine:
     def __init__(self, triples: Iterable[Triple], closed: Facts | None = None) -> None:
         """Start with some triples; `closed` is the closure of those of the schema, if it is known."""
         triples = list(triples)
-        self._prover = Prover()
+        self._prover = Prover(Words.of(triples))
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         self._inert = Facts(dict.fromkeys(filter(is_inert, self._schema_triples)))
         spoken = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
@@ -68,6 +69,11 @@ class CompiledEngine:
 
     def __len__(self) -> int:
         return self._size
+
+    @property
+    def words(self) -> Words:
+        """What terms are called in sentences."""
+        return self._prover.words
 
     @property
     def closed(self) -> Facts:
@@ -199,6 +205,11 @@ class CompiledEngine:
     def without_known_schema(self, triples: Iterable[Triple], *, known: bool) -> list[Triple]:
         """Triples without those of the schema that are asserted already (or, unless `known`, are not)."""
         return [t for t in triples if not is_schema(t) or (t in self._schema_triples) != known]
+
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups, between which the ABox may change."""
+        yield list(self._schema_triples)
+        yield from self._view.by_subject()
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""

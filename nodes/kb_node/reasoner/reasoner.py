@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -48,6 +49,11 @@ class Reasoner:
     def is_compiled(self) -> bool:
         """Whether changes are worked out one by one; else everything is, at each change."""
         return isinstance(self._engine, CompiledEngine)
+
+    @property
+    def words(self) -> Words:
+        """What terms are called in sentences: labels of the TBox, or names."""
+        return self._engine.words
 
     @property
     def not_incremental(self) -> str | None:
@@ -143,6 +149,15 @@ class Reasoner:
     ) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
         return self._engine.asserted(s, p, o)
+
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples in groups of one subject, for whoever has no time to read all of them at once.
+
+        The triples may change between two groups: one that is asserted all the while is among them, and one
+        that is asserted at no time is not.
+        """
+        engine = self._engine
+        return engine.by_subject() if isinstance(engine, CompiledEngine) else iter([list(self.asserted())])
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject, predicate to objects. Costs as much as there is."""

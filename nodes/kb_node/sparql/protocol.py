@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from nodes.kb_node.sparql.dataset import Delta
+from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
@@ -23,6 +23,18 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
+
+
+class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
+    """Instead of `Load`: the triples are in the store at `path`.
+
+    It has all commits up to `seq` and some of those up to `settled`, which follow: only with all of these it
+    is a map.
+    """
+
+    path: str
+    seq: int
+    settled: int
 
 
 class Committed(Struct, frozen=True, kw_only=True, tag=True):
@@ -87,7 +99,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
     old: bool = False
 
 
-ToWorker = Load | Committed | Asked | Hire
+ToWorker = Load | LoadKept | Committed | Asked | Hire
 FromWorker = Answered | Left | News
 
 to_worker = msgpack.Decoder(ToWorker)

@@ -19,11 +19,12 @@ from typing import Final, NoReturn
 
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql import text
-from nodes.kb_node.sparql.dataset import Dataset
-from nodes.kb_node.sparql.evaluation import answer
-from nodes.kb_node.sparql.log import Log
 from nodes.kb_node.sparql.protocol import Outcome, Question, questions
+from nodes.kb_node.sparql.queries import text
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
+from nodes.kb_node.sparql.triples.kept import remove_clone
+from nodes.kb_node.sparql.triples.log import Log
 from schemas import errors
 
 MEMORY_BYTES: Final = 1 << 30
@@ -34,6 +35,8 @@ ANSWER_BYTES: Final = 32 << 20
 
 _A_MOMENT_S: Final = 0.0005
 
+_FILES_OF_A_STORE: Final = 1000
+
 
 class Reader:
     """A child process with the triples of `dataset` as they are now; `log` tells it what comes later."""
@@ -41,6 +44,7 @@ class Reader:
     def __init__(self, lane: Connection, dataset: Dataset, log: Log, *, infers: bool) -> None:
         """`infers`: what follows is in the dataset, too."""
         self.log = log
+        self._kept_at = dataset.path if isinstance(dataset, KeptDataset) else None
         self.leash, there = Pipe()
         self._pid = os.fork()
         if self._pid == 0:
@@ -61,6 +65,8 @@ class Reader:
     def bury(self) -> int:
         """Wait for its end; the signal that it died of, or 0."""
         _, status = os.waitpid(self._pid, 0)
+        if self._kept_at is not None:
+            remove_clone(self._kept_at, self._pid)
         self.leash.close()
         return max(0, -os.waitstatus_to_exitcode(status))
 
@@ -79,7 +85,7 @@ def cause_of_death(number: int, timeout_s: float) -> errors.Refused:
 def _serve(lane: Connection, leash: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:
     """The child's life: it ends with its parent's or its asker's, when it is let go, or with a signal."""
     try:
-        _confine({lane.fileno(), leash.fileno(), log.fileno()})
+        dataset = _opened(dataset, log, {lane.fileno(), leash.fileno(), log.fileno()})
         poll = select.poll()
         for connection in (lane, leash):
             poll.register(connection, select.POLLIN)
@@ -97,14 +103,26 @@ def _serve(lane: Connection, leash: Connection, dataset: Dataset, log: Log, infe
         os._exit(0)
 
 
+def _opened(dataset: Dataset, log: Log, fds: set[int]) -> Dataset:
+    """The triples, with nothing else left open that a query could reach."""
+    _close_all_but(fds)
+    opened = dataset.opened()
+    if opened is not dataset:
+        for delta in log.everything():
+            opened.apply(delta)
+    _confine(0 if opened is dataset else _FILES_OF_A_STORE)
+    return opened
+
+
 def _is_ready(question: Question, dataset: Dataset, log: Log, infers: bool) -> bool:
     """Whether the dataset is what is asked about, after the commits that have come."""
-    if dataset.seq < question.seq:
+    wanted = max(question.seq, dataset.settled)
+    if dataset.seq < wanted:
         for delta in log.news():
             dataset.apply(delta)
-            if delta.seq == question.seq:
+            if delta.seq == wanted:
                 break
-    return dataset.seq >= question.seq and (infers or not question.inferred)
+    return dataset.seq >= wanted and (infers or not question.inferred)
 
 
 def _answered(question: Question, dataset: Dataset) -> bytes:
@@ -132,8 +150,8 @@ def _evaluate(question: Question, dataset: Dataset) -> Outcome:
         return Outcome(number=question.number, error=errors.to_message(fault))
 
 
-def _confine(fds: set[int]) -> None:
-    """Nothing but these: no files, no sockets, and not all of the machine's memory."""
+def _close_all_but(fds: set[int]) -> None:
+    """No files and no sockets but these."""
     gc.disable()  # a collection would touch, and so copy, all pages that are shared with the parent
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -144,8 +162,13 @@ def _confine(fds: set[int]) -> None:
     kept = [2, *sorted(fds), min(most, 1 << 16)]
     for before, after in pairwise(kept):
         os.closerange(before + 1, after)
+
+
+def _confine(files: int) -> None:
+    """No more files than a store needs, and not all of the machine's memory."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))  # these three are taken; none would forbid to poll
+    most = 3 + files  # the first three are taken; none would forbid to poll
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
     with suppress(ValueError, OSError):  # not every system bounds memory so
         resource.setrlimit(resource.RLIMIT_DATA, (_data_bytes() + MEMORY_BYTES,) * 2)
 

@@ -6,6 +6,7 @@ its readers, so that the node's own never waits for it.
 
 from __future__ import annotations
 
+import logging
 import queue
 import subprocess
 import sys
@@ -18,9 +19,11 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.lanes import Lanes
-from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, News, from_worker
+from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
+from nodes.kb_node.sparql.triples.dataset import Delta
+from nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
+from nodes.runtime.futures import settle
 from schemas import codec, errors
 from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
@@ -29,15 +32,34 @@ from schemas.explanations import Triple
 from schemas.replies import Done
 from schemas.sparql import SparqlResult, Watching
 
+log = logging.getLogger(__name__)
+
 
 class SparqlService:
-    """Owned by the node's thread. `asserted()` is what the map says now, `publish` gets the news."""
+    """Owned by the node's thread."""
 
-    def __init__(self, asserted: Callable[[], Iterable[Triple]], publish: Callable[[News], None]) -> None:
+    def __init__(
+        self,
+        asserted: Callable[[], Iterable[Triple]],
+        publish: Callable[[News], None],
+        large_map: LargeMap | None = None,
+    ) -> None:
+        """`asserted()` is what the map says now, `publish` gets the news.
+
+        With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
+        other work: after a large commit at once, else when it is asked for the first time. What follows is
+        always kept in memory.
+        """
         self._asserted = asserted
         self._publish = publish
+        self._large = large_map
         self._worker: _Worker | None = None
         self._infers = False
+        self._seq = 0
+        self._since_filling: list[Delta] | None = None
+        """While a store is made: the commits since it was begun."""
+        self._later: list[Callable[[], None]] = []
+        """Commands about standing queries that came meanwhile."""
 
     @overload
     def ask(self, command: Sparql, seq: int) -> Future[SparqlResult]: ...
@@ -47,32 +69,89 @@ class SparqlService:
     def ask(self, command: Renew, seq: int) -> Future[Done]: ...
     def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
         """The reply to a command about the map as it is now, after commit `seq`."""
+        self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
                 raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
             self._worker = _Worker(self._publish)
             self._infers = command.inferred
-            self._load(self._worker, seq)
+            self._load()
         elif not isinstance(command, Renew) and command.inferred and not self._infers:
             self._infers = True
-            self._load(self._worker, seq)
-        return self._worker.ask(command, seq)
+            self._load()
+        if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
+            return self._worker.ask(command, seq)
+        worker, future = self._worker, Future[Any]()
+        self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
+        return future
 
     def follow(self, commit: Commit) -> None:
         """Every commit, in order."""
+        self._seq = commit.seq
+        is_much = self._large is not None and self._large.is_much(commit)
+        if self._since_filling is not None and not commit.tbox:
+            self._since_filling.append(delta_of(commit))
+        elif is_much and not self._infers:
+            self._fill()
+        elif self._worker is None:
+            return
+        elif commit.tbox:
+            self._load()
+        else:
+            self._worker.send(Committed(delta=delta_of(commit)))
+
+    def _load(self) -> None:
+        """Let the process have the map as it is."""
         if self._worker is None:
             return
-        if commit.tbox:
-            self._load(self._worker, commit.seq)
-        else:
-            delta = Delta(seq=commit.seq, retracted=commit.retracted, inserted=commit.inserted)
-            self._worker.send(Committed(delta=delta))
+        if self._infers or self._large is None or not self._large.is_large:
+            self._since_filling = None
+            self._load_into_memory(self._worker)
+        elif self._since_filling is None:
+            kept = self._large.kept(self._seq)
+            if kept is None:
+                self._fill()
+            else:
+                self._take_over(*kept)
 
-    def _load(self, worker: _Worker, seq: int) -> None:
-        worker.send(Load(seq=seq, asserted=tuple(self._asserted()), infers=self._infers))
+    def _fill(self) -> None:
+        assert self._large is not None
+        since: list[Delta] = []
+        self._since_filling = since
+
+        def on_done(done: Future[Filled]) -> None:
+            if self._since_filling is not since:
+                return  # it is not wanted any more
+            self._since_filling = None
+            if (error := done.exception()) is None:
+                self._take_over(done.result(), since)
+            elif self._worker is not None:
+                log.warning("SPARQL keeps its triples in memory: %s", error)
+                self._load_into_memory(self._worker)
+
+        self._large.fill(self._seq, lambda: self._seq).add_done_callback(on_done)
+
+    def _load_into_memory(self, worker: _Worker) -> None:
+        worker.send(Load(seq=self._seq, asserted=tuple(self._asserted()), infers=self._infers))
+        self._go_on()
+
+    def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
+        if self._worker is not None:
+            self._worker.send(LoadKept(path=str(store.path), seq=store.seq, settled=store.settled))
+            for delta in since:
+                self._worker.send(Committed(delta=delta))
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """The triples are on their way: now for what had to wait for them."""
+        later, self._later = self._later, []
+        for ask in later:
+            ask()
 
     def close(self) -> None:
         """End the process."""
+        if self._large is not None:
+            self._large.close()
         if self._worker is not None:
             self._worker.close()
             self._worker = None

@@ -14,14 +14,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
+from pathlib import Path
 from typing import Any, Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.consequences import Consequences
-from nodes.kb_node.sparql.dataset import Dataset, Delta
-from nodes.kb_node.sparql.log import Log
-from nodes.kb_node.sparql.lookout import Lookout
 from nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
@@ -30,10 +27,15 @@ from nodes.kb_node.sparql.protocol import (
     Hire,
     Left,
     Load,
+    LoadKept,
     ToWorker,
     to_worker,
 )
 from nodes.kb_node.sparql.readers import Reader
+from nodes.kb_node.sparql.standing_queries.lookout import Lookout
+from nodes.kb_node.sparql.triples.consequences import Consequences
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
+from nodes.kb_node.sparql.triples.log import Log
 from schemas import errors
 
 BACKLOG: Final = 50_000
@@ -63,6 +65,11 @@ class Worker:
         match message:
             case Load():
                 self._load(message)
+            case LoadKept():
+                self._dataset = KeptDataset(Path(message.path), message.seq, message.settled)
+                self._consequences = None
+                self._begin_log()
+                self.lookout.look_at_all(message.settled)
             case Committed():
                 self._follow(message.delta)
             case Hire():
@@ -102,6 +109,8 @@ class Worker:
         self._dataset.apply(delta)
         self.lookout.follow(delta)
         if self._log.size > BACKLOG:
+            if isinstance(self._dataset, KeptDataset):
+                self._dataset.renew(self._log.everything())
             self._begin_log()
 
     def _begin_log(self) -> None:

@@ -16,12 +16,11 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from nodes.kb_node.storage import commit_encoding
+from nodes.kb_node.storage import checkpoint_encoding, commit_encoding
+from nodes.kb_node.storage.checkpoint_encoding import Checkpoint as Checkpoint
 from nodes.kb_node.storage.sqlite_file import ANEW, JournalFile, mend
 from schemas import codec, errors
 from schemas.commits import Commit
-from schemas.entities import Entity
-from schemas.explanations import Triple
 
 log = logging.getLogger(__name__)
 
@@ -48,16 +47,6 @@ class Damaged(errors.Refused):
     def __init__(self, path: Path, seq: int) -> None:
         super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {mend(path)}")
         self.last_good = seq - 1
-
-
-class Checkpoint(Struct, frozen=True, kw_only=True):
-    """The ABox after commit `seq`: start-up replays only what came later."""
-
-    seq: int
-    triples: tuple[Triple, ...] = ()
-    entities: tuple[Entity, ...] = ()
-    read_by: bytes = b""
-    """The code that read the entities from the triples."""
 
 
 class Journal:
@@ -198,6 +187,18 @@ class Journal:
             rows = db.execute(query, (name, after, self.last if until is None else until))
             return [seq for (seq,) in rows]
 
+    def digest(self, seq: int) -> bytes:
+        """That of all commits up to one; empty before the first."""
+        with self._file.reading() as db:
+            return _digest_of(db, seq)
+
+    def extent(self, after: int) -> tuple[int, int]:
+        """How many commits are later than `after`, and their size [bytes]."""
+        query = "SELECT count(*), coalesce(sum(length(body)), 0) FROM commits WHERE seq > ?"
+        with self._file.reading() as db:
+            count, size = db.execute(query, (after,)).fetchone()
+        return count, size
+
     def undoing(self, after: int) -> list[int]:
         """The numbers of the commits later than `after` that took others back, newest first; reads all."""
         query = "SELECT seq, body FROM commits WHERE seq > ? ORDER BY seq DESC"
@@ -222,12 +223,12 @@ class Journal:
             raise Damaged(self.path, seq)
         return codec.decode(row[0], _Stamp).stamp_ns
 
-    def checkpoint(self, checkpoint: Checkpoint) -> None:
+    def checkpoint(self, checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> None:
         """Keep `checkpoint` as the place to start from, and of the older ones the last.
 
         Raises Refused, with nothing changed, when the disk does not take it.
         """
-        body = codec.encode(checkpoint, dense_from=_DENSE_FROM)
+        body = checkpoint_encoding.encode(checkpoint, progress)
         row = (checkpoint.seq, body, _chain(b"", body))
         with self._file.writing(f"the checkpoint after commit {checkpoint.seq}") as db:
             db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
@@ -236,12 +237,12 @@ class Journal:
                 " WHERE seq NOT IN (SELECT seq FROM checkpoints ORDER BY seq DESC LIMIT 2)"
             )
 
-    def last_checkpoint(self) -> Checkpoint:
+    def last_checkpoint(self, progress: Callable[[], None] = lambda: None) -> Checkpoint:
         """The newest sound checkpoint; without any, the empty map before commit 1."""
         with self._file.reading() as db:
             for seq, body, digest in db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
                 if _is_sound(b"", body, digest):
-                    return codec.decode(body, Checkpoint)
+                    return checkpoint_encoding.decode(body, progress)
                 log.warning("%s: the checkpoint after commit %d is damaged and not used", self.path, seq)
         return Checkpoint(seq=0)
 

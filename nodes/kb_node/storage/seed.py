@@ -13,6 +13,7 @@ from nodes.kb_node.documents import abox_document, ontology_files, rdf, tbox_val
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.triples.kept import forget
 from nodes.kb_node.storage import closure_cache
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import InUse
@@ -139,6 +140,7 @@ def set_aside(data: Path) -> Path | None:
     kept.mkdir(parents=True, exist_ok=True)
     for p in present:
         p.rename(kept / p.name)
+    forget(data)
     return kept
 
 

@@ -33,7 +33,7 @@ def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(d
     keeping.keep()
     assert asked == []
     assert keeping.in_agreement() is None
-    assert keeping.body_state(door.entity("chair1")).status == "none"
+    assert keeping.body_state(door.map.entity("chair1")).status == "none"
 
 
 def test_a_reset_tries_again_what_could_not_be_made(door):
@@ -56,7 +56,7 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
     keeping.scene.known = True
     keeping.keep()
     keeping.keep()
-    assert keeping.body_state(door.entity("chair1")).status == "failed"
+    assert keeping.body_state(door.map.entity("chair1")).status == "failed"
     assert len(spawns) == 1
     keeping.place_all()
     assert len(spawns) == 2
@@ -180,7 +180,7 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
     keeping.scene.known = True
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.keep()
-    assert keeping.body_state(door.entity("chair1")).status == "present"
+    assert keeping.body_state(door.map.entity("chair1")).status == "present"
     door.change(c.Update(name="chair1", at=(2000.0, 0.0, 0.0)))
     keeping.keep()
     assert keeping.problems() == ["chair1: failed: it is too far"]
@@ -190,7 +190,7 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
     assert asked == []
     door.change(c.Update(name="chair1", at=(2.0, 0.0, 0.0)))
     keeping.keep()
-    assert keeping.body_state(door.entity("chair1")).status == "present"
+    assert keeping.body_state(door.map.entity("chair1")).status == "present"
 
 
 def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):

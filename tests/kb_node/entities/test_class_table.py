@@ -1,8 +1,10 @@
 import pytest
 
+from nodes.kb_node.documents import rdf
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
+from ontology.prefixes import PREFERRED_PREFIX
 from schemas import errors
 from tests.kb_node import home
 from tests.kb_node.home import turtle
@@ -55,17 +57,75 @@ def test_special_first_is_by_depth_and_leaves_unknown_classes_out():
     assert special_first(given) == [v.dm("Chair"), v.OBJECT]
 
 
+TWINS = "<http://a.org/lab.owl#Chair> a owl:Class ; rdfs:subClassOf dm:Seat ."
+
+
+def test_classes_of_one_local_name_are_told_apart_by_prefixes():
+    classes = table(TWINS)
+    assert {"dm:Chair", "lab:Chair", "Seat"} <= set(classes.iris)
+    assert "Chair" not in classes.iris
+    assert classes.ambiguous == {"Chair": ("dm:Chair", "lab:Chair")}
+    rows = {row.name: row for row in classes.rows}
+    assert rows["lab:Chair"].iri == "http://a.org/lab.owl#Chair"
+    assert (rows["Seat"].prefixed, rows["lab:Chair"].prefixed) == ("dm:Seat", "lab:Chair")
+
+
+def test_a_prefix_that_the_ontology_declares_is_taken():
+    declared = f'<http://a.org/lab.owl#> {PREFERRED_PREFIX} "Kit" .'
+    assert "kit:Chair" in table(TWINS + declared).iris
+
+
 @pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        ("<http://a.org/x#Chair> a owl:Class .", "two classes named Chair, .*: rename one"),
-        (
-            "<http://a.org/x#> a owl:Class .",
-            r"<http://a\.org/x#> of the TBox needs an IRI that ends in a name",
-        ),
-        ("<http://a.org/x#A*> a owl:Class .", "needs an IRI that ends in a name"),
-    ],
+    "iri", ["http://a.org/x#", "http://a.org/x#A*", "urn:x:A b".replace(" ", "%20"), "http://a/?c=$1"]
 )
-def test_classes_must_be_told_apart_by_their_names(text, fault):
-    with pytest.raises(errors.BadFile, match=fault):
-        table(text)
+def test_no_name_of_a_class_is_refused(iri):
+    classes = table(f"<{iri}> a owl:Class .")
+    name = classes.names[f"<{iri}>"]
+    assert name
+    assert classes.iris[name] == f"<{iri}>"
+
+
+def test_a_class_is_found_by_its_names_and_labels():
+    index = table().index
+    words = ["Chair", "dm:Chair", v.dm("Chair"), v.bare(v.dm("Chair")), "chair", "SEDIA"]
+    assert {index.find(word) for word in words} == {"Chair"}
+    assert index.find("sofa") is None
+
+
+def test_other_labels_are_kept_too():
+    row = next(row for row in table('dm:Chair rdfs:label "poltrona"@it .').rows if row.name == "Chair")
+    assert (row.labels["it"], row.also) == ("poltrona", ("sedia",))
+
+
+def test_properties_of_one_local_name_are_told_apart():
+    classes = table("<http://a.org/lab.owl#isLocatedIn> a owl:ObjectProperty .")
+    assert classes.property_named("lab:isLocatedIn") == "<http://a.org/lab.owl#isLocatedIn>"
+    assert classes.property_named("has_size") == v.HAS_SIZE
+    with pytest.raises(errors.BadRequest, match="'isLocatedIn' may be dm:isLocatedIn or lab:isLocatedIn"):
+        classes.property_named("isLocatedIn")
+
+
+ZOO = """
+@prefix z: <http://zoo.org/zoo#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+z:Animal a owl:Class . z:Cat a owl:Class ; rdfs:subClassOf z:Animal . z:Idea a owl:Class .
+"""
+
+
+def zoo(text=""):
+    return ClassTable(Reasoner(rdf.parse((ZOO + text).encode(), "zoo")))
+
+
+def test_nothing_of_an_unknown_vocabulary_is_in_space_until_somebody_says_so():
+    assert (zoo().spatial_roots, zoo().spatial) == ((), frozenset())
+    said = zoo(f"z:Animal {v.SPATIAL} true .")
+    assert said.spatial_roots == ("<http://zoo.org/zoo#Animal>",)
+    assert {said.names[c] for c in said.spatial} == {"Animal", "Cat"}
+
+
+def test_what_the_tbox_says_wins_over_what_is_usual():
+    assert {row.name for row in table(f"dm:Seat {v.SPATIAL} true .").rows if row.spatial} == {"Seat", "Chair"}
+
+
+def test_classes_of_rdfs_are_classes():
+    assert "Dog" in zoo("z:Dog a rdfs:Class .").iris

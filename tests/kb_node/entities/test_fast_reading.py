@@ -131,6 +131,6 @@ def test_the_usual_star_is_read_at_sight(semantic_map, monkeypatch):
 def test_a_known_shape_with_a_bad_name_is_refused(semantic_map):
     for name in ("e0", "e1"):
         semantic_map.commit(transaction(name, star(name)))
-    with pytest.raises(errors.BadRequest, match="needs an IRI that ends in a name"):
+    with pytest.raises(errors.BadRequest, match="needs an IRI that ends in a valid name"):
         semantic_map.commit(transaction("bad", star("1e")))
     assert len(semantic_map) == 2

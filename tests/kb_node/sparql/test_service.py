@@ -11,9 +11,10 @@ import pytest
 
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.sparql import readers, text
-from nodes.kb_node.sparql.consequences import inferred
+from nodes.kb_node.sparql import readers
+from nodes.kb_node.sparql.queries import text
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.triples.consequences import inferred
 from ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
 from ontology import vocabulary as v
 from schemas import errors

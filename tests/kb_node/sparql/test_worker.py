@@ -6,8 +6,8 @@ import pytest
 from msgspec import msgpack
 
 from nodes.kb_node.sparql import worker
-from nodes.kb_node.sparql.dataset import Delta
 from nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
+from nodes.kb_node.sparql.triples.dataset import Delta
 from ontology import vocabulary as v
 from schemas.sparql import SparqlResult
 from tests.kb_node import home

@@ -155,7 +155,8 @@ def status_line(status: SystemStatus) -> str:
     }
     agree = verdicts[status.in_agreement]
     counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"
-    return f"{counts}; truth: {status.truth}; {agree}"
+    of = f"; semmap {status.version}" if status.version else ""
+    return f"{counts}; truth: {status.truth}; {agree}{of}"
 
 
 def status_notes(status: SystemStatus) -> Iterable[str]:

@@ -11,13 +11,13 @@ from rich.table import Table
 from nodes.extern.cli.output import tables
 from nodes.runtime import extras
 from ontology import vocabulary as v
+from ontology.prefixes import WELL_KNOWN, used_by
 from schemas import errors
 from schemas.explanations import Term
 from schemas.sparql import Row, RowsChanged, SparqlResult
 
 Format = Literal["table", "json", "csv", "turtle"]
 FORMATS: tuple[Format, ...] = get_args(Format)
-_PREFIXES = {**v.PREFIXES, "rdf": v.RDF, "rdfs": v.RDFS}
 
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
@@ -59,7 +59,7 @@ def spoken(term: Term | None) -> str:
     if term is None:
         return ""
     if term.startswith("<"):
-        for prefix, namespace in _PREFIXES.items():
+        for prefix, namespace in WELL_KNOWN.items():
             if term.startswith(f"<{namespace}"):
                 return f"{prefix}:{term[len(namespace) + 1 : -1]}"
         return term
@@ -107,9 +107,14 @@ def _turtle(result: SparqlResult) -> str:
     import pyoxigraph as ox
 
     triples = ox.parse(lines, ox.RdfFormat.N_TRIPLES)
-    document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_PREFIXES)
+    document = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=_prefixes(result))
     assert document is not None
     return document.decode()
+
+
+def _prefixes(result: SparqlResult) -> dict[str, str]:
+    rows = [(s, p, o) for s, p, o in result.rows if s is not None and p is not None and o is not None]
+    return used_by(rows, WELL_KNOWN)
 
 
 def _json(document: Any) -> str:

@@ -12,7 +12,7 @@ import click
 
 from nodes import bus
 from nodes.extern import availability
-from nodes.extern.cli.calling import TIME, command, complain, print_json, print_lines, talks
+from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
@@ -52,13 +52,13 @@ _STATUS_S = 20.0
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
 @talks
-def list_(client: Client, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
+def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
 
     THING and PLACE are a name, a reference or a class.
     """
     if format in ("lu4r", "legacy"):
-        print_json(client.send(command(commands.List, class_=class_, format=format, as_of=as_of, **where)))
+        print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
         return
     entities = client.list(class_, as_of=as_of, **where)
     if format == "json":
@@ -105,10 +105,41 @@ def infer(client: Client, name: str | None) -> None:
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
+@click.option("--not", "negated", is_flag=True, help="Why it cannot hold.")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
-def explain(client: Client, name: str, predicate: str, value: str) -> None:
-    """Why something holds: semmap explain fridge1 type Device."""
-    print_lines(show.explanation(client.explain(name, predicate, value)))
+def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
+    """Why something holds: semmap explain fridge1 type Device.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. With --not, why it cannot hold: semmap explain
+    --not cup1 type Room.
+    """
+    explanation = client.explain(name, predicate, value, negated=negated)
+    if format == "json":
+        print_json(explanation)
+    else:
+        print_lines(show.explanation(explanation))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("predicate")
+@click.argument("value")
+@_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def could(client: Client, name: str, predicate: str, value: str, format: str) -> None:
+    """Could something hold without contradicting the map? semmap could milk1 isInside oven1.
+
+    PREDICATE is a property, or type, sameAs, differentFrom. Nothing is changed. The exit status is 0 if it
+    could, and 1 if it could not; then the answer says why.
+    """
+    answer = client.could(name, predicate, value)
+    if format == "json":
+        print_json(answer)
+    else:
+        print(answer.text)
+    if not answer.possible:
+        sys.exit(errors.Inconsistent.exit_status)
 
 
 @click.command()

@@ -37,6 +37,22 @@ class View:
             for edge in self._asserted_edges(s, p, o):
                 yield self._triple(edge)
 
+    def by_subject(self) -> Iterator[list[Triple]]:
+        """The asserted triples, subject by subject. The ABox may change between two of them.
+
+        Of a subject that changes meanwhile it is what was said before or after; a new one may be missing.
+        """
+        store, schema = self._store, self._schema
+        for node, term in enumerate(store.terms):
+            if not term or self._abox.is_literal(node):
+                continue
+            said = [(term, TYPE, schema.classes[cls]) for cls in self._given(node)]
+            for edge in store.out.all(node):
+                if store.source[edge] == ASSERTED:
+                    predicate = schema.axioms[store.predicate[edge]].term
+                    said.append((term, predicate, store.terms[store.object[edge]]))
+            yield said
+
     def about(self, s: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         store, schema, node = self._store, self._schema, self._store.find(s)

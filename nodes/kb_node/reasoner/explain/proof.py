@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from nodes.kb_node.reasoner import datatypes
-from nodes.kb_node.reasoner.explain.sentences import local_name, sentence
+from nodes.kb_node.reasoner.explain.sentences import sentence
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
@@ -27,25 +28,29 @@ _MARK = re.compile("\ue000(\\d+)\ue001")
 class Proof:
     """A proof, and the terms in it that another proof of the shape has others for."""
 
-    def __init__(self, explanation: Explanation, terms: tuple[Term, ...]) -> None:
+    def __init__(self, explanation: Explanation, terms: tuple[Term, ...], words: Words) -> None:
         self.explanation = explanation
         self.terms = terms
-        self._text = _pieces(explanation, terms)
+        self._words = words
+        self._text = _pieces(explanation, terms, words)
 
     def about(self, terms: Sequence[Term]) -> Explanation:
         """The same proof about other terms."""
         goal, support, steps = _renamed(self.explanation, dict(zip(self.terms, terms, strict=True)))
         if self._text is None:
-            text = sentence(goal, support, steps)
+            text = sentence(goal, support, steps, self._words)
         else:
-            text = "".join([_spoken(terms[part]) if isinstance(part, int) else part for part in self._text])
+            name = self._words.name
+            text = "".join([name(terms[part]) if isinstance(part, int) else part for part in self._text])
         return Explanation(conclusion=goal, support=support, steps=steps, text=text)
 
 
 class Prover:
     """Explains, and remembers the shapes it has explained."""
 
-    def __init__(self) -> None:
+    def __init__(self, words: Words) -> None:
+        """`words` are what terms are called."""
+        self.words = words
         self._proofs: dict[tuple[object, ...], Proof] = {}
 
     def prove(self, triples: Iterable[Triple], goal: Triple | None) -> Explanation:
@@ -66,11 +71,11 @@ class Prover:
         proof = self._proofs.get(shape)
         if proof is None:
             support, steps = _shrink(triples, goal)
-            text = sentence(goal, support, steps)
+            text = sentence(goal, support, steps, self.words)
             explanation = Explanation(conclusion=goal, support=support, steps=steps, text=text)
             if len(self._proofs) >= _MOST:
                 self._proofs.clear()
-            proof = self._proofs[shape] = Proof(explanation, terms)
+            proof = self._proofs[shape] = Proof(explanation, terms, self.words)
         return proof, terms
 
 
@@ -132,17 +137,22 @@ def _renamed(
     return goal and other(goal), tuple([other(fact) for fact in explanation.support]), steps
 
 
-def _pieces(explanation: Explanation, terms: Sequence[Term]) -> list[str | int] | None:
+def _pieces(explanation: Explanation, terms: Sequence[Term], words: Words) -> list[str | int] | None:
     """The sentence in pieces: text, and the numbers of the terms that are named in between.
 
     None when a mark is in the text as it is.
     """
     if _MARK.search(explanation.text):
         return None
-    marks = {term: _mark(term, i) for i, term in enumerate(terms)}
-    pieces: list[str | int] = list(_MARK.split(sentence(*_renamed(explanation, marks))))
+    marks = {term: _mark(term, i) for i, term in enumerate(terms) if _is_free(term)}
+    pieces: list[str | int] = list(_MARK.split(sentence(*_renamed(explanation, marks), words)))
     pieces[1::2] = map(int, pieces[1::2])
     return pieces
+
+
+def _is_free(term: Term) -> bool:
+    """Whether another proof of the shape may have another term in its place."""
+    return not is_literal(term) or literal(term).datatype in _FREE_DATATYPES
 
 
 def _mark(term: Term, number: int) -> Term:
@@ -151,12 +161,6 @@ def _mark(term: Term, number: int) -> Term:
     if is_literal(term):
         return f'"{text}{term[term.rindex(chr(34)) :]}'
     return f"<{text}>" if is_named(term) else f"_:{text}"
-
-
-def _spoken(term: Term) -> str:
-    if is_literal(term):
-        return literal(term).text
-    return local_name(term) if is_named(term) else term[2:]
 
 
 def _shrink(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[Triple, ...], tuple[Step, ...]]:

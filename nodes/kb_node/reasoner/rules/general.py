@@ -6,9 +6,11 @@ Exact for all rules; a change costs as much as the map is large.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
+from functools import cached_property
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.explain.proof import Prover
+from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
@@ -24,12 +26,17 @@ class GeneralEngine:
         self._asserted = dict.fromkeys(triples)
         self._closure = Closure(self._asserted)
 
+    @cached_property
+    def words(self) -> Words:
+        """What terms are called in sentences."""
+        return Words.of(self._asserted)
+
     def __len__(self) -> int:
         return len(self._asserted)
 
     def contradiction(self) -> Explanation | None:
         """Why the graph is inconsistent; None when it is not."""
-        return None if self._closure.clash is None else Prover().prove(self._asserted, None)
+        return None if self._closure.clash is None else Prover(self.words).prove(self._asserted, None)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
@@ -98,4 +105,4 @@ class GeneralEngine:
 
     def explain(self, triple: Triple) -> Explanation:
         """Why a triple follows that holds."""
-        return Prover().prove(self._closure.leaves(self._fact(triple)), triple)
+        return Prover(self.words).prove(self._closure.leaves(self._fact(triple)), triple)

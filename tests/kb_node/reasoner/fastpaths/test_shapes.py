@@ -87,7 +87,7 @@ def test_what_a_run_leaves_does_not_depend_on_whether_its_shape_is_known(run, li
                 reasoner.apply(insert=insert)
             explanation = refusal.value.explanation
             proofs.check(explanation, after)
-            assert explanation.text == sentence(None, explanation.support, explanation.steps)
+            assert explanation.text == sentence(None, explanation.support, explanation.steps, reasoner.words)
         check_same(reasoner, asserted, BASE, closure)
     for insert in reversed(transactions):
         there = [fact for fact in dict.fromkeys(insert) if fact in asserted]

@@ -1,0 +1,154 @@
+"""Very many entities in one system: loading, memory, starting, the first and later queries, lists, adds."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+import psutil  # type: ignore[import-untyped]
+
+from benchmarks.kb import big_files
+from benchmarks.kb.made import timed
+from nodes.extern.client import Client
+from nodes.extern.testing import free_endpoint, own_system
+from ontology import vocabulary as v
+from schemas import errors
+
+_UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
+_COUNTED = "Cup"
+_REPEAT = 100
+_JSON_UP_TO = 100_000
+"""Entities: a scene of more is measured as Turtle only."""
+
+
+class Scale(NamedTuple):
+    """A map of so many entities of 14 triples; times in seconds, memory in MB of all processes together."""
+
+    entities: int
+    load_turtle_s: float
+    load_json_s: float | None
+    memory_loaded_mb: float
+    first_sparql_after_load_s: float
+    memory_queried_mb: float
+    """The store of SPARQL included."""
+    memory_of_nodes_mb: dict[str, float]
+    start_s: float
+    """From `semmap up` until `get` answers."""
+    first_sparql_s: float
+    """The first one after that start: a count."""
+    sparql_s: float
+    sparql_by_command_line_s: float
+    list_class_s: float
+    """One in a hundred of the entities, by the client."""
+    add_ms: float
+    update_ms: float
+
+
+def measure(folder: Path, size: int) -> Scale:
+    """A system of its own in `folder`, filled from a file, stopped and started again."""
+    turtle, scene = folder / "things.ttl", folder / "things.json"
+    load_json_s = None
+    if size <= _JSON_UP_TO:
+        big_files.write_json(scene, size)
+        with _running(folder / "json") as (client, _):
+            load_json_s = timed(lambda: client.load(scene))
+        shutil.rmtree(folder / "json")
+        scene.unlink()
+    big_files.write_turtle(turtle, size)
+    data = folder / "turtle"
+    with _running(data) as (client, _):
+        load_turtle_s = timed(lambda: client.load(turtle))
+        memory_loaded = sum(_memory_mb(client).values())
+        counted = big_files.count_of(_COUNTED, size)
+        first_after_load_s = timed(lambda: _require_count(client, counted))
+        memory_of_nodes = _memory_mb(client)
+    turtle.unlink()
+    name = f"thing{size // 2}"
+    began_s = time.perf_counter()
+    with _running(data) as (client, endpoint):
+        client.get(name)
+        start_s = time.perf_counter() - began_s
+        first_sparql_s = timed(lambda: _require_count(client, counted))
+        random_ = random.Random(size)
+        adds = [timed(lambda i=i: _add(client, i, random_)) for i in range(_REPEAT)]  # type: ignore[misc]
+        names = [f"thing{random_.randrange(size)}" for _ in range(_REPEAT)]
+        updates = [timed(lambda n=n: client.update(n, at=_place(random_))) for n in names]  # type: ignore[misc]
+        rare = [timed(lambda: client.list(big_files.RARE_CLASS)) for _ in range(10)]
+        later = [timed(lambda: _require_count(client, counted)) for _ in range(10)]
+        spoken = [timed(lambda: _count_by_command_line(endpoint, counted)) for _ in range(5)]
+    return Scale(
+        entities=size,
+        load_turtle_s=load_turtle_s,
+        load_json_s=load_json_s,
+        memory_loaded_mb=memory_loaded,
+        first_sparql_after_load_s=first_after_load_s,
+        memory_queried_mb=sum(memory_of_nodes.values()),
+        memory_of_nodes_mb=memory_of_nodes,
+        start_s=start_s,
+        first_sparql_s=first_sparql_s,
+        sparql_s=median(later),
+        sparql_by_command_line_s=median(spoken),
+        list_class_s=median(rare),
+        add_ms=median(adds) * 1e3,
+        update_ms=median(updates) * 1e3,
+    )
+
+
+@contextmanager
+def _running(data: Path) -> Iterator[tuple[Client, str]]:
+    """A client of a system on `data`, and its endpoint. The map that is there already wins."""
+    endpoint = free_endpoint()
+    with own_system(data, *_UP, endpoint=endpoint) as client:
+        yield client, endpoint
+
+
+def _query(class_name: str) -> str:
+    return f"SELECT (COUNT(?thing) AS ?n) WHERE {{ ?thing a {v.dm(class_name)} }}"
+
+
+def _require_count(client: Client, count: int) -> None:
+    ((found,),) = client.sparql(_query(_COUNTED), timeout=60.0).rows
+    if found is None or v.lexical(found) != str(count):
+        raise AssertionError(f"{found} things of class {_COUNTED}, not {count}")
+
+
+def _count_by_command_line(endpoint: str, count: int) -> None:
+    semmap = str(Path(sys.executable).with_name("semmap"))
+    command = [semmap, "sparql", _query(_COUNTED), "--connect", endpoint]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    if str(count) not in said:
+        raise AssertionError(f"the command line said: {said}")
+
+
+def _add(client: Client, i: int, random_: random.Random) -> None:
+    client.add("Chair", f"new{i}", at=_place(random_), size=(0.5, 0.5, 1.0), ref="chair")
+
+
+def _place(random_: random.Random) -> tuple[float, float, float]:
+    return (random_.uniform(-100, 0), random_.uniform(-100, 0), 0.0)
+
+
+def _memory_mb(client: Client) -> dict[str, float]:
+    """Proportional set size of each node with its children; pages that they share count once."""
+    deadline_s = time.monotonic() + 60.0
+    while True:
+        try:
+            nodes = client.status().nodes
+            break
+        except errors.NoAnswer:
+            if time.monotonic() > deadline_s:
+                raise
+    found: dict[str, float] = {}
+    for node in nodes:
+        process = psutil.Process(node.pid)
+        family = [process, *process.children(recursive=True)]
+        found[node.node] = sum(p.memory_full_info().pss for p in family) / 1e6
+    return found

@@ -1,0 +1,113 @@
+"""What the coordinator answers itself: list, get, status."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import Future
+from typing import Any
+
+from msgspec import structs
+
+from nodes import bus
+from nodes.coordinator import formats
+from nodes.coordinator.bridge import Bridge
+from nodes.coordinator.config import Truth
+from nodes.coordinator.door import Door
+from nodes.coordinator.health_view import HealthView
+from nodes.coordinator.scene.reconciler import Keeping
+from nodes.runtime.futures import then
+from nodes.runtime.version import version
+from ontology.model_sizes import own_size_m
+from schemas import bridge, errors
+from schemas import commands as c
+from schemas.entities import Entity, Size
+from schemas.moments import When
+from schemas.replies import SystemStatus
+
+_DIGITS = 4
+
+Listed = tuple[Entity, ...] | dict[str, Any]
+"""The entities, or the document of another format."""
+
+
+class Answers:
+    """What is true now is known to the door; the past is asked of the knowledge base."""
+
+    def __init__(
+        self, truth: Truth, door: Door, keeping: Keeping, health: HealthView, bridge: Bridge
+    ) -> None:
+        self._truth = truth
+        self._door = door
+        self._keeping = keeping
+        self._health = health
+        self._bridge = bridge
+
+    def list(self, query: c.List) -> Listed | Future[Listed]:
+        """The entities of a class, with what has become of their bodies."""
+        class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
+        if query.as_of is not None or query.where is not None:
+            asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
+            found = self._bridge.ask_later(asked, patience_s=bus.RESTART_S)
+            seen = with_size if query.as_of is not None else self._with_body
+            return then(found, lambda there: self._formatted(map(seen, there), query.format))
+        entities = self._door.map.entities_of(class_)
+        if query.format == "json":
+            entities = tuple(map(self._with_body, entities))
+        return self._formatted(entities, query.format)
+
+    def get(self, query: c.Get) -> Entity | Future[Entity]:
+        """One entity, with what has become of its body."""
+        if query.as_of is not None:
+            return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
+        return self._with_body(self._door.map.entity(query.name))
+
+    def status(self, _: c.Status) -> SystemStatus:
+        """The nodes, the map, the scene."""
+        return SystemStatus(
+            truth=self._truth,
+            commit=max(0, self._door.map.seq),
+            entities=len(self._door.map.entities),
+            bodies=len(self._keeping.scene.bodies),
+            in_agreement=self._keeping.in_agreement(),
+            nodes=self._health.nodes(),
+            problems=tuple(self._keeping.problems()),
+            version=version(),
+        )
+
+    def _formatted(self, found: Iterable[Entity], wanted: c.ListFormat) -> Listed:
+        entities = tuple(found)
+        if wanted == "lu4r":
+            return formats.lu4r(entities)
+        if wanted == "legacy":
+            iris = {name: info.iri for name, info in self._door.map.classes.by_name.items()}
+            return formats.legacy(entities, iris)
+        return entities
+
+    def _class_name(self, word: str, as_of: When | None) -> str:
+        """The class that is meant; then there may have been others than now."""
+        try:
+            return self._door.map.classes.find(word).name
+        except errors.UnknownClass:
+            if as_of is None:
+                raise
+            return word
+
+    def _with_body(self, entity: Entity) -> Entity:
+        state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
+        if entity.size_m is not None or state.status == "none":
+            return structs.replace(entity, body=state)
+        sized = with_size(entity) if body is None else structs.replace(entity, size_m=_rounded(body.size_m))
+        return structs.replace(sized, body=structs.replace(state, own_size=sized.size_m is not None))
+
+
+def with_size(entity: Entity) -> Entity:
+    """The entity with the size of its model, if the map states none and it is no place."""
+    if entity.size_m is not None or entity.place:
+        return entity
+    return structs.replace(entity, size_m=own_size_m(entity.model))
+
+
+def _rounded(size_m: Size) -> Size:
+    """To the precision of the table of models, so that an entity's size is the same before it has a body."""
+    x, y, z = size_m
+    return round(x, _DIGITS), round(y, _DIGITS), round(z, _DIGITS)

@@ -1,0 +1,72 @@
+"""What `semmap tbox check` found out, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from schemas.ontologies import TBoxReport
+
+_COLUMN = 15
+_FEW = 20
+
+
+def report(found: TBoxReport) -> Iterator[str]:
+    """One line or more for each thing that there is to say."""
+    for iri, version in found.ontologies.items():
+        yield _line("ontology", iri + (f" ({version})" if version else ""))
+    yield _line("holds", _contents(found))
+    for iri, file in found.imports.items():
+        yield _line("imports", f"{iri} from {file}")
+    for iri in found.missing:
+        yield _line("missing", f"{iri} (--import {iri}=FILE says where it is)")
+    for kind, count in found.outside_rl.items():
+        yield _line("inert", f"{count} x {kind} (beyond OWL 2 RL)")
+    yield from _names(found)
+    yield from _verdict(found)
+    if (quick := found.quickness) is not None:
+        yield _line("loads in", f"{quick.load_s:.2f} s")
+        if quick.add_p50_ms is not None:
+            yield _line("a change takes", f"{quick.add_p50_ms:.3f} ms (median)")
+        if quick.not_incremental:
+            yield _line("not incremental", quick.not_incremental)
+
+
+def _contents(found: TBoxReport) -> str:
+    spatial = "" if found.spatial_classes is None else f" ({found.spatial_classes} of things in space)"
+    counts = {
+        f"object {_properties(found.object_properties)}": found.object_properties,
+        f"data {_properties(found.data_properties)}": found.data_properties,
+        f"annotation {_properties(found.annotation_properties)}": found.annotation_properties,
+        "individual" if found.individuals == 1 else "individuals": found.individuals,
+    }
+    several = "".join(f", {count} {what}" for what, count in counts.items())
+    files = "1 file" if len(found.files) == 1 else f"{len(found.files)} files"
+    classes = "1 class" if found.classes == 1 else f"{found.classes} classes"
+    return f"{classes}{spatial}{several}; {found.triples} triples in {files}"
+
+
+def _properties(count: int) -> str:
+    return "property" if count == 1 else "properties"
+
+
+def _names(found: TBoxReport) -> Iterator[str]:
+    for name, iris in list(found.ambiguous.items())[:_FEW]:
+        yield _line("ambiguous", f"{name}: {' or '.join(iris)}")
+    if (more := len(found.ambiguous) - _FEW) > 0:
+        yield _line("ambiguous", f"and {more} more names")
+
+
+def _verdict(found: TBoxReport) -> Iterator[str]:
+    if found.inconsistent:
+        yield _line("inconsistent", found.inconsistent)
+        return
+    for wrong in found.unsatisfiable:
+        yield _line("unsatisfiable", f"{wrong.iri}: {wrong.why}")
+    if found.untried:
+        yield _line("untried", f"{found.untried} classes, because each would take too long")
+    if found.is_sound and not found.untried:
+        yield _line("consistent", "yes, and there can be something of every class")
+
+
+def _line(what: str, text: str) -> str:
+    return f"{what:<{_COLUMN}} {text}"

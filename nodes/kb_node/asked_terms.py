@@ -1,0 +1,131 @@
+"""The terms that words of a question stand for: names, labels, prefixed names, IRIs and literals."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nodes.kb_node.reasoner import Reasoner, datatypes
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.queries.text import query_prefixes
+from ontology import prefixes
+from ontology import vocabulary as v
+from ontology.name_index import Ambiguous
+from schemas import errors
+from schemas.entities import composed
+from schemas.explanations import Term
+
+RELATIONS: Final = {
+    "a": v.RDF_TYPE,
+    "type": v.RDF_TYPE,
+    "sameas": v.OWL_SAME_AS,
+    "differentfrom": v.OWL_DIFFERENT_FROM,
+}
+"""What every map knows besides the properties of its TBox, in lower case."""
+
+
+def class_(semantic_map: SemanticMap, word: str) -> Term:
+    """The class that is meant. Raises UnknownClass."""
+    classes = semantic_map.classes
+    if word in classes.iris:
+        return classes.iris[word]
+    try:
+        name = classes.index.find(word)
+    except Ambiguous as error:
+        raise errors.UnknownClass(f"'{word}' may be {error}; say which class") from None
+    if name is None:
+        raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
+    return classes.iris[name]
+
+
+def term(semantic_map: SemanticMap, word: str) -> Term | None:
+    """A term as it is written, or a name with a prefix that queries know; None for another word."""
+    prefix, colon, name = word.partition(":")
+    if word.startswith(("<", '"', "_:")):
+        return word
+    known = query_prefixes(semantic_map.classes.prefixes)
+    return v.iri(known[prefix] + name) if colon and prefix in known else None
+
+
+def individual(semantic_map: SemanticMap, word: str) -> Term:
+    """An entity, or another individual or a class that the map or its TBox names.
+
+    Raises UnknownName, BadRequest for one that several have.
+    """
+    if (entity := semantic_map.find(composed(word))) is not None:
+        return v.iri(entity.iri)
+    reasoner = semantic_map.reasoner
+    if (found := term(semantic_map, word)) is not None:
+        if reasoner.mentioned({found}):
+            return found
+    else:
+        for usual in (v.entity_iri(word), v.dm(word)):
+            if reasoner.mentioned({usual}):
+                return usual
+        namespaces = semantic_map.classes.prefixes
+        there = reasoner.mentioned({v.iri(namespace + word) for namespace in namespaces.values()})
+        if len(there) > 1:
+            names = sorted(prefixes.prefixed(term, namespaces) for term in there)
+            raise errors.BadRequest(f"'{word}' may be {errors.enumerated(names)}; say which")
+        if there:
+            return there.pop()
+    return v.iri(semantic_map.entity(word).iri)
+
+
+def property_(semantic_map: SemanticMap, word: str) -> Term:
+    """The property that is meant, by its name, label or IRI, or one of RELATIONS. Raises BadRequest."""
+    relation = RELATIONS.get(word.casefold())
+    if relation is not None:
+        return relation
+    if (found := term(semantic_map, word)) is not None:
+        return found
+    return semantic_map.classes.property_named(word)
+
+
+def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
+    """The terms that `word` may stand for as the object of this subject and predicate."""
+    if predicate == v.RDF_TYPE and not word.startswith("_:"):
+        return [class_(semantic_map, word)]
+    if (found := term(semantic_map, word)) is not None:
+        return [found]
+    if predicate in RELATIONS.values():
+        return [individual(semantic_map, word)]
+    held = (
+        *semantic_map.reasoner.asserted(subject, predicate),
+        *semantic_map.reasoner.inferred(subject, predicate),
+    )
+    named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.entity_name(o)) == word]
+    return named or [_unheld(semantic_map, predicate, word)]
+
+
+def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+    """An individual, or a literal of the property's range. Raises UnknownName, BadRequest."""
+    if predicate == v.RDF_TYPE and not word.startswith("_:"):
+        return class_(semantic_map, word)
+    if (found := term(semantic_map, word)) is not None:
+        return found
+    if _is_data(semantic_map.reasoner, predicate):
+        return _literal(semantic_map.reasoner, predicate, word)
+    return individual(semantic_map, word)
+
+
+def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+    """A value that the subject does not have: an individual if there is one of that name."""
+    if _is_data(semantic_map.reasoner, predicate):
+        return _literal(semantic_map.reasoner, predicate, word)
+    found = (v.entity_iri(word), v.dm(word))
+    return next((term for term in found if semantic_map.reasoner.mentioned({term})), found[0])
+
+
+def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
+    kinds = (v.OWL_DATATYPE_PROPERTY, v.OWL_ANNOTATION_PROPERTY)
+    return any(reasoner.holds((predicate, v.RDF_TYPE, kind)) for kind in kinds)
+
+
+def _literal(reasoner: Reasoner, predicate: Term, text: str) -> Term:
+    """A value of the datatype that is the property's range, if it is known."""
+    ranges = (o for _, _, o in reasoner.asserted(predicate, v.RDFS_RANGE))
+    datatype = next((o for o in ranges if o.startswith(f"<{v.XSD}")), None)
+    literal = v.literal(text, datatype)
+    if datatype is not None and datatypes.is_ill_typed(literal):
+        raise errors.BadRequest(f"'{text}' is not a value of {v.local_name(datatype)}")
+    return literal

@@ -1,0 +1,160 @@
+"""What is in an ontology, what of it is inert or wrong, and how quick changes will be with it."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import time
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from statistics import median
+
+from nodes.kb_node.documents import ontology_files
+from nodes.kb_node.documents.abox_document import is_built_in
+from nodes.kb_node.documents.ontology_files import VERSION, Gathered
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.tbox.profile import outside_rl
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.entities import Pose
+from schemas.explanations import Term, Triple
+from schemas.ontologies import Quickness, TBoxReport, Unsatisfiable
+
+_CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
+_PATIENCE_S = 60.0
+"""How long classes are tried; all of them are, unless nothing is incremental."""
+_ADDS, _WARM_UP = 200, 20
+_SEED = 13
+_ADDING_S = 4.0
+"""How long individuals are added at most."""
+
+
+def check(named: Sequence[Path], imports: Mapping[str, Path]) -> TBoxReport:
+    """The report on ontologies in files, with what they import. Raises BadFile for what cannot be read."""
+    gathered = ontology_files.gather(named, imports)
+    began_s = time.perf_counter()
+    try:
+        reasoner = Reasoner(gathered.triples)
+    except Inconsistent as error:
+        return _report(gathered, inconsistent=error.explanation.text)
+    load_s = time.perf_counter() - began_s
+    classes = _classes(gathered.triples)
+    unsatisfiable = list(_unsatisfiable(reasoner, classes))
+    wrong = {class_ for class_, why in unsatisfiable if why}
+    quickness = Quickness(
+        load_s=load_s,
+        add_p50_ms=_add_p50_ms(reasoner, [c for c in classes if c not in wrong]),
+        not_incremental=reasoner.not_incremental or "",
+    )
+    return _report(
+        gathered,
+        spatial_classes=_spatial(reasoner),
+        unsatisfiable=tuple(Unsatisfiable(iri=v.bare(c), why=why) for c, why in unsatisfiable if why),
+        untried=len(classes) - len(unsatisfiable),
+        quickness=quickness,
+    )
+
+
+def _report(
+    gathered: Gathered,
+    *,
+    inconsistent: str = "",
+    spatial_classes: int | None = None,
+    unsatisfiable: tuple[Unsatisfiable, ...] = (),
+    untried: int = 0,
+    quickness: Quickness | None = None,
+) -> TBoxReport:
+    triples = gathered.triples
+    versions = {s: v.bare(o) for s, p, o in triples if p == VERSION and o.startswith("<")}
+    ontologies = [o for o in ontology_files.header(triples).ontologies if o.startswith("<")]
+    classes = _classes(triples)
+    return TBoxReport(
+        files=tuple(map(str, gathered.files)),
+        ontologies={v.bare(o): versions.get(o, "") for o in ontologies},
+        imports={iri: str(path) for iri, path in gathered.found.items()},
+        missing=gathered.missing,
+        triples=len(triples),
+        classes=len(classes),
+        spatial_classes=spatial_classes,
+        object_properties=len(_of(triples, v.OWL_OBJECT_PROPERTY)),
+        data_properties=len(_of(triples, v.OWL_DATATYPE_PROPERTY)),
+        annotation_properties=len(_of(triples, v.OWL_ANNOTATION_PROPERTY)),
+        individuals=len(_individuals(triples)),
+        outside_rl=dict(outside_rl(filter(is_schema, triples)).most_common()),
+        inconsistent=inconsistent,
+        unsatisfiable=unsatisfiable,
+        untried=untried,
+        ambiguous=_ambiguous(classes),
+        quickness=quickness,
+    )
+
+
+def _of(triples: Iterable[Triple], *kinds: Term) -> set[Term]:
+    return {s for s, p, o in triples if p == v.RDF_TYPE and o in kinds and s.startswith("<")}
+
+
+def _classes(triples: Iterable[Triple]) -> list[Term]:
+    return sorted(c for c in _of(triples, *_CLASSES) if not is_built_in(c))
+
+
+def _individuals(triples: Collection[Triple]) -> set[Term]:
+    said = {s for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)}
+    return said | _of(triples, v.OWL_NAMED_INDIVIDUAL)
+
+
+def _ambiguous(classes: Iterable[Term]) -> dict[str, tuple[str, ...]]:
+    sharing: dict[str, list[str]] = {}
+    for c in classes:
+        sharing.setdefault(v.local_name(c), []).append(v.bare(c))
+    return {name: tuple(iris) for name, iris in sorted(sharing.items()) if len(iris) > 1}
+
+
+def _spatial(reasoner: Reasoner) -> int | None:
+    try:
+        return len(ClassTable(reasoner).spatial)
+    except errors.BadFile:
+        return None
+
+
+def _unsatisfiable(reasoner: Reasoner, classes: Iterable[Term]) -> Iterator[tuple[Term, str]]:
+    """Each class that was tried, with why nothing can be of it, or an empty text.
+
+    An individual of the class is added, and taken back.
+    """
+    began_s = time.monotonic()
+    for class_, triple in ((c, (v.entity_iri("x"), v.RDF_TYPE, c)) for c in classes):
+        if time.monotonic() - began_s > _PATIENCE_S:
+            return
+        try:
+            reasoner.apply(insert=[triple])
+        except Inconsistent as error:
+            yield class_, error.explanation.text
+        else:
+            reasoner.apply(delete=[triple])
+            yield class_, ""
+
+
+def _add_p50_ms(reasoner: Reasoner, classes: Sequence[Term]) -> float | None:
+    """The median time to add an individual with a position and a name and to check what follows.
+
+    They are of classes from all over the ontology and stay, as they would in a map. Where changes are slow,
+    fewer are added.
+    """
+    classes = random.Random(_SEED).sample(classes, len(classes))
+    took_s: list[float] = []
+    began_s = time.monotonic()
+    for i, class_ in enumerate(itertools.islice(itertools.cycle(classes), _ADDS + _WARM_UP)):
+        star = stars.star(f"x{i}", class_, pose=Pose(position_m=(float(i), 1.0, 0.5)), preferred=f"thing {i}")
+        start_s = time.perf_counter()
+        try:
+            reasoner.apply(insert=star)
+        except Inconsistent:
+            continue
+        took_s.append(time.perf_counter() - start_s)
+        if time.monotonic() - began_s > _ADDING_S:
+            break
+    measured = took_s[_WARM_UP:] or took_s
+    return median(measured) * 1e3 if measured else None

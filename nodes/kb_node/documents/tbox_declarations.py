@@ -1,0 +1,82 @@
+"""What a TBox is told besides its own triples, and keeps: prefixes of its file, and what is in space.
+
+Both become triples of the TBox, so they hold over restarts, are in its history and go with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from types import MappingProxyType
+
+from nodes.kb_node.entities.class_table import ClassTable
+from ontology import prefixes
+from ontology import vocabulary as v
+from ontology.name_index import Ambiguous, Named, NameIndex
+from ontology.prefixes import Prefixes
+from schemas import errors
+from schemas.explanations import Term, Triple
+
+_TRUE = v.literal("true", v.XSD_BOOLEAN)
+
+
+def declared(
+    tbox: Iterable[Triple],
+    *,
+    of_file: Prefixes = MappingProxyType({}),
+    spatial_roots: Sequence[str] = (),
+) -> list[Triple]:
+    """`tbox` with the prefixes of its file, and with the classes that are roots of what is in space.
+
+    A root is an IRI or a class's name. Raises UnknownClass.
+    """
+    triples = list(tbox)
+    triples += prefixes.declarations(of_file, triples)
+    if spatial_roots:
+        find = _ClassFinder(triples)
+        triples += [(find(word), v.SPATIAL, _TRUE) for word in spatial_roots]
+    return list(dict.fromkeys(triples))
+
+
+def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
+    """A TBox that does not say what is in space, with the roots that somebody declared for the one before.
+
+    As far as it has these classes.
+    """
+    classes = _classes(tbox)
+    kept = [(c, v.SPATIAL, _TRUE) for c in before.declared_roots if c in classes]
+    return [*tbox, *kept]
+
+
+def _classes(triples: Iterable[Triple]) -> set[Term]:
+    kinds = (v.OWL_CLASS, v.RDFS_CLASS)
+    return {s for s, p, o in triples if p == v.RDF_TYPE and o in kinds and s.startswith("<")}
+
+
+class _ClassFinder:
+    """Finds a class by what somebody calls it, among those that triples declare or put others below."""
+
+    def __init__(self, triples: Sequence[Triple]) -> None:
+        above = {o for _, p, o in triples if p == v.RDFS_SUB_CLASS_OF and o.startswith("<")}
+        classes = sorted(_classes(triples) | above)
+        known = prefixes.prefixes_of((prefixes.split(c)[0] for c in classes), prefixes.declared_in(triples))
+        names = prefixes.names(classes, known)
+        labels: dict[Term, list[str]] = {}
+        for s, p, o in triples:
+            if p == v.RDFS_LABEL and o.startswith('"'):
+                labels.setdefault(s, []).append(v.lexical(o))
+        self._index = NameIndex(
+            Named(name, v.bare(c), prefixes.prefixed(c, known), tuple(labels.get(c, ())))
+            for c, name in names.items()
+        )
+        self._by_name = {name: c for c, name in names.items()}
+
+    def __call__(self, word: str) -> Term:
+        """The class. Raises UnknownClass."""
+        try:
+            name = self._index.find(word)
+        except Ambiguous as error:
+            raise errors.UnknownClass(f"--spatial-root {word} may be {error}; say which class") from None
+        if name is None:
+            hint = self._index.did_you_mean(word)
+            raise errors.UnknownClass(f"--spatial-root {word}: the TBox has no such class{hint}")
+        return self._by_name[name]

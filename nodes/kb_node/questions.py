@@ -1,0 +1,133 @@
+"""Questions about one triple, asked in words: why it holds, why it cannot, and whether it could."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain, islice
+from typing import NamedTuple
+
+from nodes.kb_node import asked_terms
+from nodes.kb_node.asked_terms import RELATIONS
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain.sentences import said
+from nodes.kb_node.reasoner.refutation import refute, why_different
+from nodes.kb_node.semantic_map import SemanticMap
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Could, Explain
+from schemas.explanations import Explanation, Term, Triple
+from schemas.replies import Possible
+
+_QUICK = 2000
+"""Triples about an individual with which supposing something of it still takes milliseconds."""
+_COMPARED = 50
+"""Values that are looked at for what would be the same."""
+
+
+class Asked(NamedTuple):
+    """A question as triples: the one that is meant, or several that a word may stand for."""
+
+    triples: tuple[Triple, ...]
+    negated: bool = False
+
+
+def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
+    """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    subject = asked_terms.individual(semantic_map, question.name)
+    predicate = asked_terms.property_(semantic_map, question.predicate)
+    values = asked_terms.values(semantic_map, subject, predicate, question.value)
+    return Asked(tuple((subject, predicate, value) for value in values), question.negated)
+
+
+def of_could(semantic_map: SemanticMap, question: Could) -> Asked:
+    """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    subject = asked_terms.individual(semantic_map, question.name)
+    predicate = asked_terms.property_(semantic_map, question.predicate)
+    return Asked(((subject, predicate, asked_terms.value(semantic_map, predicate, question.value)),))
+
+
+def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
+    """Whether supposing it is quick: the reasoner works change by change, and touches few triples."""
+    return reasoner.is_compiled and not any(
+        _has_many(reasoner, term)
+        for s, p, o in asked.triples
+        for term in ((s,) if p == v.RDF_TYPE or o.startswith('"') else (s, o))
+    )
+
+
+def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
+    """Why it holds by the rules; None if it does not."""
+    return next(filter(None, map(reasoner.explain, asked.triples)), None)
+
+
+def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
+    """Why it holds, or cannot hold.
+
+    Raises:
+        Refused: it does not hold; or it holds, or nothing says that it cannot.
+        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+    """
+    first = asked.triples[0]
+    clause = said(first, reasoner.words)
+    if asked.negated:
+        if (found := refute(reasoner, first, anew=anew)) is not None:
+            return found
+        holds = reasoner.explain(first)
+        raise errors.Refused(
+            f"it does hold: {holds.text}"
+            if holds
+            else f"it is not known that {clause}, but nothing excludes it"
+        )
+    if (found := why(reasoner, asked) or why_different(reasoner, first, anew=anew)) is not None:
+        return found
+    excluded = refute(reasoner, first, anew=anew)
+    if excluded is None:
+        raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
+    raise errors.Refused(f"it does not hold: {excluded.text}", explanation=excluded)
+
+
+def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
+    """Whether it could hold; the reasoner is as before.
+
+    Raises:
+        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+    """
+    triple = asked.triples[0]
+    clause = said(triple, reasoner.words)
+    if reasoner.holds(triple):
+        return Possible(possible=True, text=f"yes: {clause} already")
+    if (excluded := refute(reasoner, triple, anew=anew)) is not None:
+        return Possible(possible=False, text=f"no: {excluded.text}", explanation=excluded)
+    text = f"yes: nothing excludes that {clause}"
+    if same := sorted(_would_be_same(reasoner, triple)):
+        text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
+    return Possible(possible=True, text=text)
+
+
+def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
+    """What a triple would make the same, as where a property has one value at most."""
+    s, p, o = triple
+    if o.startswith('"') or p in RELATIONS.values():
+        return
+    others = [(o, y) for y in _known(reasoner, s, p, None, 2)] + [
+        (s, x) for x in _known(reasoner, None, p, o, 0)
+    ]
+    pairs = [(x, v.OWL_SAME_AS, y) for x, y in others if x != y and not reasoner.holds((x, v.OWL_SAME_AS, y))]
+    if not pairs:
+        return
+    try:
+        with reasoner.supposing([triple]):
+            same = [pair for pair in pairs if reasoner.holds(pair)]
+    except Inconsistent:
+        return
+    yield from same
+
+
+def _known(reasoner: Reasoner, s: Term | None, p: Term, o: Term | None, place: int) -> list[Term]:
+    both = chain(reasoner.asserted(s, p, o), reasoner.inferred(s, p, o))
+    return list(dict.fromkeys(triple[place] for triple in islice(both, _COMPARED)))
+
+
+def _has_many(reasoner: Reasoner, term: Term) -> bool:
+    about = chain(reasoner.asserted(term, None, None), reasoner.asserted(None, None, term))
+    return next(islice(about, _QUICK, None), None) is not None

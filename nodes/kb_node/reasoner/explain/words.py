@@ -1,0 +1,192 @@
+"""What terms are called in a sentence: classes by their labels, properties as verb phrases.
+
+Labels are those without a language or in English. A property's label is a verb phrase ("is on", "supports",
+"has color") or a noun ("mass"), which is something that one has. Without a label its name is taken apart:
+`isOn`, `has_color`. Individuals and classes without labels are called by their local names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Final, Literal, NamedTuple
+
+from nodes.kb_node.reasoner.terms import PREFIXES, TYPE, iri, iris, is_literal, is_named, literal
+from schemas.explanations import Term, Triple
+
+_LABEL: Final = iri("rdfs:label")
+_DATA: Final = iri("owl:DatatypeProperty")
+_HUMPS: Final = re.compile(r"[_\s.-]+|(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_LINKS: Final = frozenset(
+    {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under"}
+)
+"""Words at whose end a name without a verb wants an "is": partOf is "is part of"."""
+_NO_VERB: Final = ("ss", "us", "is", "as", "os")
+"""Endings in s of words that are no verbs."""
+_PLAIN_VALUES: Final = frozenset(
+    term[1:-1]
+    for term in iris(
+        "xsd:float xsd:double xsd:decimal xsd:integer xsd:boolean xsd:int xsd:long xsd:short xsd:byte "
+        "xsd:nonNegativeInteger xsd:positiveInteger xsd:unsignedInt xsd:unsignedByte xsd:unsignedShort"
+    )
+)
+"""Datatypes whose values are told without quotation marks."""
+_LETTERS: Final = re.compile(r"(?!true$|false$|INF$|NaN$)[^\W\d]|$")
+"""What looks like no number, although its datatype says so."""
+_UNCOUNTABLE: Final = frozenset(
+    (
+        *("bread", "butter", "cheese", "clothing", "crockery", "cutlery", "equipment", "flour", "food"),
+        *("furniture", "juice", "luggage", "meat", "milk", "oil", "pasta", "rice", "salt", "sugar", "water"),
+        *("coordinates", "headphones", "scissors", "stairs", "trousers"),
+    )
+)
+"""Nouns that take no article, also as the last word of a label."""
+_BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
+
+
+class Verb(NamedTuple):
+    """How a property is said of a subject and an object."""
+
+    kind: Literal["is", "has", "does"]
+    rest: str
+    """What follows "is" or "has"; for another verb all of it, in the third person."""
+
+    def says(self, object_: str) -> str:
+        """What is said of the subject: "is on table1"."""
+        return f"{self.rest if self.kind == 'does' else f'{self.kind} {self.rest}'} {object_}"
+
+    def denies(self, object_: str) -> str:
+        """The contrary: "does not support table1"."""
+        start = {"is": "is not", "has": "does not have", "does": "does not"}[self.kind]
+        return f"{start} {base_form(self.rest) if self.kind == 'does' else self.rest} {object_}"
+
+    def says_of(self, object_: str) -> str:
+        """The same with the object as a person or thing, not as a name: "has another as part", "is on it"."""
+        return f"has {object_} as {self.rest}" if self.kind == "has" else self.says(object_)
+
+    def counted(self, number: str, kind: str = "") -> str:
+        """With so many objects: "is on at most one table", "has at most one color"."""
+        if self.kind == "has":
+            return f"has {number} {self.rest}" + (f" that is {article(kind)}" if kind else "")
+        return self.says("nothing" if (number, kind) == ("no", "") else f"{number} {kind or 'thing'}")
+
+    @property
+    def plural(self) -> str:
+        """Of several subjects: "are on", "support", "have"."""
+        return {"is": f"are {self.rest}", "has": f"have {self.rest}", "does": base_form(self.rest)}[self.kind]
+
+
+class Words:
+    """Labels of a graph, and names where there are none."""
+
+    def __init__(self, labels: Mapping[Term, str], data_properties: frozenset[Term]) -> None:
+        self._labels = labels
+        self._data = data_properties
+        self._verbs: dict[Term, Verb] = {}
+
+    @classmethod
+    def of(cls, triples: Iterable[Triple]) -> Words:
+        """The words that a graph gives."""
+        labels: dict[Term, str] = {}
+        data: set[Term] = set()
+        for s, p, o in triples:
+            if p == _LABEL and is_literal(o):
+                text, _, language = literal(o)
+                if language.lower().startswith("en") or (not language and s not in labels):
+                    labels[s] = text
+            elif p == TYPE and o == _DATA:
+                data.add(s)
+        return cls(labels, frozenset(data))
+
+    def name(self, term: Term) -> str:
+        """An individual or a value."""
+        if is_literal(term):
+            text, datatype, _ = literal(term)
+            is_plain = datatype in _PLAIN_VALUES and not _LETTERS.match(text)
+            return text if is_plain else f'"{text}"'
+        return local_name(term) if is_named(term) else term[2:]
+
+    def cls(self, term: Term) -> str:
+        """A class."""
+        return self._labels.get(term) or local_name(term)
+
+    def verb(self, prop: Term) -> Verb:
+        """A property."""
+        found = self._verbs.get(prop)
+        if found is None:
+            label = self._labels.get(prop)
+            found = self._verbs[prop] = _verb(label or _taken_apart(local_name(prop)), prop in self._data)
+        return found
+
+    def says(self, prop: Term, object_: Term, *, denied: bool = False, itself: bool = False) -> str:
+        """What a triple says of its subject: "is on table1"; true and false as yes and no: "is not open"."""
+        verb = self.verb(prop)
+        truth = _truth(object_)
+        if truth is not None and verb.kind == "is":
+            return f"is {verb.rest}" if truth != denied else f"is not {verb.rest}"
+        if itself and not denied:
+            return verb.says_of("itself")
+        name = "itself" if itself else self.name(object_)
+        return verb.denies(name) if denied else verb.says(name)
+
+    def is_data(self, prop: Term) -> bool:
+        """Whether a property is declared to have values that are literals."""
+        return prop in self._data
+
+
+def is_uncountable(noun: str) -> bool:
+    """Whether a noun takes neither "a" nor "every"."""
+    return noun.rpartition(" ")[2] in _UNCOUNTABLE
+
+
+def article(noun: str) -> str:
+    """A noun with "a" or "an"."""
+    if not noun[:1].isalnum() or noun.startswith(("something ", "a ", "an ", "one of ")):
+        return noun
+    if is_uncountable(noun):
+        return noun
+    return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"
+
+
+@lru_cache(maxsize=4096)
+def local_name(term: Term) -> str:
+    """How an IRI is called: its last part."""
+    return re.split(r"[#/]", term.strip("<>").rstrip("#/"))[-1] or term
+
+
+def _truth(term: Term) -> bool | None:
+    if not is_literal(term) or literal(term).datatype != _BOOLEAN:
+        return None
+    return {"true": True, "1": True, "false": False, "0": False}.get(literal(term).text)
+
+
+def _taken_apart(name: str) -> str:
+    """`isOn` is "is on"; what is all capitals stays."""
+    words = filter(None, _HUMPS.split(name))
+    return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in words) or name
+
+
+def _verb(phrase: str, is_data: bool) -> Verb:
+    first, _, rest = phrase.strip().partition(" ")
+    if first in ("is", "has") and rest:
+        return Verb("is", rest) if first == "is" else Verb("has", rest)
+    last = phrase.rpartition(" ")[2]
+    is_verb = first.endswith("s") and len(first) > 3 and not first.endswith(_NO_VERB)
+    if is_verb and not is_data:
+        return Verb("does", phrase)
+    if last in _LINKS:
+        return Verb("is", phrase)
+    return Verb("has", phrase)
+
+
+def base_form(phrase: str) -> str:
+    """A verb in the third person as it is after "does not"."""
+    verb, blank, rest = phrase.partition(" ")
+    if verb.endswith("ies"):
+        verb = verb[:-3] + "y"
+    elif verb.endswith(("ches", "shes", "sses", "xes", "zes", "oes")):
+        verb = verb[:-2]
+    else:
+        verb = verb.removesuffix("s")
+    return verb + blank + rest

@@ -1,0 +1,73 @@
+"""One query on one store: its answer, or why there is none, in one sentence."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Final
+
+import pyoxigraph as ox
+
+from nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
+from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, Dataset
+from ontology import prefixes
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.explanations import Term
+from schemas.sparql import Row, SparqlResult
+
+_PREFERRED_PREFIX: Final = ox.NamedNode(v.bare(prefixes.PREFERRED_PREFIX))
+_SPO: Final = ("subject", "predicate", "object")
+
+
+def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> SparqlResult:
+    """The answer over what is asserted or, with `inferred`, over that and what follows from it.
+
+    Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
+    """
+    known = query_prefixes(_declared_in(dataset))
+    try:
+        found = dataset.store.query(
+            query,
+            prefixes=known,
+            default_graph=[ASSERTED, INFERRED] if inferred else ASSERTED,
+            named_graphs=[],
+        )
+        if isinstance(found, ox.QueryBoolean):
+            return SparqlResult(kind="ask", verdict=bool(found), seq=dataset.seq)
+        if isinstance(found, ox.QueryTriples):
+            return SparqlResult(kind="graph", variables=_SPO, rows=_graph(found, limit), seq=dataset.seq)
+        rows: tuple[Row, ...] = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
+    except SyntaxError as error:
+        raise syntax_error(query, error, known) from None
+    except (RuntimeError, ValueError, OSError) as error:
+        raise errors.Refused(f"the query cannot be evaluated: {' '.join(str(error).split())}") from None
+    _require_few(len(rows), limit)
+    variables = tuple(variable.value for variable in found.variables)
+    return SparqlResult(kind="select", variables=variables, rows=rows, seq=dataset.seq)
+
+
+def _declared_in(dataset: Dataset) -> dict[str, str]:
+    """The prefixes of the TBox's own namespaces."""
+    said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
+    declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)
+    return {prefix: namespace for namespace, prefix in declared.items()}
+
+
+def _term(term: object) -> Term | None:
+    return None if term is None else str(term)
+
+
+def _graph(triples: ox.QueryTriples, limit: int) -> tuple[Row, ...]:
+    """The triples, each once, sorted."""
+    found: set[Row] = set()
+    for triple in triples:
+        found.add(tuple(map(str, triple)))
+        _require_few(len(found), limit)
+    return tuple(sorted(found, key=str))
+
+
+def _require_few(rows: int, limit: int) -> None:
+    if rows > limit:
+        raise errors.Refused(
+            f"the query has more than {limit} rows; narrow it, add LIMIT to it, or raise the limit"
+        )

@@ -1,0 +1,98 @@
+"""What may be asked: a query that reads, of this map alone; and what is wrong with one, in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from types import MappingProxyType
+from typing import Final
+
+from ontology.prefixes import WELL_KNOWN, Prefixes
+from schemas import errors
+
+PREFIXES: Final = dict(WELL_KNOWN)
+"""The prefixes that a query need not declare, whatever the TBox; those of its namespaces come on top."""
+
+_FORMS = frozenset({"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"})
+_UPDATES = frozenset({"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH"})
+_ELSEWHERE = frozenset({"SERVICE", "FROM", "LOAD"})
+_TOKEN = re.compile(
+    r"""
+    \#[^\n]*                                            # a comment
+    | <[^\x00-\x20<>"{}|^`\\]*>                         # an IRI
+    | \"\"\"(?:\"{0,2}(?:[^"\\]|\\.))*\"\"\" | '''(?:'{0,2}(?:[^'\\]|\\.))*'''
+    | "(?:[^"\\\n]|\\.)*" | '(?:[^'\\\n]|\\.)*'
+    | [?$]\w+ | @[\w-]+                                 # a variable, a language
+    | (?:[^\W\d_][\w.-]*)?:(?:[\w:.%-]|\\.)*| _:[\w.-]+ # a prefixed name, a blank node
+    | (?P<word>[^\W\d_]\w*)
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_FAULT = re.compile(r"error at (\d+):(\d+): expected (.*)", re.DOTALL)
+_REASONS = (
+    ("Duplicated variable name", "a variable is selected twice"),
+    ("a variable that is unbound", "it selects a variable that it neither binds nor groups by"),
+    ("IRI parsing failed", "an IRI is malformed"),
+)
+
+
+def query_prefixes(of_tbox: Prefixes) -> dict[str, str]:
+    """The prefixes that a query need not declare over a TBox with prefixes of its own."""
+    return {**of_tbox, **PREFIXES}
+
+
+def require_reading(query: str) -> str:
+    """The form of a query: SELECT, ASK, CONSTRUCT or DESCRIBE.
+
+    Raises Refused for an update and for what would reach beyond the map, BadRequest when it is neither.
+    """
+    words = list(_words(query))
+    form = next((word for word in words if word in _FORMS or word in _UPDATES), None)
+    if form in _UPDATES:
+        raise errors.Refused(
+            f"{form} is an update, and SPARQL only reads here; what changes the map is add, update, remove"
+        )
+    if form is None:
+        raise errors.BadRequest("the query is no SPARQL: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
+    if beyond := next((word for word in words if word in _ELSEWHERE), None):
+        raise errors.Refused(f"{beyond} is refused: a query sees this map only, and nothing of the network")
+    return form
+
+
+def require_select(query: str) -> None:
+    """Raises BadRequest for a query that has no rows to watch; Refused as `require_reading`."""
+    if (form := require_reading(query)) != "SELECT":
+        raise errors.BadRequest(f"only a SELECT can be watched, and this is a query of form {form}")
+
+
+def syntax_error(
+    query: str, error: SyntaxError, prefixes: Prefixes = MappingProxyType(PREFIXES)
+) -> errors.BadRequest:
+    """What Oxigraph's parser says, without the grammar: the place and, where it can be told, the reason."""
+    match = _FAULT.match(str(error))
+    if match is None:
+        return errors.BadRequest(f"the query is no SPARQL: {' '.join(str(error).split())}")
+    line, column, expected = int(match[1]), int(match[2]), match[3]
+    reason = _reason(query, line, column, expected, prefixes)
+    return errors.BadRequest(f"the query is no SPARQL: line {line}, column {column}: {reason}")
+
+
+def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixes) -> str:
+    text = query.splitlines()[line - 1] if line <= len(query.splitlines()) else ""
+    before, after = text[: column - 1], text[column - 1 :].strip()
+    if "Prefix not found" in expected and (prefix := re.search(r"([\w.-]*):[^\s:]*$", before)):
+        known = ", ".join(f"{name}:" for name in prefixes)
+        return f"unknown prefix '{prefix[1]}:'; there are {known}, and PREFIX declares others"
+    for sign, reason in _REASONS:
+        if sign in expected:
+            return reason
+    return (
+        f"'{after[:30]}' does not fit there"
+        if after
+        else "it ends too early, or something before does not fit"
+    )
+
+
+def _words(query: str) -> Iterator[str]:
+    """The bare words of a query in capitals: its keywords, and names of functions."""
+    return (match["word"].upper() for match in _TOKEN.finditer(query) if match["word"])

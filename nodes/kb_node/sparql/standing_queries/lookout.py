@@ -1,0 +1,256 @@
+"""The standing queries: who watches what, and the looks that commits make necessary.
+
+They have one reader to themselves, which goes through the commits that may touch them one by one. Where it
+cannot follow any more, because all triples are others, the next one stands by and goes on from there. When
+that is too far behind, too, or the reader has died, what is left to do is done in one step.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import count
+from multiprocessing.connection import Connection, Pipe
+from typing import Any, Final
+
+from msgspec import Raw, msgpack
+
+from nodes.kb_node.sparql.protocol import Answered, FromWorker, News, Question, outcomes
+from nodes.kb_node.sparql.queries import text
+from nodes.kb_node.sparql.readers import Reader, cause_of_death
+from nodes.kb_node.sparql.standing_queries.standing import Standing
+from nodes.kb_node.sparql.triples.dataset import Delta
+from schemas import errors
+from schemas.commands import Renew, Watch
+from schemas.replies import Done
+from schemas.sparql import RowsChanged, SparqlResult, Watching
+
+STANDING: Final = 64
+"""How many standing queries there may be."""
+ROWS: Final = 10_000
+TIMEOUT_S: Final = 2.0
+
+_results = msgpack.Decoder(SparqlResult)
+
+
+@dataclass
+class Look:
+    """A look at the rows of a standing query after commit `seq`; those after `since` are known."""
+
+    standing: Standing
+    since: int
+    seq: int
+    number: int | None = None
+    """The command that waits for its first rows."""
+
+
+@dataclass
+class Relief:
+    """From here on another reader looks, which has the triples as they were then."""
+
+    lane: Connection
+    reader: Reader
+
+    def end(self) -> None:
+        """It is not needed any more."""
+        self.reader.end()
+        self.lane.close()
+
+
+class Lookout:
+    """Keeps the standing queries, and tells their news in the order of the commits."""
+
+    def __init__(self, send: Callable[[FromWorker], None], hire: Callable[[Connection], Reader]) -> None:
+        """`hire(lane)` is a reader that answers there."""
+        self._send = send
+        self._hire = hire
+        self._seq = 0
+        self._numbers = count()
+        self._standing: dict[str, Standing] = {}
+        self._looks: deque[Look | Relief] = deque()
+        self._looking: Look | None = None
+        self._on_duty: Relief | None = None
+        self._is_behind = False
+
+    @property
+    def connections(self) -> Iterator[Connection]:
+        """Readable when a look is done."""
+        if self._on_duty is not None and self._looking is not None:
+            yield self._on_duty.lane
+
+    @property
+    def patience_s(self) -> float | None:
+        """How long nothing needs to be done without being told."""
+        soonest = min((standing.ends for standing in self._standing.values()), default=math.inf)
+        return None if soonest == math.inf else max(0.0, soonest - time.monotonic())
+
+    # What comes in
+
+    def handle(self, number: int, command: Watch | Renew, seq: int) -> None:
+        """A command, at commit `seq`. Raises UnknownName, NameTaken, Refused, and as `text` does."""
+        self._seq = seq
+        if isinstance(command, Watch):
+            text.require_select(command.query)
+            self._looks.append(Look(self._admit(command), since=seq, seq=seq, number=number))
+            return
+        if command.watch not in self._standing:
+            raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
+        standing = self._standing[command.watch]
+        if command.end:
+            self._drop(standing)
+        standing.ends = time.monotonic() + standing.lease_s
+        said = "has ended" if command.end else f"goes on for {standing.lease_s:g} s"
+        self._send(Answered(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
+
+    def follow(self, delta: Delta) -> None:
+        """A commit."""
+        self._seq = delta.seq
+        for standing in self._standing.values():
+            if standing.is_touched(delta):
+                self._looks.append(Look(standing, since=delta.seq - 1, seq=delta.seq))
+
+    def look_at_all(self, seq: int) -> None:
+        """All triples are others after commit `seq`."""
+        self._seq = seq
+        self._looks.extend(Look(s, since=seq - 1, seq=seq) for s in self._standing.values())
+
+    def renew_reader(self) -> None:
+        """The one that there is cannot follow any more: it does what there is to do, and then a new one."""
+        if any(isinstance(look, Relief) for look in self._looks):
+            self._is_behind = True
+        elif self._on_duty is not None:
+            self._looks.append(self._relief())
+
+    def done(self, connection: Connection) -> None:
+        """The reader has answered, or died."""
+        if self._on_duty is not None and connection is self._on_duty.lane:
+            self._finish()
+
+    def go_on(self) -> None:
+        """Begin the next look; let leases end."""
+        for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
+            self._drop(standing)
+        if self._looking is None and self._is_behind:
+            self.end()
+        while self._looking is None and self._looks:
+            self._begin()
+
+    def end(self) -> None:
+        """Part with all readers; what is left to do is left to the next, in one step."""
+        reliefs = [look for look in self._looks if isinstance(look, Relief)]
+        for reader in filter(None, (self._on_duty, *reliefs)):
+            reader.end()
+        looks = [look for look in self._looks if isinstance(look, Look)]
+        self._looks = deque(_in_one_step(looks, self._seq))
+        self._on_duty = None
+        self._is_behind = False
+
+    # Standing queries
+
+    def _admit(self, command: Watch) -> Standing:
+        name = command.watch or f"q{uuid.uuid4().hex[:12]}"
+        if name in self._standing:
+            raise errors.NameTaken(f"there is a standing query '{name}' already")
+        if len(self._standing) >= STANDING:
+            raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
+        self._standing[name] = Standing.of(command, name)
+        return self._standing[name]
+
+    def _drop(self, standing: Standing, error: errors.SemmapError | None = None) -> None:
+        """It is over; with an error, its followers are told why."""
+        self._standing.pop(standing.watch, None)
+        left = (look for look in self._looks if isinstance(look, Relief) or look.standing is not standing)
+        self._looks = deque(left)
+        last = error and RowsChanged(watch=standing.watch, seq=self._seq, since=self._seq, error=error.text)
+        self._send(News(watch=standing.watch, rows=last or None, ended=True))
+
+    # Looks
+
+    def _begin(self) -> None:
+        if self._on_duty is None:
+            self.end()
+            if not self._looks:
+                return
+            self._on_duty = self._relief()
+        look = self._looks.popleft()
+        if isinstance(look, Relief):
+            self._on_duty.end()
+            self._on_duty = look
+            return
+        self._looking = look
+        question = Question(
+            number=next(self._numbers),
+            seq=look.seq,
+            query=look.standing.query,
+            inferred=look.standing.inferred,
+            limit=ROWS,
+            timeout_s=TIMEOUT_S,
+        )
+        with suppress(OSError):  # if the reader is dead, `_result` tells
+            self._on_duty.lane.send_bytes(msgpack.encode(question))
+
+    def _relief(self) -> Relief:
+        lane, there = Pipe()
+        reader = self._hire(there)
+        there.close()
+        return Relief(lane, reader)
+
+    def _finish(self) -> None:
+        look, self._looking = self._looking, None
+        assert look is not None
+        try:
+            result = self._result()
+        except errors.SemmapError as error:
+            if look.number is not None:
+                self._send(Answered(number=look.number, error=errors.to_message(error)))
+            if look.standing.watch in self._standing:
+                self._drop(look.standing, error)
+            return
+        news = look.standing.take(result.rows, look.since, look.seq)
+        if look.number is not None:
+            look.standing.ends = time.monotonic() + look.standing.lease_s
+            self._send(Answered(number=look.number, reply=_encoded(_watching(look.standing, result))))
+        elif news is not None and look.standing.watch in self._standing:
+            self._send(News(watch=news.watch, rows=news))
+
+    def _result(self) -> SparqlResult:
+        """What the reader found. Raises the query's error, also that the reader died of it."""
+        assert self._on_duty is not None
+        try:
+            outcome = outcomes.decode(self._on_duty.lane.recv_bytes())
+        except (EOFError, OSError):
+            number = self._on_duty.reader.bury()
+            self._on_duty.lane.close()
+            self._on_duty = None
+            raise cause_of_death(number, TIMEOUT_S) from None
+        if outcome.error is not None:
+            raise errors.from_message(outcome.error)
+        return _results.decode(outcome.result)
+
+
+def _encoded(message: Any) -> Raw:
+    return Raw(msgpack.encode(message))
+
+
+def _in_one_step(looks: Iterable[Look], seq: int) -> Iterator[Look]:
+    """One look a standing query, at the present, instead of several at the past."""
+    last: dict[str, Look] = {}
+    for look in looks:
+        earlier = last.setdefault(look.standing.watch, look)
+        earlier.seq = seq
+    yield from last.values()
+
+
+def _watching(standing: Standing, result: SparqlResult) -> Watching:
+    return Watching(
+        watch=standing.watch,
+        variables=result.variables,
+        rows=result.rows,
+        seq=result.seq,
+        lease_s=standing.lease_s,
+    )

@@ -1,0 +1,192 @@
+"""The triples that queries see: an Oxigraph store with what is asserted and, beside it, what follows.
+
+Oxigraph keeps numbers, dates and the like by value: `"1.0"` and `"1.00"` are one literal to it,
+spelled `"1"`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from pathlib import Path
+
+import pyoxigraph as ox
+from msgspec import Struct
+
+from nodes.kb_node.sparql.triples.kept import cloned
+from ontology import vocabulary as v
+from schemas.explanations import Term, Triple
+
+ASSERTED = ox.DefaultGraph()
+INFERRED = ox.NamedNode("urn:semmap:inferred")
+_TYPE = v.bare(v.RDF_TYPE)
+
+
+class Delta(Struct, frozen=True, kw_only=True, array_like=True):
+    """How the triples differ after commit `seq` from what they were before."""
+
+    seq: int
+    retracted: tuple[Triple, ...] = ()
+    inserted: tuple[Triple, ...] = ()
+    no_longer_inferred: tuple[Triple, ...] = ()
+    newly_inferred: tuple[Triple, ...] = ()
+
+    @property
+    def asserted(self) -> tuple[Triple, ...]:
+        """What was asserted or retracted."""
+        return self.retracted + self.inserted
+
+    @property
+    def everything(self) -> tuple[Triple, ...]:
+        """What was asserted, retracted, or follows now or no longer."""
+        return self.asserted + self.no_longer_inferred + self.newly_inferred
+
+
+class Dataset:
+    """Two graphs without a triple in common, as they are after commit `seq`."""
+
+    settled = 0
+    """Before that commit it is no map yet."""
+
+    def __init__(self, seq: int, asserted: Iterable[Triple], store: ox.Store | None = None) -> None:
+        """`store` may hold others already."""
+        self.seq = seq
+        self.store = store or ox.Store()
+        self._other_spellings: Counter[ox.Quad] = Counter()
+        asserted = list(asserted)
+        self.store.bulk_extend(quads(asserted, ASSERTED))
+        if len(self.store) < len(asserted):
+            self._count_spellings(asserted)
+
+    def opened(self) -> Dataset:
+        """As a reader has it, once it is forked."""
+        return self
+
+    def apply(self, delta: Delta) -> None:
+        """Go on to the commit after."""
+        for quad in quads(delta.retracted, ASSERTED):
+            self._retract(quad)
+        inserted = list(quads(delta.inserted, ASSERTED))
+        self.store.extend(quad for quad in inserted if not isinstance(quad.object, ox.Literal))
+        for quad in inserted:
+            if isinstance(quad.object, ox.Literal):
+                self._insert(quad)
+        for quad in quads(delta.no_longer_inferred, INFERRED):
+            self.store.remove(quad)
+        self.store.extend(quads(delta.newly_inferred, INFERRED))
+        self.seq = delta.seq
+
+    def _insert(self, quad: ox.Quad) -> None:
+        """Insert one with a literal, unless it is asserted in another spelling already."""
+        if quad in self.store:
+            self._other_spellings[_stored(quad)] += 1
+        else:
+            self.store.add(quad)
+
+    def _retract(self, quad: ox.Quad) -> None:
+        """Remove it, unless it is still asserted in another spelling."""
+        if self._other_spellings and (stored := _stored(quad)) in self._other_spellings:
+            self._other_spellings[stored] -= 1
+            self._other_spellings += Counter()
+        else:
+            self.store.remove(quad)
+
+    def _count_spellings(self, asserted: Iterable[Triple]) -> None:
+        counts = Counter(map(_stored, quads(asserted, ASSERTED)))
+        self._other_spellings.update({quad: n - 1 for quad, n in counts.items() if n > 1})
+
+    def infer(self, triples: Iterable[Triple]) -> None:
+        """Take in what follows, when it is first asked for."""
+        self.store.bulk_extend(quads(triples, INFERRED))
+
+    def inferred(self, subject: Term | None) -> set[Triple]:
+        """What follows about a subject, or about all."""
+        term = None if subject is None else _subject(subject)
+        found = self.store.quads_for_pattern(term, None, None, INFERRED)
+        return {_triple(quad) for quad in found}
+
+    def neighbours(self, individual: Term) -> set[Term]:
+        """The individuals that this one is related to, either way, by anything but its class."""
+        term = _subject(individual)
+        found: set[Term] = set()
+        for graph in (ASSERTED, INFERRED):
+            for quad in self.store.quads_for_pattern(term, None, None, graph):
+                if quad.predicate.value != _TYPE and not isinstance(quad.object, ox.Literal):
+                    found.add(str(quad.object))
+            for quad in self.store.quads_for_pattern(None, None, term, graph):
+                if quad.predicate.value != _TYPE:
+                    found.add(str(quad.subject))
+        return found
+
+
+class KeptDataset(Dataset):
+    """The triples in a store on disk, and the log since. Who keeps it never opens it: only readers do.
+
+    Oxigraph's threads for a store on disk would not live on in a fork.
+    """
+
+    def __init__(self, path: Path, seq: int, settled: int) -> None:
+        super().__init__(seq, ())
+        self.path = path
+        self.settled = settled
+        self._first = seq
+
+    def apply(self, delta: Delta) -> None:
+        """The readers do that."""
+        self.seq = delta.seq
+
+    def opened(self) -> Dataset:
+        """A clone, as it was before the log began."""
+        opened = Dataset(self._first, (), cloned(self.path))
+        opened.settled = self.settled
+        return opened
+
+    def renew(self, deltas: Iterable[Delta]) -> None:
+        """Take in the log, in a process of its own, so that another log can begin."""
+        if (pid := os.fork()) == 0:
+            try:
+                store = Dataset(self._first, (), ox.Store(str(self.path)))
+                for delta in deltas:
+                    store.apply(delta)
+                store.store.flush()
+                del store
+            finally:
+                os._exit(0)
+        os.waitpid(pid, 0)
+        self._first = self.seq
+
+
+def quads(triples: Iterable[Triple], graph: ox.NamedNode | ox.DefaultGraph) -> Iterator[ox.Quad]:
+    """Triples in N-Triples terms as quads of a graph."""
+    lines = "".join(f"{s} {p} {o} .\n" for s, p, o in triples).encode()
+    for quad in ox.parse(lines, ox.RdfFormat.N_TRIPLES):
+        yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
+
+
+@lru_cache(maxsize=10_000)
+def as_stored(term: Term) -> Term:
+    """A term as Oxigraph gives it back."""
+    if not term.startswith('"') or "^^" not in term:
+        return term
+    (quad,) = quads([("<x:s>", "<x:p>", term)], ASSERTED)
+    return str(_stored(quad).object)
+
+
+def _stored(quad: ox.Quad) -> ox.Quad:
+    """A quad as Oxigraph gives it back."""
+    if not isinstance(quad.object, ox.Literal):
+        return quad
+    store = ox.Store()
+    store.add(quad)
+    (stored,) = store.quads_for_pattern(None, None, None)
+    return stored
+
+
+def _subject(term: Term) -> ox.NamedNode | ox.BlankNode:
+    return ox.NamedNode(term[1:-1]) if term.startswith("<") else ox.BlankNode(term[2:])
+
+
+def _triple(quad: ox.Quad) -> Triple:
+    return (str(quad.subject), str(quad.predicate), str(quad.object))

@@ -1,0 +1,119 @@
+"""Following the map: one way for every node that keeps a replica of it.
+
+Subscribe first, then fetch; whatever is missed, abridged or doubted after a restart of the knowledge base is
+fetched again.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from nodes.runtime.loop import Node
+from nodes.runtime.map_replica import MapReplica
+from schemas import keys
+from schemas.calls import Call
+from schemas.commands import Classes
+from schemas.commits import Commit, Effects, Snapshot
+from schemas.entities import ClassInfo
+from schemas.health import Health
+
+_LOOK_S = 0.2
+
+C = TypeVar("C", Commit, Effects)
+
+
+class Begun(NamedTuple):
+    """A replica was begun anew: the commit it was at before (-1: none), that of the snapshot, the classes."""
+
+    before: int
+    seq: int
+    classes: tuple[ClassInfo, ...]
+
+
+class Follower(Generic[C]):
+    """Keeps a replica fresh. Owned by the node's thread, as the replica is."""
+
+    def __init__(
+        self,
+        node: Node,
+        replica: MapReplica[C],
+        topic: keys.Topic,
+        *,
+        heard: Callable[[C, bool], None],
+        begun: Callable[[Begun], None],
+    ) -> None:
+        """Follow `topic`, which publishes commits in full or their effects.
+
+        `heard(commit, known)` is called after each commit; `known`: the replica is at it or beyond.
+        `begun(what)` is called after each snapshot that the replica has begun with.
+        """
+        self._node = node
+        self._replica: MapReplica[C] = replica
+        self._heard: Callable[[C, bool], None] = heard
+        self._begun = begun
+        self._fetching = False
+        self._begun_ns = 0
+        self._kb_started_ns = 0
+        node.follow(topic, self._on_commit)
+        node.follow(keys.HEALTH, self._on_health)
+        node.every(_LOOK_S, self._look)
+
+    def _on_commit(self, commit: C) -> None:
+        known = self._replica.take(commit)
+        self._heard(commit, known)
+        if not known or commit.tbox:
+            self._fetch()
+
+    def _on_health(self, health: Health) -> None:
+        """Another process of the knowledge base may know another map, or less of the same."""
+        if health.node != "kb_node" or health.started_ns == self._kb_started_ns:
+            return
+        is_another = self._kb_started_ns or health.started_ns > self._begun_ns
+        self._kb_started_ns = health.started_ns
+        if self._replica.seq >= 0 and is_another:
+            self._replica.doubt()
+            self._fetch()
+
+    def _look(self) -> None:
+        if not self._replica.is_current:
+            self._fetch()
+
+    def _fetch(self) -> None:
+        """Ask for the class table, then for a snapshot page by page; it is asked again after a failure."""
+        if self._fetching:
+            return
+        self._fetching = True
+        pages = self._replica.begin_pages()
+        classes: list[ClassInfo] = []
+
+        def on_classes(rows: tuple[ClassInfo, ...]) -> None:
+            classes.extend(rows)
+            self._ask(pages.query, on_page)
+
+        def on_page(page: Snapshot) -> None:
+            pages.take(page)
+            if not pages.are_complete:
+                self._ask(pages.query, on_page)
+                return
+            self._fetching = False
+            self._begin(pages.snapshot, tuple(classes))
+
+        self._ask(Classes(), on_classes)
+
+    def _begin(self, snapshot: Snapshot, classes: tuple[ClassInfo, ...]) -> None:
+        before = self._replica.seq
+        if self._replica.begin(snapshot):
+            self._begun_ns = time.time_ns()
+            self._begun(Begun(before, snapshot.seq, classes))
+
+    def _ask(self, call: Call[Any], take: Callable[[Any], None]) -> None:
+        def on_done(done: Future[Any]) -> None:
+            if done.exception() is None:
+                take(done.result())
+            else:
+                self._fetching = False
+
+        self._node.ask_later(keys.BRIDGE, call).add_done_callback(on_done)

@@ -1,0 +1,152 @@
+"""Prefixes: short names of namespaces, and through them names that tell two IRIs of one local name apart.
+
+A namespace's prefix is the well-known one, or else the one that the ontology itself declares, or else one
+made from the namespace. So the same ontology gets the same names whichever file it came from. What its file
+declares is kept among its triples (`vann:preferredNamespacePrefix`), and thus with the map.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping
+from types import MappingProxyType
+from typing import Final
+from urllib.parse import unquote, urlsplit
+
+from ontology import vocabulary as v
+from schemas.explanations import Term, Triple
+
+Prefixes = Mapping[str, str]
+"""Prefix to namespace, both without any punctuation of a syntax: `{"dm": "http://...#"}`."""
+
+WELL_KNOWN: Final[Prefixes] = MappingProxyType(
+    {
+        **v.PREFIXES,
+        "rdf": v.RDF,
+        "rdfs": v.RDFS,
+        "brick": "https://brickschema.org/schema/Brick#",
+        "cyc": "http://sw.opencyc.org/concept/",
+        "dbp": "http://dbpedia.org/property/",
+        "dc": "http://purl.org/dc/elements/1.1/",
+        "dcterms": "http://purl.org/dc/terms/",
+        "dul": "http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#",
+        "foaf": "http://xmlns.com/foaf/0.1/",
+        "geo": "http://www.opengis.net/ont/geosparql#",
+        "knowrob": "http://knowrob.org/kb/knowrob.owl#",
+        "obo": "http://purl.obolibrary.org/obo/",
+        "oro": "http://kb.openrobots.org#",
+        "owl": v.OWL,
+        "prov": "http://www.w3.org/ns/prov#",
+        "qudt": "http://qudt.org/schema/qudt/",
+        "schema": "https://schema.org/",
+        "skos": "http://www.w3.org/2004/02/skos/core#",
+        "soma": "http://www.ease-crc.org/ont/SOMA.owl#",
+        "sosa": "http://www.w3.org/ns/sosa/",
+        "ssn": "http://www.w3.org/ns/ssn/",
+        "time": "http://www.w3.org/2006/time#",
+        "urdf": "http://knowrob.org/kb/urdf.owl#",
+        "vann": "http://purl.org/vocab/vann/",
+    }
+)
+PREFERRED_PREFIX: Final[Term] = v.iri(WELL_KNOWN["vann"] + "preferredNamespacePrefix")
+"""Annotation of a namespace's IRI: its prefix."""
+
+_PREFIX = re.compile(r"[a-z][a-z0-9_-]*")
+_SUFFIXES = re.compile(r"\.(owl|ofn|omn|owx|rdf|rdfs|ttl|nt|xml|jsonld|json|obo)$", re.IGNORECASE)
+_VERSION = re.compile(r"v?[0-9][0-9.]*$", re.IGNORECASE)
+
+
+def split(iri: Term) -> tuple[str, str]:
+    """The namespace and the local name of an IRI term, as `vocabulary.local_name` tells them apart."""
+    local = v.local_name(iri)
+    text = v.bare(iri)
+    return text[: len(text) - len(local)], local
+
+
+def declared_in(triples: Iterable[Triple]) -> dict[str, str]:
+    """Namespace to the prefix that an ontology's triples declare for it."""
+    said = sorted((s, o) for s, p, o in triples if p == PREFERRED_PREFIX and o.startswith('"'))
+    return {v.bare(s): v.lexical(o) for s, o in said if s.startswith("<")}
+
+
+def declarations(of_file: Prefixes, triples: Collection[Triple]) -> list[Triple]:
+    """The triples that keep the prefixes of the namespaces in which `triples` declare classes and properties.
+
+    `of_file` are those that the file declares. Those that are well known anyhow are left out.
+    """
+    kinds = (v.OWL_CLASS, v.RDFS_CLASS, *v.PROPERTY_KINDS)
+    used = {split(s)[0] for s, p, o in triples if p == v.RDF_TYPE and o in kinds and s.startswith("<")}
+    declared = {namespace: prefix for prefix, namespace in sorted(of_file.items(), reverse=True)}
+    chosen = prefixes_of(used, {**declared, **declared_in(triples)})
+    own = [(prefix, namespace) for prefix, namespace in chosen.items() if WELL_KNOWN.get(prefix) != namespace]
+    said = [(v.iri(namespace), PREFERRED_PREFIX, v.literal(prefix)) for prefix, namespace in own]
+    return [(PREFERRED_PREFIX, v.RDF_TYPE, v.OWL_ANNOTATION_PROPERTY), *said] if said else []
+
+
+def used_by(triples: Iterable[Triple], prefixes: Prefixes) -> dict[str, str]:
+    """Those of `prefixes` that the properties and classes of `triples` need, and the map's own."""
+    terms = {o if p == v.RDF_TYPE else p for _, p, o in triples}
+    namespaces = {split(term)[0] for term in terms if term.startswith("<")}
+    needed = {prefix: namespace for prefix, namespace in prefixes.items() if namespace in namespaces}
+    return {**v.PREFIXES, **needed}
+
+
+def prefixes_of(
+    namespaces: Iterable[str], declared: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, str]:
+    """Prefix to namespace for each of `namespaces`, no two alike; `declared` is namespace to prefix.
+
+    The result does not depend on the order of the namespaces.
+    """
+    known = {namespace: prefix for prefix, namespace in WELL_KNOWN.items() if prefix}
+    found: dict[str, str] = {}
+    rest: list[str] = []
+    for namespace in sorted(set(namespaces)):
+        if namespace in known:
+            found[known[namespace]] = namespace
+        else:
+            rest.append(namespace)
+    for namespace in sorted(rest, key=lambda namespace: (namespace not in declared, namespace)):
+        wanted = declared.get(namespace, "").lower()
+        stem = wanted if _PREFIX.fullmatch(wanted) else _made_from(namespace)
+        prefix, number = stem, 2
+        while prefix in found or prefix in WELL_KNOWN:
+            prefix, number = f"{stem}{number}", number + 1
+        found[prefix] = namespace
+    return dict(sorted(found.items()))
+
+
+def prefixed(iri: Term, prefixes: Prefixes) -> str:
+    """`prefix:local`, or the IRI itself where its namespace has no prefix."""
+    namespace, local = split(iri)
+    prefix = next((prefix for prefix, known in prefixes.items() if known == namespace), None)
+    return v.bare(iri) if prefix is None else f"{prefix}:{local}"
+
+
+def names(iris: Collection[Term], prefixes: Prefixes) -> dict[Term, str]:
+    """What to call each IRI: its local name, or, where several share it, `prefix:local`.
+
+    No two have the same name, and an IRI that ends in no local name is called by what stands before it.
+    """
+    parts = {iri: split(iri) for iri in iris}
+    by_namespace = {namespace: prefix for prefix, namespace in prefixes.items()}
+    bare = {iri: local or _made_from(namespace) for iri, (namespace, local) in parts.items()}
+    shared = Counter(bare.values())
+
+    def name(iri: Term) -> str:
+        namespace, local = parts[iri]
+        if shared[bare[iri]] == 1 and ":" not in local:
+            return bare[iri]
+        return f"{by_namespace[namespace]}:{local}"
+
+    return {iri: name(iri) for iri in iris}
+
+
+def _made_from(namespace: str) -> str:
+    """A prefix from the last telling word of a namespace: `http://x.org/onto/lab.owl#` is `lab`."""
+    parts = urlsplit(namespace)
+    words = [_SUFFIXES.sub("", unquote(word)) for word in re.split("[/:]", parts.path) if word]
+    telling = [word for word in words if not _VERSION.fullmatch(word)]
+    word = telling[-1] if telling else (parts.hostname or "").removeprefix("www.").partition(".")[0]
+    return re.sub(r"[^a-z0-9_-]+", "_", word.lower()).strip("_-0123456789") or "ns"

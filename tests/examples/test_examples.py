@@ -1,0 +1,83 @@
+"""The examples run, beside systems started as they say."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import running, until
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def run(name, *words, system=None, **options):
+    environment = dict(os.environ) | ({"SEMMAP_CONNECT": system.endpoint} if system else {})
+    command = [sys.executable, EXAMPLES / name, *words]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **options
+    )
+
+
+def said(process, status=0):
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == status, err
+    return out if status == 0 else err
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("flat"), "--no-sim", "--no-record") as system:
+        yield system
+
+
+def test_a_shopping_list(flat):
+    assert said(run("shopping_list.py", "Milk", "Bread", "Tomato", system=flat)) == "buy: Tomato\n"
+    assert "did you mean Tomato" in said(run("shopping_list.py", "Tomatoe", system=flat), status=1)
+
+
+def test_a_watcher(flat):
+    watcher = run("watcher.py", "3", system=flat)
+    assert watcher.stdout.readline() == "drinks: milk1 water1\n"
+    with flat.client() as client:
+        client.add("Beer", "beer1", at=(8.0, 2.3, 0.75), reason="for the test")
+        client.remove("beer1")
+    out = said(watcher)
+    assert "for the test (beer1)" in out
+    assert "a drink came: beer1" in out
+    assert "a drink went: beer1" in out
+
+
+def test_a_robot_s_tests():
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", EXAMPLES / "test_tidy_up.py"],
+        capture_output=True,
+        text=True,
+    )
+    assert "3 passed" in done.stdout, done.stdout
+
+
+def test_a_world_of_one_s_own_becomes_the_map(tmp_path):
+    world = ("--abox", "none", "--world", EXAMPLES / "workbench.xml", "--truth", "scene", "--no-record")
+    with running(tmp_path, *world) as system, system.client() as client:
+        until(lambda: len(client.list()) == 3, "its bodies are entities")
+        assert {(e.name, e.class_) for e in client.list()} == {
+            ("bench", "Table"),
+            ("mug", "Cup"),
+            ("box_1", "Box"),
+        }
+        assert {e.name for e in client.list(on="bench")} == {"mug", "box_1"}
+
+
+def test_a_camera_of_one_s_own_fills_the_map(tmp_path):
+    words = ("--abox", "none", "--world", "empty", "--truth", "perceived", "--perception", "--camera-hz", "0")
+    with running(tmp_path, *words, "--no-record") as system:
+        camera = run("own_camera.py", "60", system=system)
+        try:
+            with system.client() as client:
+                box = until(lambda: [e for e in client.list() if e.pose.position_m[2] > 0.7], "it is seen")[0]
+        finally:
+            camera.terminate()
+            camera.communicate()
+        assert box.pose.position_m == pytest.approx((0.05, 0.06, 0.74), abs=0.03)

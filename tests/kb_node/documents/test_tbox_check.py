@@ -1,0 +1,113 @@
+from pathlib import Path
+
+import pytest
+
+from nodes.kb_node.documents.tbox_check import check
+from ontology import HOUSEHOLD_TTL
+from schemas import errors
+from tests.data import data_folder
+
+PREFIXES = "@prefix : <http://o.org/o#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
+PREFIXES += "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+ONTOLOGY = """
+<http://o.org/o> a owl:Ontology ; owl:versionIRI <http://o.org/o/1> ;
+  owl:imports <http://o.org/more> , <urn:none> .
+:Cup a owl:Class . :Glass a owl:Class ; rdfs:subClassOf :Cup . :Plate a owl:Class ; owl:disjointWith :Cup .
+:holds a owl:ObjectProperty . :weight a owl:DatatypeProperty . :note a owl:AnnotationProperty .
+:cup1 a :Cup . :cup2 a owl:NamedIndividual .
+:Cup rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :holds ; owl:someValuesFrom :Plate ] .
+"""
+MORE = "<http://o.org/more> a owl:Ontology . <http://o.org/more#Cup> a owl:Class ."
+
+
+@pytest.fixture
+def report(tmp_path):
+    def report(more: str = "", text: str = ONTOLOGY):
+        (tmp_path / "more.ttl").write_text(PREFIXES + MORE)
+        (tmp_path / "o.ttl").write_text(PREFIXES + text + more)
+        return check([tmp_path / "o.ttl"], {})
+
+    return report
+
+
+def test_what_is_in_an_ontology(report, tmp_path):
+    found = report()
+    assert found.is_sound
+    assert [Path(file).name for file in found.files] == ["o.ttl", "more.ttl"]
+    assert found.ontologies == {"http://o.org/more": "", "http://o.org/o": "http://o.org/o/1"}
+    assert found.imports == {"http://o.org/more": str(tmp_path / "more.ttl")}
+    assert found.missing == ("urn:none",)
+    assert (found.classes, found.individuals) == (4, 2)
+    assert (found.object_properties, found.data_properties, found.annotation_properties) == (1, 1, 1)
+    assert found.outside_rl == {"existential restriction as a superclass": 1}
+    assert found.ambiguous == {"Cup": ("http://o.org/more#Cup", "http://o.org/o#Cup")}
+    assert (found.inconsistent, found.unsatisfiable, found.untried) == ("", (), 0)
+
+
+def test_how_quick_changes_are_is_measured(report):
+    quick = report().quickness
+    assert quick is not None
+    assert quick.add_p50_ms is not None
+    assert 0 < quick.add_p50_ms < 100
+    assert quick.load_s > 0
+    assert quick.not_incremental == ""
+
+
+def test_what_makes_changes_slow_is_named(report):
+    quick = report("owl:inverseOf rdfs:domain :Cup .").quickness
+    assert quick is not None
+    assert "owl:inverseOf" in quick.not_incremental or "inverseOf" in quick.not_incremental
+    assert quick.add_p50_ms is not None
+
+
+def test_classes_of_which_nothing_can_be_are_found(report):
+    found = report(
+        ":Both a owl:Class ; rdfs:subClassOf :Cup , :Plate . :Deep a owl:Class ; rdfs:subClassOf :Both ."
+        " :Nil a owl:Class ; owl:equivalentClass owl:Nothing ."
+    )
+    assert [wrong.iri.partition("#")[2] for wrong in found.unsatisfiable] == ["Both", "Deep", "Nil"]
+    assert "Cup" in found.unsatisfiable[0].why
+    assert "Plate" in found.unsatisfiable[0].why
+    assert not found.is_sound
+    assert found.quickness is not None
+
+
+def test_an_ontology_that_contradicts_itself_is_told_why(report):
+    found = report(":cup1 a :Plate .")
+    assert "Cup" in found.inconsistent
+    assert not found.is_sound
+    assert (found.quickness, found.classes, found.missing) == (None, 4, ("urn:none",))
+
+
+def test_an_ontology_of_nothing_but_unsatisfiable_classes_has_no_quickness_to_measure(report):
+    found = report(text="<http://o.org/o> a owl:Ontology . :A a owl:Class ; rdfs:subClassOf owl:Nothing .")
+    assert found.quickness is not None
+    assert found.quickness.add_p50_ms is None
+
+
+def test_what_cannot_be_read_is_told(tmp_path):
+    (tmp_path / "bad.ttl").write_text("\n\n:a")
+    with pytest.raises(errors.BadFile, match=r"bad.ttl is no valid Turtle: .*line 3"):
+        check([tmp_path / "bad.ttl"], {})
+
+
+def test_the_household_is_sound():
+    found = check([HOUSEHOLD_TTL], {})
+    assert found.is_sound
+    assert (found.missing, found.ambiguous) == ((), {})
+    assert 0 < (found.spatial_classes or 0) < found.classes
+
+
+@pytest.mark.parametrize(
+    ("file", "ambiguous"), [("oro/oro.owl", "Hand"), ("soma/SOMA-HOME.owl", "Configuration"), ("bfo", None)]
+)
+def test_real_ontologies_are_sound_and_quick(file, ambiguous):
+    path = data_folder() / "ontologies" / file
+    if not path.exists():
+        pytest.skip(f"there is no {path}")
+    found = check([path], {})
+    assert found.is_sound
+    assert ambiguous is None or ambiguous in found.ambiguous
+    assert found.quickness is not None
+    assert found.quickness.not_incremental == ""
+    assert (found.quickness.add_p50_ms or 99) < 20

@@ -1,0 +1,140 @@
+"""Explanations as they are read: whole sentences."""
+
+import pytest
+
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain.words import Words, article
+from tests.kb_node.reasoner.graphs import household, triple, triples
+
+HOME = Reasoner(household())
+
+HOLDS = {
+    ":milk1 dm:isLocatedIn :kitchen1": (
+        ":milk1 dm:isOn :counter1 . :counter1 dm:isLocatedIn :kitchen1",
+        "milk1 is located in kitchen1, because milk1 is on counter1 (asserted), counter1 is located in "
+        "kitchen1 (asserted), and whatever is on something that is located in something is located in "
+        "the latter.",
+    ),
+    ":milk1 a dm:Food": (
+        ":milk1 a dm:Milk",
+        "milk1 is food, because it is milk (asserted), whatever is milk is a drink, and every drink is food.",
+    ),
+    ":counter1 dm:supports :milk1": (
+        ":milk1 dm:isOn :counter1",
+        "counter1 supports milk1, because milk1 is on counter1 (asserted), and if one thing is on another, "
+        "the other supports it.",
+    ),
+    ":door1 dm:hasPart :x": (
+        ":door1 dm:hasHandle :x",
+        "door1 has part x, because door1 has handle x (asserted), whatever has something as handle has it as "
+        "direct part, and whatever has something as direct part has it as part.",
+    ),
+    ":x a dm:Handle": (
+        ":door1 dm:hasHandle :x",
+        "x is a handle, because door1 has handle x (asserted), and whatever something has as handle "
+        "is a handle.",
+    ),
+    ":f dm:hasAffordance dm:cooling": (
+        ":f a dm:Fridge",
+        "f has affordance cooling, because f is a fridge (asserted), and every fridge has affordance "
+        "cooling.",
+    ),
+    ":door1 dm:isOpen true": (":door1 dm:isOpen true", "door1 is open (asserted)."),
+    ":door1 dm:isOpen false": (":door1 dm:isOpen false", "door1 is not open (asserted)."),
+    ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (always)."),
+}
+
+CANNOT_BE = {
+    ":a a dm:Fork , dm:Knife": (
+        "a cannot be both a fork and a knife: it is a fork (asserted), it is a knife (asserted), "
+        "and nothing is both a fork and a knife."
+    ),
+    ":a dm:isOn :b . :b dm:isOn :a": (
+        "b and a cannot each be on the other: b is on a (asserted), a is on b (asserted), "
+        "and if one thing is on another, the other is not on it."
+    ),
+    ":a dm:isOpen true , false": (
+        "a cannot be both not open and open: a is not open (asserted), it is open (asserted), "
+        "and “is open” has one value at most."
+    ),
+    ":a dm:hasMainColor dm:color_red , dm:color_blue": (
+        "a cannot have both color_blue and color_red as main color: a has main color color_blue (asserted), "
+        "a has main color color_red (asserted), nothing has more than one main color, "
+        "and color_blue and color_red are different."
+    ),
+    ":x dm:hasDirectPart :p . :y dm:hasDirectPart :p . :x owl:differentFrom :y": (
+        "p cannot be the direct part of both x and y: x has direct part p (asserted), y has direct part p "
+        "(asserted), no two things have the same direct part, and x is different from y (asserted)."
+    ),
+    ":a dm:isAdjacentTo :a": (
+        "a cannot be adjacent to itself: a is adjacent to itself (asserted), "
+        "and nothing is adjacent to itself."
+    ),
+    ':a dm:mass "heavy"^^xsd:float': '"heavy" is not a value of float: a has mass "heavy" (asserted).',
+    ":a a owl:Nothing": (
+        "a cannot be a member of the empty class: it is a member of the empty class (asserted)."
+    ),
+    "[] owl:sourceIndividual :a ; owl:assertionProperty dm:isOn ; owl:targetIndividual :b . :a dm:isOn :b": (
+        "a cannot be on b: a is on b (asserted), and a is not on b (asserted)."
+    ),
+}
+
+
+@pytest.mark.parametrize(("goal", "case"), HOLDS.items(), ids=HOLDS)
+def test_why_something_holds(goal, case):
+    given, text = case
+    with HOME.supposing(triples(given + " .")):
+        assert HOME.explain(triple(goal)).text == text
+
+
+@pytest.mark.parametrize(("given", "text"), CANNOT_BE.items(), ids=CANNOT_BE)
+def test_why_something_cannot_be(given, text):
+    with pytest.raises(Inconsistent) as refusal, HOME.supposing(triples(given + " .")):
+        pass
+    explanation = refusal.value.explanation
+    assert sorted(explanation.text.split(", ")) == sorted(text.split(", "))  # facts come as they were found
+
+
+def test_another_proof_of_the_shape_has_its_own_names():
+    for door in ("door1", "door2"):
+        with pytest.raises(
+            Inconsistent, match=f"{door} cannot be both not open and open: {door} is not open"
+        ):
+            HOME.apply(insert=triples(f":{door} dm:isOpen true , false ."))
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "denied"),
+    [
+        ("isOn", "is on x", "is not on x"),
+        ("partOf", "is part of x", "is not part of x"),
+        ("has_color", "has color x", "does not have color x"),
+        ("touches", "touches x", "does not touch x"),
+        ("carries", "carries x", "does not carry x"),
+        ("dependsOn", "depends on x", "does not depend on x"),
+        ("mass", "has mass x", "does not have mass x"),
+        ("hasIRI", "has IRI x", "does not have IRI x"),
+        ("class", "has class x", "does not have class x"),
+        ("p", "has p x", "does not have p x"),
+    ],
+)
+def test_a_property_without_a_label_is_taken_apart(name, said, denied):
+    words, prop = Words.of([]), f"<http://example.org/{name}>"
+    assert words.says(prop, "<http://example.org/x>") == said
+    assert words.says(prop, "<http://example.org/x>", denied=True) == denied
+
+
+def test_the_english_label_counts_and_others_do_not():
+    cls = ":C rdfs:label "
+    assert Words.of(triples(cls + '"Tasse"@de .')).cls(triple(":a :p :C")[2]) == "C"
+    assert Words.of(triples(cls + '"cup" .')).cls(triple(":a :p :C")[2]) == "cup"
+    assert Words.of(triples(cls + '"cup"@en , "mug" .')).cls(triple(":a :p :C")[2]) == "cup"
+
+
+def test_articles():
+    assert [article(noun) for noun in ("cup", "egg", "dairy food", "something that is on a table")] == [
+        "a cup",
+        "an egg",
+        "dairy food",
+        "something that is on a table",
+    ]

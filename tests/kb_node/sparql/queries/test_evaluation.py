@@ -1,0 +1,78 @@
+import pytest
+
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
+from ontology import vocabulary as v
+from schemas import errors
+from tests.kb_node.home import turtle
+
+CHAIR = v.dm("Chair")
+
+
+@pytest.fixture
+def dataset():
+    made = Dataset(7, turtle(":a a dm:Chair . :b a dm:Chair ; dm:mass 4.50 . :c a dm:Table ."))
+    made.infer(turtle(":a a dm:Seat . :b a dm:Seat ."))
+    return made
+
+
+def ask(dataset, query, *, inferred=False, limit=100):
+    return answer(query, dataset, inferred=inferred, limit=limit)
+
+
+def test_the_four_forms(dataset):
+    rows = ask(dataset, "SELECT ?x ?m { ?x a dm:Chair OPTIONAL { ?x dm:mass ?m } } ORDER BY ?x")
+    assert rows.variables == ("x", "m")
+    assert rows.rows[0] == (v.entity_iri("a"), None)
+    assert rows.rows[1][0] == v.entity_iri("b")
+    assert rows.seq == 7
+    assert ask(dataset, "ASK { :c a dm:Table }").verdict
+    assert not ask(dataset, "ASK { :c a dm:Chair }").verdict
+    graph = ask(dataset, "CONSTRUCT { ?x a dm:Thing } WHERE { ?x a dm:Chair , ?y }")
+    assert graph.rows == tuple((v.entity_iri(name), v.RDF_TYPE, v.dm("Thing")) for name in "ab")
+    assert len(ask(dataset, "DESCRIBE :b").rows) == 2
+
+
+def test_what_follows_is_seen_when_it_is_asked_for(dataset):
+    for query, asserted, inferred in (
+        ("SELECT ?x { ?x a dm:Seat }", 0, 2),
+        ("SELECT ?x { ?x a ?c }", 3, 5),
+        ("SELECT ?x { GRAPH ?g { ?x a ?c } }", 0, 0),
+    ):
+        assert len(ask(dataset, query).rows) == asserted
+        assert len(ask(dataset, query, inferred=True).rows) == inferred
+
+
+def test_more_rows_than_allowed_are_refused(dataset):
+    assert len(ask(dataset, "SELECT * { ?s a ?o }", limit=3).rows) == 3
+    for query in ("SELECT * { ?s a ?o }", "CONSTRUCT { ?s a ?o } WHERE { ?s a ?o }"):
+        with pytest.raises(errors.Refused, match="more than 2 rows"):
+            ask(dataset, query, limit=2)
+
+
+def test_a_triple_that_is_made_twice_counts_once(dataset):
+    graph = ask(dataset, "CONSTRUCT { :a a dm:Thing } WHERE { ?s ?p ?o }", limit=1)
+    assert graph.rows == ((v.entity_iri("a"), v.RDF_TYPE, v.dm("Thing")),)
+
+
+def test_an_unknown_function_is_refused(dataset):
+    with pytest.raises(errors.Refused, match=r"custom function <http://x.org/f> is not supported"):
+        ask(dataset, "SELECT (<http://x.org/f>(1) AS ?x) {}")
+
+
+def test_two_spellings_of_a_number_are_there_until_both_are_gone():
+    spellings = turtle(':a dm:mass "1.0"^^xsd:float , "1.00"^^xsd:float . :b dm:mass "2"^^xsd:float .')
+    one, other = (t for t in spellings if t[0] == v.entity_iri("a"))
+    for dataset in (Dataset(0, spellings), _by_commits(spellings)):
+        dataset.apply(Delta(seq=5, retracted=(one,)))
+        assert ask(dataset, "ASK { :a dm:mass ?m FILTER(?m = 1) }").verdict
+        dataset.apply(Delta(seq=6, retracted=(other,)))
+        assert not ask(dataset, "ASK { :a dm:mass ?m }").verdict
+        assert ask(dataset, "ASK { :b dm:mass 2 , ?m FILTER(?m = 2) } ").verdict is False
+
+
+def _by_commits(triples):
+    dataset = Dataset(0, ())
+    for seq, triple in enumerate(triples, start=1):
+        dataset.apply(Delta(seq=seq, inserted=(triple,)))
+    return dataset

@@ -1,0 +1,78 @@
+import pytest
+
+from nodes.kb_node.sparql.queries import text
+from nodes.kb_node.sparql.queries.evaluation import answer
+from nodes.kb_node.sparql.triples.dataset import Dataset
+from schemas import errors
+
+
+@pytest.mark.parametrize(
+    ("query", "form"),
+    [
+        ("SELECT ?x { ?x a dm:Chair }", "SELECT"),
+        ("# DELETE\nPREFIX load: <x:y> ask { load:a load:b load:c }", "ASK"),
+        (
+            "BASE <http://x.org/FROM> CONSTRUCT { ?add ?from 'LOAD' } WHERE { ?add ?from 3 }",
+            "CONSTRUCT",
+        ),
+        ("DESCRIBE :service", "DESCRIBE"),
+        ('SELECT ?x { ?x rdfs:label "SERVICE" , """FROM "a" """ , \'\'\'it\'s FROM\'\'\' }', "SELECT"),
+        ("SELECT ?x { ?x rdfs:label 'SERVICE'@from . _:from ?p ?x } # FROM", "SELECT"),
+    ],
+)
+def test_what_reads_is_let_in(query, form):
+    assert text.require_reading(query) == form
+
+
+@pytest.mark.parametrize(
+    ("query", "word"),
+    [
+        ("INSERT DATA { :a a dm:Chair }", "INSERT is an update"),
+        ("PREFIX x: <x:y> delete where { ?s ?p ?o }", "DELETE is an update"),
+        ("LOAD <http://x.org/>", "LOAD is an update"),
+        ("WITH <x:g> DELETE { ?s ?p ?o } WHERE { ?s ?p ?o }", "WITH is an update"),
+        ("CLEAR ALL", "CLEAR is an update"),
+        ("SELECT * { SERVICE <http://x.org/> { ?s ?p ?o } }", "SERVICE is refused"),
+        ("SELECT * { ?a ?b '#' . service silent <http://x.org/> { ?s ?p ?o } }", "SERVICE is refused"),
+        ("SELECT * FROM <http://x.org/> { ?s ?p ?o }", "FROM is refused"),
+        ("SELECT * FROM NAMED <http://x.org/> { ?s ?p ?o }", "FROM is refused"),
+        ("SELECT*{?s?p?o}#\nFROM", "FROM is refused"),
+    ],
+)
+def test_what_writes_or_reaches_beyond_is_refused(query, word):
+    with pytest.raises(errors.Refused, match=word):
+        text.require_reading(query)
+
+
+@pytest.mark.parametrize("query", ["", "hello", "?select", "# SELECT", "<SELECT>"])
+def test_what_is_no_query_is_bad(query):
+    with pytest.raises(errors.BadRequest, match="it needs SELECT, ASK, CONSTRUCT or DESCRIBE"):
+        text.require_reading(query)
+
+
+def test_only_a_select_is_watched():
+    with pytest.raises(errors.BadRequest, match=r"only a SELECT can be watched, and this is .* ASK"):
+        text.require_select("ASK { ?s ?p ?o }")
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ("SELECT ?x { ?x a", "line 1, column 17: it ends too early"),
+        ("SELECT ?x {\n  ?x a foo:Bar }", "line 2, column 15: unknown prefix 'foo:'; there are dm:, :, "),
+        (
+            "SELECT ?x { ?x a dm:Chair } }",
+            "line 1, column 30: it ends too early, or something before does not fit",
+        ),
+        ("SELECT ?x { ?x a 'x' 4 }", "line 1, column 25: it ends too early, or"),
+        ("SELECT ?x ?x {}", "a variable is selected twice"),
+        ("SELECT ?y (COUNT(?x) AS ?n) { ?x ?p ?y }", "neither binds nor groups by"),
+        ("SELECT ?x { ?x ?p <a b> }", "an IRI is malformed"),
+    ],
+)
+def test_a_syntax_error_has_a_place_and_a_reason(query, said):
+    with pytest.raises(errors.BadRequest) as error:
+        answer(query, Dataset(0, ()), inferred=False, limit=10)
+    assert error.value.text.startswith("the query is no SPARQL: ")
+    assert said in error.value.text
+    assert "\n" not in error.value.text

@@ -1,0 +1,235 @@
+"""A large map's triples for SPARQL: in a store on disk, made beside other work, kept, cloned and followed."""
+
+import queue
+
+import pyoxigraph as ox
+import pytest
+
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql import worker
+from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
+from nodes.kb_node.sparql.triples.large_map import LargeMap
+from nodes.kb_node.storage import seed
+from nodes.kb_node.storage.journal import Journal
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Sparql, Watch
+from tests.kb_node.home import chair, new_map, transaction
+
+WAIT_S = 60.0
+COUNT = "SELECT (COUNT(?c) AS ?n) { ?c a dm:Chair }"
+
+
+class Node:
+    """A map with its SPARQL service; this test's thread is the node's."""
+
+    def __init__(self, semantic_map, large=40):
+        self.map = semantic_map
+        self.events = queue.SimpleQueue()
+        self.news = queue.SimpleQueue()
+        self.made = 0
+        journal = semantic_map._journal
+        large_map = LargeMap(journal, lambda: self.map.reasoner, self.events.put, large=large)
+        fill = large_map.fill
+
+        def counted(*arguments):
+            self.made += 1
+            return fill(*arguments)
+
+        large_map.fill = counted
+        self.service = SparqlService(lambda: self.map.reasoner.asserted(), self.news.put, large_map)
+
+    def commit(self, number, insert=(), retract=()):
+        commit = self.map.commit(transaction(number, insert, retract))
+        self.service.follow(commit)
+        return commit
+
+    def until(self, future):
+        """The result of a future; meanwhile the node's thread does what it is to do."""
+        while not future.done():
+            try:
+                self.events.get(timeout=0.05)()
+            except queue.Empty:
+                continue
+        return future.result()
+
+    def ask(self, query, **fields):
+        return self.until(self.service.ask(Sparql(query=query, **fields), self.map.seq))
+
+    def count(self):
+        ((found,),) = self.ask(COUNT).rows
+        return int(v.lexical(found))
+
+    def close(self):
+        self.service.close()
+        self.map._journal.close()
+
+
+@pytest.fixture
+def node(tmp_path):
+    node = Node(new_map(tmp_path))
+    for i in range(3):
+        node.map.commit(transaction(i, chair(f"chair{i}")))
+    yield node
+    node.close()
+
+
+def stores(node):
+    folder = node.map._journal.path.parent / FOLDER
+    return [path for path in folder.iterdir() if path.name[0].isdigit()] if folder.exists() else []
+
+
+def test_a_large_map_is_asked_on_disk_and_followed(node):
+    assert node.count() == 3
+    assert (node.made, len(stores(node))) == (1, 1)
+    node.commit("more", chair("more"))
+    assert node.count() == 4
+    node.commit("gone", retract=chair("chair0"))
+    assert node.count() == 3
+
+
+def test_a_small_map_is_in_memory(tmp_path):
+    node = Node(new_map(tmp_path), large=10_000)
+    try:
+        node.commit(1, chair("chair1"))
+        assert node.count() == 1
+        assert (node.made, stores(node)) == (0, [])
+    finally:
+        node.close()
+
+
+def test_the_store_is_kept_between_starts_and_catches_up(node, tmp_path):
+    assert node.count() == 3
+    node.commit("more", chair("more"))
+    node.close()
+    again = Node(SemanticMap(Journal(tmp_path / "journal.sqlite")))
+    try:
+        again.commit("later", chair("later"))
+        assert again.count() == 5
+        assert again.made == 0
+    finally:
+        again.close()
+
+
+def test_another_journal_has_another_store(node, tmp_path):
+    assert node.count() == 3
+    node.close()
+    seed.set_aside(tmp_path)
+    assert not (tmp_path / FOLDER).exists()
+    (tmp_path / FOLDER).mkdir()
+    (tmp_path / FOLDER / f"1-{'00' * 16}").mkdir()  # as if the same number were another commit
+    again = Node(new_map(tmp_path))
+    try:
+        again.commit(1, chair("chair1"))
+        assert again.count() == 1
+    finally:
+        again.close()
+
+
+def test_commits_while_the_store_is_made_are_in_it(node):
+    answer = node.service.ask(Sparql(query=COUNT), node.map.seq)
+    assert not answer.done()
+    node.commit("more", chair("more"))
+    node.commit("gone", retract=chair("chair1"))
+    node.until(answer)
+    assert {row[0] for row in node.ask("SELECT ?c { ?c a dm:Chair }").rows} == {
+        v.entity_iri(name) for name in ("chair0", "chair2", "more")
+    }
+
+
+def test_no_answer_is_of_a_map_that_never_was(node):
+    """The store may hold some of a later commit; who asks before that is answered as of it."""
+    answer = node.service.ask(
+        Sparql(query="SELECT ?c ?p { ?c a dm:Chair ; dm:hasPosition ?p }"), node.map.seq
+    )
+    node.commit("more", chair("more"))
+    result = node.until(answer)
+    assert (result.seq, len(result.rows)) == (node.map.seq, 4)
+
+
+def test_after_a_large_commit_the_store_is_made_before_anybody_asks(tmp_path):
+    node = Node(new_map(tmp_path), large=50)
+    try:
+        node.commit("many", [t for i in range(30) for t in chair(f"chair{i}")])
+        assert node.made == 1
+        assert node.count() == 30
+        assert node.made == 1
+    finally:
+        node.close()
+
+
+def test_a_large_commit_over_a_store_in_memory(tmp_path):
+    node = Node(new_map(tmp_path), large=100)
+    try:
+        node.commit("one", chair("one"))
+        assert node.count() == 1
+        assert node.made == 0
+        node.commit("many", [t for i in range(30) for t in chair(f"chair{i}")])
+        node.commit("two", chair("two"))
+        assert node.count() == 32
+        assert node.made == 1
+    finally:
+        node.close()
+
+
+def test_literals_that_differ_in_spelling_only_are_kept_in_memory(node):
+    chair1 = v.entity_iri("chair1")
+    spelled = [(chair1, v.dm("weight"), f'"{one}"^^{v.XSD_FLOAT}') for one in ("1.0", "1.00")]
+    node.commit("spelled", spelled)
+    weight = f"ASK {{ <{v.bare(chair1)}> dm:weight ?w }}"
+    assert node.ask(weight).verdict
+    assert stores(node) == []
+    node.commit("less", retract=spelled[:1])
+    assert node.ask(weight).verdict
+
+
+def test_what_follows_is_kept_in_memory(node):
+    assert node.count() == 3
+    ((found,),) = node.ask("SELECT (COUNT(?c) AS ?n) { ?c a dm:Seat }", inferred=True).rows
+    assert v.lexical(found) == "3"
+    node.commit("more", chair("more"))
+    assert node.count() == 4
+
+
+def test_a_standing_query_over_a_store_on_disk(node):
+    node.until(node.service.ask(Watch(query="SELECT ?c { ?c a dm:Chair }", watch="w"), node.map.seq))
+    node.commit("more", chair("more"))
+    news = node.news.get(timeout=WAIT_S)
+    assert [row[0] for row in news.rows.appeared] == [v.entity_iri("more")]
+
+
+def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_goes(node, tmp_path):
+    node.commit("many", [t for i in range(300) for t in chair(f"seat{i}")])
+    with pytest.raises(errors.Refused, match="time limit"):
+        node.ask("SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i FILTER(?a < ?i) }", timeout=0.5)
+    assert node.count() == 303
+
+
+def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
+    dataset = worker.KeptDataset
+    assert node.count() == 3
+    (path,) = stores(node)
+    kept = dataset(path, node.map.seq, node.map.seq)
+    commit = node.commit("more", chair("more"))
+    kept.apply(worker.Delta(seq=commit.seq, inserted=commit.inserted))
+    kept.renew([worker.Delta(seq=commit.seq, inserted=commit.inserted)])
+    opened = kept.opened()
+    assert opened.seq == commit.seq
+    triple = commit.inserted[0]
+    assert len(list(opened.store.quads_for_pattern(ox.NamedNode(v.bare(triple[0])), None, None))) > 0
+
+
+def test_a_clone_changes_nothing_in_the_store(tmp_path):
+    path = tmp_path / FOLDER / "1-00"
+    path.parent.mkdir()
+    store = ox.Store(str(path))
+    quad = ox.Quad(ox.NamedNode("x:a"), ox.NamedNode("x:b"), ox.NamedNode("x:c"))
+    store.bulk_extend([quad])
+    store.flush()
+    del store
+    clone = cloned(path)
+    clone.remove(quad)
+    assert len(clone) == 0
+    assert len(ox.Store(str(path))) == 1
+    assert clone_of(path, 1).parent == path.parent

@@ -1,0 +1,198 @@
+import pytest
+
+from nodes.kb_node import questions
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Could, Explain
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+
+
+@pytest.fixture
+def furnished(semantic_map):
+    said = turtle(
+        ":chair1 dm:isLocatedIn :kitchen1 ;"
+        ' dm:hasSize [ a dm:3Three_Dim_Size ; dm:float_size_x "1.50"^^xsd:float ] .'
+        ":chair2 a dm:Chair , owl:NamedIndividual ; dm:hasAlternativeReference :ref ."
+        ':ref dm:lexicalReference "<&>" , "è"@it .'
+    )
+    semantic_map.commit(transaction(1, [*chair(preferred="two\nlines"), *said]))
+    return semantic_map
+
+
+def explained(semantic_map, name, predicate, value, *, negated=False):
+    question = Explain(name=name, predicate=predicate, value=value, negated=negated)
+    return questions.explain(semantic_map.reasoner, questions.of_explain(semantic_map, question))
+
+
+def answered(semantic_map, name, predicate, value):
+    question = Could(name=name, predicate=predicate, value=value)
+    return questions.could(semantic_map.reasoner, questions.of_could(semantic_map, question))
+
+
+@pytest.mark.parametrize(
+    ("name", "predicate", "value", "support"),
+    [
+        ("chair1", "a", "Chair", {"chair1 type Chair"}),
+        ("chair1", "type", "Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
+        ("chair1", "rdf:type", "dm:Seat", {"chair1 type Chair", "Chair subClassOf Seat"}),
+        ("kitchen1", "a", "Location", {"chair1 isLocatedIn kitchen1", "isLocatedIn range Location"}),
+        ("chair1", "isLocatedIn", "kitchen1", {"chair1 isLocatedIn kitchen1"}),
+        (":chair1", "a", "Chair", {"chair1 type Chair"}),
+        (v.entity_iri("chair1"), "a", "Chair", {"chair1 type Chair"}),
+        (
+            "chair1_preferred_reference",
+            "lexicalReference",
+            "two\nlines",
+            {"chair1_preferred_reference lexicalReference two\nlines"},
+        ),
+        ("Chair", "rdfs:subClassOf", "dm:Object", {"Chair subClassOf Seat", "Seat subClassOf Object"}),
+        ("chair1", "dm:isLocatedIn", ":kitchen1", {"chair1 isLocatedIn kitchen1"}),
+        ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
+    ],
+)
+def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value, support):
+    explanation = explained(furnished, name, predicate, value)
+    assert {v.spoken(triple) for triple in explanation.support} == support
+
+
+@pytest.mark.parametrize(
+    ("name", "predicate", "value", "error", "text"),
+    [
+        ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
+        ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
+        ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
+        (
+            "chair1",
+            "xyz",
+            "kitchen1",
+            errors.BadRequest,
+            "'xyz'; there are type and the properties of the TBox",
+        ),
+        (
+            "chair1",
+            "a",
+            "Door",
+            errors.Refused,
+            "it does not hold that chair1 is a Door, and nothing excludes it",
+        ),
+        (
+            "chair1",
+            "isLocatedIn",
+            "chair2",
+            errors.Refused,
+            "it does not hold: chair1 is not located in chair2, because chair2 is a chair",
+        ),
+    ],
+)
+def test_what_cannot_be_explained(furnished, name, predicate, value, error, text):
+    with pytest.raises(error, match=text):
+        explained(furnished, name, predicate, value)
+
+
+def test_why_two_are_different_although_no_rule_says_so(furnished):
+    explanation = explained(furnished, "chair1", "differentFrom", "kitchen1")
+    assert explanation.conclusion == (v.entity_iri("chair1"), v.OWL_DIFFERENT_FROM, v.entity_iri("kitchen1"))
+    assert explanation.supposed == (v.entity_iri("chair1"), v.OWL_SAME_AS, v.entity_iri("kitchen1"))
+    assert explanation.text.startswith(
+        "chair1 is different from kitchen1, because chair1 is located in kitchen1 "
+    )
+    assert "nothing is both a Location and an Object" in explanation.text
+    with pytest.raises(errors.Refused, match="that chair1 is different from chair2, and nothing excludes it"):
+        explained(furnished, "chair1", "differentFrom", "chair2")
+
+
+def test_why_something_cannot_be(furnished):
+    explanation = explained(furnished, "chair1", "type", "Kitchen", negated=True)
+    assert (explanation.conclusion, explanation.supposed[1:]) == (None, (v.RDF_TYPE, v.dm("Kitchen")))
+    assert explanation.text.startswith("chair1 is not a Kitchen, because it is a chair (asserted), ")
+    assert not {explanation.supposed} & set(explanation.support)
+    with pytest.raises(
+        errors.Refused, match="it is not known that chair1 is a Door, but nothing excludes it"
+    ):
+        explained(furnished, "chair1", "type", "Door", negated=True)
+    with pytest.raises(errors.Refused, match="it does hold: chair1 is a Seat, because it is a chair"):
+        explained(furnished, "chair1", "type", "Seat", negated=True)
+
+
+@pytest.mark.parametrize(
+    ("question", "possible", "text"),
+    [
+        (("chair1", "type", "Door"), True, "yes: nothing excludes that chair1 is a Door"),
+        (("chair1", "type", "Seat"), True, "yes: chair1 is a Seat already"),
+        (("chair1", "type", "Kitchen"), False, "no: chair1 is not a Kitchen, because it is a chair"),
+        (("chair1", "isLocatedIn", "chair2"), False, "no: chair1 is not located in chair2, because"),
+        (
+            ("chair2", "isLocatedIn", "kitchen1"),
+            True,
+            "yes: nothing excludes that chair2 is located in kitchen1",
+        ),
+        (("chair1", "sameAs", "chair2"), True, "yes: nothing excludes that chair1 is the same as chair2"),
+        (("chair1", "SameAs", "kitchen1"), False, "no: chair1 is different from kitchen1, because"),
+        (
+            ("kitchen1", "differentFrom", "chair1"),
+            True,
+            "yes: nothing excludes that kitchen1 is different from",
+        ),
+        (("kitchen1", "differentFrom", "kitchen1"), False, "no: kitchen1 is the same as kitchen1."),
+        (
+            ("ref", "lexicalReference", "a text"),
+            True,
+            'yes: nothing excludes that ref has lexical reference "a text"',
+        ),
+    ],
+)
+def test_what_could_be(furnished, question, possible, text):
+    before = set(furnished.reasoner.asserted()), set(furnished.reasoner.inferred())
+    answer = answered(furnished, *question)
+    assert (answer.possible, answer.text[: len(text)]) == (possible, text)
+    assert (answer.explanation is None) == possible
+    assert (set(furnished.reasoner.asserted()), set(furnished.reasoner.inferred())) == before
+
+
+@pytest.mark.parametrize(
+    ("question", "error", "text"),
+    [
+        (("sofa1", "type", "Chair"), errors.UnknownName, "'sofa1'"),
+        (("chair1", "isLocatedIn", "sofa1"), errors.UnknownName, "no entity is named 'sofa1'"),
+        (("chair1", "isLocatedAt", "kitchen1"), errors.BadRequest, "did you mean isLocatedIn"),
+        (("chair1", "same", "kitchen1"), errors.BadRequest, "there are type and the properties of the TBox"),
+        (("chair1", "type", "Chiar"), errors.UnknownClass, "did you mean Chair"),
+        (
+            ("chair1_coordinates", "float_coordinates_x", "left"),
+            errors.BadRequest,
+            "'left' is not a value of float",
+        ),
+    ],
+)
+def test_what_cannot_be_asked(furnished, question, error, text):
+    with pytest.raises(error, match=text):
+        answered(furnished, *question)
+
+
+def test_what_would_be_the_same_is_said(tmp_path):
+    semantic_map = home.new_map(
+        tmp_path, (*home.TBOX, *turtle("dm:isPartOf a owl:ObjectProperty , owl:FunctionalProperty ."))
+    )
+    semantic_map.commit(
+        transaction(1, turtle(":leg a dm:Object ; dm:isPartOf :a . :a a dm:Object . :b a dm:Object ."))
+    )
+    answer = answered(semantic_map, "leg", "isPartOf", "b")
+    assert answer.text == "yes: nothing excludes that leg is part of b; but then b is the same as a"
+    home.close(semantic_map)
+
+
+def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
+    crowd = "".join(f":thing{n} a dm:Door ; dm:isLocatedIn :kitchen1 ." for n in range(questions._QUICK + 1))
+    ask = Could(name="kitchen1", predicate="sameAs", value="chair2")
+    assert questions.is_quick(furnished.reasoner, questions.of_could(furnished, ask))
+    furnished.commit(transaction(2, turtle(crowd)))
+    asked = questions.of_could(furnished, ask)
+    assert not questions.is_quick(furnished.reasoner, asked)
+    beside = Reasoner(furnished.reasoner.asserted())
+    assert questions.could(beside, asked).text == questions.could(furnished.reasoner, asked).text
+    classes = questions.of_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
+    with pytest.raises(NotCompilable):
+        questions.could(furnished.reasoner, classes, anew=False)

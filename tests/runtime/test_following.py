@@ -1,0 +1,121 @@
+"""A follower before a knowledge base that is played here, over real Zenoh."""
+
+import pytest
+
+from nodes import bus
+from nodes.runtime.following import Follower
+from nodes.runtime.loop import Node
+from nodes.runtime.map_replica import MapReplica
+from schemas import codec, keys
+from schemas.bridge import SnapshotQuery
+from schemas.commands import Classes
+from schemas.commits import Commit, Snapshot
+from schemas.health import Health
+from tests.conftest import free_endpoint, handling, until
+from tests.recorder.messages import commit, entity
+
+
+class KnowledgeBase:
+    """Serves the snapshot that it is given, and says what happens."""
+
+    def __init__(self, session):
+        self.node = Node("kb_node", session)
+        self.snapshot = Snapshot(seq=1, entities=(entity("cup1"),))
+        self.asked = 0
+        self._commits = bus.publisher(session, keys.COMMIT)
+        self._health = bus.publisher(session, keys.HEALTH, keys.health_key("kb_node"))
+        self.node.serve(
+            keys.BRIDGE, {"snapshot": (SnapshotQuery, self._snapshot), "classes": (Classes, lambda _: ())}
+        )
+
+    def _snapshot(self, query):
+        self.asked += 1
+        return self.snapshot
+
+    def publish(self, *commits):
+        for made in commits:
+            self._commits.put(codec.encode(made))
+
+    def beat(self, started_ns):
+        health = Health(node="kb_node", pid=1, started_ns=started_ns, stamp_ns=1, state="ready")
+        self._health.put(codec.encode(health))
+
+
+class Following:
+    """A node that follows, and what it was told."""
+
+    def __init__(self, session):
+        self.node = Node("recorder", session)
+        self.map = MapReplica[Commit]()
+        self.heard, self.begun = [], []
+        Follower(
+            self.node,
+            self.map,
+            keys.COMMIT,
+            heard=lambda commit, known: self.heard.append((commit.seq, known)),
+            begun=self.begun.append,
+        )
+
+    @property
+    def snapshots(self):
+        return [(begun.before, begun.seq) for begun in self.begun]
+
+
+@pytest.fixture
+def both():
+    endpoint = free_endpoint()
+    here = bus.Network(mode="peer", connect=(), listen=(endpoint,))
+    there = bus.Network(mode="peer", connect=(endpoint,), listen=("tcp/127.0.0.1:0",))
+    with bus.open_session(here) as session, bus.open_session(there) as other:
+        kb, follower = KnowledgeBase(session), Following(other)
+        with handling(kb.node), handling(follower.node):
+            until(lambda: follower.map.is_current, "the map is known")
+            yield kb, follower
+
+
+def test_commits_follow_a_snapshot(both):
+    kb, follower = both
+    kb.publish(commit(2, entity("cup2")), commit(3, removed=("cup1",)))
+    until(lambda: follower.map.seq == 3, "both were taken")
+    assert set(follower.map.entities) == {"cup2"}
+    assert (follower.snapshots, follower.heard) == ([(-1, 1)], [(2, True), (3, True)])
+    assert kb.asked == 1
+
+
+def test_what_was_missed_is_fetched(both):
+    kb, follower = both
+    kb.snapshot = Snapshot(seq=4, entities=(entity("cup4"),))
+    kb.publish(commit(4, entity("cup4")))
+    until(lambda: follower.map.seq == 4, "a snapshot came")
+    assert follower.map.is_current
+    assert (follower.snapshots[-1], follower.heard) == ((1, 4), [(4, False)])
+
+
+def test_a_snapshot_that_lacks_what_was_heard_is_asked_for_again(both):
+    kb, follower = both
+    kb.publish(commit(3, entity("cup3")))
+    until(lambda: kb.asked > 2, "it asks again")
+    kb.snapshot = Snapshot(seq=3, entities=(entity("cup3"),))
+    until(lambda: follower.map.seq == 3, "the snapshot with it came")
+    assert follower.map.is_current
+
+
+def test_a_knowledge_base_that_knows_less_counts(both):
+    kb, follower = both
+    kb.beat(1)
+    kb.publish(commit(2, entity("cup2")))
+    until(lambda: follower.map.seq == 2, "it was taken")
+    kb.beat(1)
+    kb.snapshot = Snapshot(seq=1, entities=(entity("sink1"),))
+    kb.beat(2)
+    until(lambda: follower.map.seq == 1, "the other map is in force")
+    assert set(follower.map.entities) == {"sink1"}
+    assert follower.snapshots == [(-1, 1), (2, 1)]
+
+
+def test_another_tbox_means_other_classes(both):
+    kb, follower = both
+    kb.snapshot = Snapshot(seq=2, entities=(entity("cup1"),))
+    kb.publish(commit(2, tbox=True))
+    until(lambda: len(follower.begun) == 2, "classes and snapshot were fetched")
+    assert follower.snapshots[-1] == (2, 2)
