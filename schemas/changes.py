@@ -131,8 +131,7 @@ def _conflict(change: Change) -> str:
 
 
 def _property(change: Change) -> str:
-    plural = any(isinstance(value, tuple) and len(value) > 1 for value in (change.was, change.now))
-    if not plural:
+    if not any(isinstance(value, tuple) for value in (change.was, change.now)):
         was, now = _shown(_values(change.was)), _shown(_values(change.now))
         return f"{change.property_}: {was or 'not set'} → {now or 'not set'}"
     came, gone = _differences(change)

@@ -36,7 +36,15 @@ def transaction(
 
 def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) -> Transaction:
     """A new entity; its name must be free."""
-    new = NewEntity(name=name, class_iri=found.iri, pose=pose, size=command.size, ref=ref, alt=command.alt)
+    new = NewEntity(
+        name=name,
+        class_iri=found.iri,
+        pose=pose,
+        size=command.size,
+        ref=ref,
+        alt=command.alt,
+        set=tuple(map(_assignment, command.set)),
+    )
     return transaction(command, f"add {found.name} {name}", add=[new])
 
 

@@ -295,16 +295,12 @@ class SemanticMap:
         remove, edit, add = transaction.remove, transaction.edit, transaction.add
         if not (remove or edit or add):
             return transaction
-        draft = entity_writing.draft(
-            self.reasoner,
-            self.classes,
-            self.tbox,
-            self.entity,
-            self.find,
-            remove=self.steadily(remove),
-            edit=self.steadily(edit),
-            add=self.steadily(add),
-        )
+        draft = entity_writing.Draft(self.reasoner, self.classes, self.tbox, self._entities)
+        draft.remove([self.entity(name) for name in self.steadily(remove)])
+        for one in self.steadily(edit):
+            draft.edit(self.entity(one.name), one)
+        for new in self.steadily(add):
+            draft.add(new)
         return structs.replace(
             transaction,
             retract=(*transaction.retract, *draft.retract),

@@ -9,7 +9,7 @@ export as before. What nobody has said yet is said in semmap's own words.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from nodes.kb_node.entities import aligned, entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
@@ -25,20 +25,24 @@ from schemas.entities import Entity, Pose, Size
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
-Find = Callable[[str], Entity | None]
-"""The entity of a name, if there is one."""
-
 
 class Draft:
     """A change of triples in the making. What it takes away counts as gone for what it adds later."""
 
-    def __init__(self, reasoner: Reasoner, classes: ClassTable, tbox: frozenset[Triple], find: Find) -> None:
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        classes: ClassTable,
+        tbox: frozenset[Triple],
+        entities: Mapping[str, Entity],
+    ) -> None:
+        """`entities` are those of the map by name."""
         self.retract: dict[Triple, None] = {}
         self.insert: dict[Triple, None] = {}
         self._reasoner = reasoner
         self._classes = classes
         self._tbox = tbox
-        self._find = find
+        self._entities = entities
         self._new: set[Term] = set()
 
     def remove(self, leaving: Iterable[Entity]) -> None:
@@ -126,8 +130,8 @@ class Draft:
             known = said.get(prop.iri, ())
             if not any(same(one, other) for one in known for other in terms) and (known or terms):
                 now = " and ".join(spoken(term) for term in sorted(known)) or "not set"
-                wanted = " or ".join(map(spoken, terms)) or "not set"
-                raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, and had to be {wanted}")
+                wanted = " or ".join(map(spoken, terms)) or "unset"
+                raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
 
     def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
         """Properties lose values and get others."""
@@ -150,11 +154,14 @@ class Draft:
         table = self._classes.stated
         for statement in statements:
             prop = table.find(statement.property, name)
-            yield prop, [table.term(prop, text, self._individual) for text in statement.values]
+            yield (
+                prop,
+                [table.term(prop, text, self._individual, self._entities) for text in statement.values],
+            )
 
     def _individual(self, name: str) -> Term | None:
         """The individual of the map with this name, if there is one."""
-        entity = self._find(name)
+        entity = self._entities.get(name)
         iri = v.iri(entity.iri) if entity is not None else v.entity_iri(name)
         return iri if iri in self._new or self._is_described(iri) else None
 
@@ -275,24 +282,3 @@ def _pose(entity: Entity, edit: Edit) -> Pose:
     if at is None:
         raise errors.BadRequest(f"{entity.name} has no position yet; give one with --at")
     return pose_of(at, edit.yaw, edit.orientation, before)
-
-
-def draft(
-    reasoner: Reasoner,
-    classes: ClassTable,
-    tbox: frozenset[Triple],
-    entity: Callable[[str], Entity],
-    find: Find,
-    *,
-    remove: Iterable[str],
-    edit: Iterable[Edit],
-    add: Iterable[NewEntity],
-) -> Draft:
-    """The triples of some intents about entities that `entity` gives, or raises UnknownName; see `Draft`."""
-    made = Draft(reasoner, classes, tbox, find)
-    made.remove([entity(name) for name in remove])
-    for one in edit:
-        made.edit(entity(one.name), one)
-    for new in add:
-        made.add(new)
-    return made

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
 from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
@@ -98,15 +98,17 @@ class PropertyTable:
         for p in found:
             if p in STRUCTURAL:
                 how = STRUCTURAL[p].format(name=name)
-                raise errors.BadRequest(f"{v.local_name(p)} is part of what an entity is: semmap {how}")
+                raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
             if p in self.by_iri:
                 return self.by_iri[p]
         known = [p.name for p in self.by_iri.values()]
         hint = errors.did_you_mean(word, known) or "; see: semmap properties"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
 
-    def term(self, prop: Property, text: str, named: Callable[[str], Term | None]) -> Term:
-        """The value that `text` denotes for a property; `named` finds the map's own individuals.
+    def term(
+        self, prop: Property, text: str, named: Callable[[str], Term | None], names: Collection[str]
+    ) -> Term:
+        """The value that `text` denotes for a property; `named` finds the map's individuals, among `names`.
 
         Raises BadRequest for a literal outside the range, UnknownName for an individual that does not exist.
         """
@@ -119,7 +121,7 @@ class PropertyTable:
         elif (found := named(text) or self._individual(prop, text)) is not None:
             return found
         allowed = sorted(v.local_name(i) for i in self._allowed(prop))
-        hint = errors.did_you_mean(text, allowed)
+        hint = errors.did_you_mean(text, (*allowed, *names))
         if not hint and 0 < len(allowed) <= _FEW:
             hint = f"; {prop.name} takes {', '.join(allowed)}"
         raise errors.UnknownName(f"no individual is named '{text}'{hint}")

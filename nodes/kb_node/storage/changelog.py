@@ -42,7 +42,8 @@ class Changelog:
                 changes += between(None, entity)
             else:
                 changes += between(_bare(was), _bare(entity))
-                changes += of_properties(entity.name, stated.get(v.iri(entity.iri), ()))
+                said = stated.get(v.iri(entity.iri), ())
+                changes += of_properties(entity.name, (_in_full(*one, was, entity) for one in said))
             self._met[entity.name] = entity
         for gone in commit.removed:
             self._met[gone.name] = None
@@ -85,6 +86,16 @@ def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated 
     for (s, p), (gone, come) in sorted(found.items()):
         said.setdefault(s, []).append((v.local_name(p), _values(gone), _values(come)))
     return said
+
+
+def _in_full(
+    name: str, gone: Stated | None, come: Stated | None, was: Entity, now: Entity
+) -> tuple[str, Stated | None, Stated | None]:
+    """What a property was and is: all its values where both are known, else those that went and came."""
+    before, after = was.properties.get(name), now.properties.get(name)
+    if isinstance(before, tuple) or isinstance(after, tuple):
+        return name, before, after
+    return name, gone, come
 
 
 def _values(terms: Iterable[Term]) -> Stated | None:
