@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format docs diagrams schema shapes models train-perception clean
+.PHONY: help setup demo test test-long lint format docs diagrams schema shapes models train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -19,7 +19,7 @@ $(UV):
 
 .venv/.ready: uv.lock pyproject.toml | $(UV)
 	$(UV) sync --locked --compile-bytecode --python python3
-	@$(BIN)/python -m compileall -q nodes schemas ontology  # each start of a node, too, is quicker
+	@$(BIN)/python -m compileall -q semmap nodes schemas ontology  # each start of a node, too, is quicker
 	@touch $@
 
 demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png
@@ -65,5 +65,8 @@ train-perception: setup  ## Learn anew what perception knows: an hour on two cor
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	$(BIN)/python -m nodes.training.recognition
 
+wheel: setup  ## Build the wheel into dist/
+	$(BIN)/python -m hatchling build -t wheel
+
 clean:  ## Remove what was installed and built
-	rm -rf .venv .tools .pytest_cache .hypothesis .mypy_cache .ruff_cache demo/data
+	rm -rf .venv .tools dist .pytest_cache .hypothesis .mypy_cache .ruff_cache demo/data

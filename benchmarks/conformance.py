@@ -18,6 +18,7 @@ from msgspec import Struct
 from msgspec.json import decode
 
 from nodes.kb_node.reasoner import Inconsistent, Reasoner, entails
+from nodes.kb_node.reasoner.entailment import contradictory
 from schemas.explanations import Triple
 
 
@@ -51,7 +52,9 @@ def run(folder: Path, case: Case) -> Outcome:
         passed = case.type in ("inconsistency", "entailment")  # from a contradiction everything follows
         return Outcome(case.id, passed, error.explanation.text)
     if case.type in ("consistency", "inconsistency"):
-        return Outcome(case.id, case.type == "consistency", "no contradiction was found")
+        found = contradictory(reasoner)
+        why = "what must exist contradicts the rest" if found else "no contradiction was found"
+        return Outcome(case.id, found == (case.type == "inconsistency"), why)
     if case.conclusion is None:
         raise ValueError(f"{case.id}: type {case.type} needs a conclusion")
     follows = entails(reasoner, _triples(folder / case.conclusion))

@@ -38,9 +38,10 @@ class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, the names of the entities that it changed, and what was left out and why."""
+    """The commit, the last of so many `parts`; the names of all entities that changed; what was left out."""
 
     commit: Effects | None
+    parts: int = 1
     names: tuple[str, ...] = ()
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
@@ -91,7 +92,7 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
 
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Add an ABox in any RDF syntax in one commit; with `replace` instead of the present one."""
+    """Add an ABox in any RDF syntax, with `replace` instead of the present one; see `commands.Load`."""
 
     VERB: ClassVar[str] = "load"
 
@@ -104,6 +105,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     replace: bool
     skip_unknown: bool
     strict: bool = False
+    parts: bool = False
     dry_run: bool = False
 
 

@@ -174,6 +174,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
     that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
     file is a TBox that takes the place of the present one, unless the map does not fit it.
+
+    A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
+    when one part is refused, those before it stay, and the error says so.
     """
 
     content: bytes
@@ -182,6 +185,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     skip_unknown: bool = False
     strict: bool = False
     tbox: bool = False
+    parts: bool = False
     dry_run: bool = False
 
 

@@ -32,6 +32,18 @@ class SemmapError(Exception):
         self.explanation = explanation
 
 
+def in_part(error: SemmapError, done: Sequence[int], number: int, count: int) -> SemmapError:
+    """The error of part `number` of `count`, with what became of the others: `done` are their commits."""
+    if not done:
+        return error
+    before = f"commit {done[0]}" if len(done) == 1 else f"commits {done[0]} to {done[-1]}"
+    text = (
+        f"{error.text}; that is in part {number} of {count}: what is before it is committed"
+        f" ({before}) and stays, the rest is not"
+    )
+    return type(error)(text, explanation=error.explanation)
+
+
 class Refused(SemmapError):
     """Understood, and not done."""
 

@@ -25,6 +25,8 @@ from schemas import errors
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _COUNTED = "Cup"
 _REPEAT = 100
+_LARGE = 100_000
+_QUIET_S = 30.0
 _JSON_UP_TO = 100_000
 """Entities: a scene of more is measured as Turtle only."""
 
@@ -70,6 +72,8 @@ def measure(folder: Path, size: int) -> Scale:
         counted = big_files.count_of(_COUNTED, size)
         first_after_load_s = timed(lambda: _require_count(client, counted))
         memory_of_nodes = _memory_mb(client)
+        if size >= _LARGE:
+            time.sleep(_QUIET_S)  # in which the knowledge base writes its checkpoint
     turtle.unlink()
     name = f"thing{size // 2}"
     began_s = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Ask, and wait for the reply or be told of it later.
+"""Queries: ask and wait for the reply, or have it handed over later.
 
 What was learnt by measuring (Zenoh 1.10.2): a `get` that finds nobody comes back empty at once, so an empty
 answer is asked again until patience ends, and never read as an answer; a time-out comes as an error reply
@@ -158,7 +158,7 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 def _nobody(key: str) -> NoReturn:
     node = keys.SERVED_BY.get(key.rpartition("/")[0])
-    why = f"{node} does not run" if node else "nobody serves it"
+    why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
-        f"no answer on {key}: {why}, or is just starting (see: semmap status), or this client may not ask it"
+        f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"
     )

@@ -1,4 +1,4 @@
-"""Which nodes are there; what was asked of a node ends when the node is gone.
+"""Presence of nodes; queries to a node are cancelled when it goes away.
 
 Zenoh (1.10.2) ends the questions that a peer has when it goes. One that was sent within the few milliseconds
 until that is noticed nobody has, and it waits for its time-out.

@@ -86,7 +86,7 @@ def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
         subscriber = session.declare_subscriber(key_expr)
     except zenoh.ZError as error:
         raise errors.BadRequest(
-            f"'{key_expr}' is no key expression: {str(error).split(' at /', 1)[0]}"
+            f"'{key_expr}' is not a valid key expression: {str(error).split(' at /', 1)[0]}"
         ) from None
     for sample in subscriber:
         if sample.kind == zenoh.SampleKind.DELETE:

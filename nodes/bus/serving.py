@@ -1,4 +1,4 @@
-"""Requests and how they are answered: as queries, or as puts that are acknowledged."""
+"""Requests, answered either as queries or as puts that are acknowledged."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Request:
         parameters = {k: v for k, v in self.parameters.items() if (k, v) != ("format", "json")}
         if self.payload:
             if parameters:
-                raise errors.BadRequest("give the fields in the message or as parameters, not both")
+                raise errors.BadRequest("give the fields either in the message or as parameters, not both")
             return codec.decode(self.payload, kind)
         return codec.from_text(parameters, kind)
 

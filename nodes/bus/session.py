@@ -79,7 +79,9 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if "Endpoints must be of the form" in str(error):
-            raise errors.BadRequest(f"'{where}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}") from None
+            raise errors.BadRequest(
+                f"'{where}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}"
+            ) from None
         reason = str(error).split(" at /", 1)[0]
         raise errors.BadRequest(f"cannot open a session at {where}: {reason}") from None
     try:

@@ -1,4 +1,4 @@
-"""Precedence: who may change what was said by whom.
+"""Precedence: who may change what whom has asserted.
 
 Anybody may say where a thing is now. What it is, what it is called and whether it is there at all is changed
 only by an operator (or a file of an operator's) once an operator has said it.
@@ -15,10 +15,10 @@ from schemas.entities import Entity
 
 _LESSER = frozenset(("scene", "perception"))
 _COMES_BACK = {
-    "scene": "the scene is the truth here: what still stands in it comes back",
-    "perceived": "perception is the truth here: what it still sees comes back",
+    "scene": "the scene decides what exists (--truth scene): a body that still stands there is added again",
+    "perceived": "perception decides what exists (--truth perceived): what it still sees is added again",
 }
-_GOES_BACK = {"scene": "the scene is the truth here: it says where a body stands, and `semmap move` moves it"}
+_GOES_BACK = {"scene": "the scene decides where bodies stand (--truth scene); to move one: semmap move"}
 
 
 def require_authority(command: Command, concerned: Iterable[Entity]) -> None:

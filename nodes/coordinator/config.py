@@ -23,7 +23,7 @@ class Thresholds:
 class CoordinatorConfig:
     """`truth` says who owns existence: in `map` the scene follows the map, in `scene` the other way.
 
-    In `perceived` the simulator stands for the world itself: only perception tells the map of it.
+    In `perceived` the simulator stands for the world itself: only perception updates the map.
     """
 
     truth: Truth = "map"

@@ -1,4 +1,4 @@
-"""What the coordinator answers itself: list, get, status."""
+"""What the coordinator answers itself, from its replica of the map: list, get, status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the heartbeats say of the nodes."""
+"""The state of the nodes, from their heartbeats."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Places for what comes without."""
+"""Positions for entities that are added without one."""
 
 from __future__ import annotations
 

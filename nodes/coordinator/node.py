@@ -200,7 +200,7 @@ class Coordinator:
             if not self._has_map and time.monotonic() < deadline:
                 self._early.append((deadline, execute, future))
             elif not self._has_map:
-                error = errors.NoAnswer("the knowledge base does not answer; see: semmap status")
+                error = errors.NoAnswer("the knowledge base is not answering; see: semmap status")
                 future.set_exception(error)
             else:
                 settle(future, execute)

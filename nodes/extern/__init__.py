@@ -1,1 +1,1 @@
-"""What a person or an outside program touches: the command line, the client, the zenoh-cli codecs."""
+"""The outside of the system: the command line, the Python clients, the codecs for the zenoh CLI."""

@@ -105,7 +105,7 @@ class AsyncStandingQuery:
 
     def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
         """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""
-        return _handed_over(self._standing.changes(), "no rows came or went", timeout)
+        return _handed_over(self._standing.changes(), "no rows changed", timeout)
 
 
 async def _handed_over(items: Iterator[T], nothing: str, timeout_s: float | None) -> AsyncIterator[T]:

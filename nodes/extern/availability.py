@@ -1,4 +1,4 @@
-"""Whether the system is there, for whoever watches it: that it goes down, comes back, and with which map."""
+"""Availability: tells a watcher that the system went down, that it is back, and with which map."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from nodes import bus
 from nodes.extern.client import Client
 from schemas import errors, wording
 
-WENT_DOWN = "the knowledge base is gone; waiting for it to come back"
+WENT_DOWN = "the knowledge base is down; waiting for it to come back"
 CAME_BACK = "the knowledge base is back, with the same map"
 
 
@@ -61,4 +61,6 @@ def _beginning(client: Client) -> _Beginning:
 def _another(client: Client, beginning: _Beginning) -> str:
     status = client.status()
     counts = f"{wording.entities(status.entities)}, commit {status.commit}"
-    return f"another map is served here now ({beginning.reason}; {counts}): what follows is about that one"
+    return (
+        f"this endpoint now serves another map ({beginning.reason}; {counts}); what follows is about that map"
+    )

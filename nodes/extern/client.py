@@ -38,8 +38,8 @@ from schemas.replies import Changed
 R = TypeVar("R")
 C = TypeVar("C", bound=Command)
 
-LONG_S = 700.0
-"""Seconds: longer than any command takes."""
+LONG_S = 6 * 3600.0
+"""Seconds: longer than any command takes. The end of the node that has it ends the question before."""
 _VERSION_S = 2.0
 
 
@@ -168,4 +168,4 @@ def _plain(value: Any) -> Any:
     """Numbers and arrays of NumPy as Python's own."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise errors.BadRequest(f"{value!r} is neither a number, a text nor a sequence of them")
+    raise errors.BadRequest(f"{value!r} is not a number, a string or a sequence of them")

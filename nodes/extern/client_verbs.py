@@ -140,6 +140,7 @@ def _load(
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
+    parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     dry_run: bool = False,
     id: str = "",
@@ -149,6 +150,7 @@ def _load(
 
     `replace` takes the present entities out in the same commit; `skip_unknown` leaves out what is of a class
     that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
+    With `parts` it is as many commits as it takes, for files of any size.
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
@@ -161,6 +163,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        parts=parts,
         dry_run=dry_run,
         id=id,
         reason=reason,

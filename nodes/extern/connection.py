@@ -31,7 +31,7 @@ def endpoint() -> str:
     if len(running) > 1:
         which = ", ".join(f"{system.reachable} ({system.data})" for system in running)
         raise errors.BadRequest(
-            f"{len(running)} systems run here, choose one with --connect or {CONNECT_VARIABLE}: {which}"
+            f"{len(running)} systems are running; choose one with --connect or {CONNECT_VARIABLE}: {which}"
         )
     return running[0].reachable
 

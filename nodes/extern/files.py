@@ -1,4 +1,4 @@
-"""Files of whoever asks: read whole or refused in one sentence, written whole or not at all."""
+"""Files of the client: read whole or refused in one sentence, written atomically."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A standing query as a client follows it: its rows, and from then on what appears and disappears."""
+"""A standing query on the client's side: its rows, and what appears and disappears from then on."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class StandingQuery:
                     return
             except queue.Empty:
                 if time.monotonic() >= end_at:
-                    raise errors.NoAnswer(f"no rows came or went within {patience_s:g} s") from None
+                    raise errors.NoAnswer(f"no rows changed within {patience_s:g} s") from None
                 renew_at = time.monotonic() + _RENEW_S
                 if (again := self._renew()) is None:
                     continue

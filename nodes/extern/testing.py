@@ -1,4 +1,4 @@
-"""A system of one's own, for tests of whatever talks to semmap."""
+"""A private system for the tests of programs that talk to semmap."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +18,7 @@ from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
     blank_nodes,
     document_change,
+    load_parts,
     rdf,
     tbox_notes,
     tbox_validation,
@@ -36,6 +38,7 @@ from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from ontology import vocabulary as v
 from schemas import errors, keys, wording
@@ -151,6 +154,9 @@ class KnowledgeBase:
         """What `change` commits, and publishes; or would commit, in a dry run."""
         return trials.of(self.map, change) if dry_run else _effects(self._published_if_new(change))
 
+    def _commit(self, transaction: Transaction) -> Commit | None:
+        return self._published_if_new(lambda: self.map.commit(transaction))
+
     def _published_if_new(self, change: Callable[[], C]) -> C:
         """What `change` commits; published unless it is the answer to an old command."""
         before = self.map.seq
@@ -196,8 +202,8 @@ class KnowledgeBase:
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
-        """An RDF document in one commit."""
-        label = f"f{uuid.uuid4().hex[:8]}"
+        """An RDF document in one commit, or in parts."""
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
                 load.content,
@@ -207,21 +213,29 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
-            names, effects = self._loaded(transaction, load.dry_run)
+            if load.dry_run:
+                names, effects = self._tried_load(transaction)
+                return Loaded(
+                    commit=effects,
+                    names=names,
+                    skipped=tuple(sorted_out.skipped),
+                    notes=tuple(sorted_out.notes),
+                )
+            del triples
+            parts = load_parts.in_parts(transaction) if load.parts else [transaction]
+            commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
             return Loaded(
-                commit=effects,
-                names=names,
+                commit=_effects(commits[-1] if commits else None),
+                parts=len(commits),
+                names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
                 skipped=tuple(sorted_out.skipped),
                 notes=tuple(sorted_out.notes),
             )
 
-    def _loaded(self, transaction: Transaction, dry_run: bool) -> tuple[tuple[str, ...], Effects | None]:
-        """What a load commits, with the names of all entities that it changes, or would change."""
-        if dry_run:
-            tried = trials.of(self.map, lambda: self.map.commit(transaction))
-            return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
-        commit = self._published_if_new(lambda: self.map.commit(transaction))
-        return (() if commit is None else tuple(e.name for e in commit.changed), _effects(commit))
+    def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
+        """The names of all entities that a load would change, and what it would commit."""
+        tried = trials.of(self.map, lambda: self.map.commit(transaction))
+        return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -235,6 +249,7 @@ class KnowledgeBase:
             with gc_pause.uncollected(freeze=True):
                 yield tell
         finally:
+            self._node.afterwards(heap.trim)
             self._node.describe(self._summary())
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
@@ -385,6 +400,8 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
+        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
+            return
         with suppress(errors.Refused):
             self.map.checkpoint()
 
@@ -393,6 +410,7 @@ class KnowledgeBase:
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
             self.map.checkpoint()
+            heap.trim()
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)
@@ -422,6 +440,7 @@ def run(config: KbConfig) -> None:
         try:
             with gc_pause.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal)
+            heap.trim()
             node.run()
             knowledge_base.close()
         finally:

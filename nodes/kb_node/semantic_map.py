@@ -26,6 +26,9 @@ from schemas.explanations import Term, Triple
 
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
+CHECKPOINT_EVERY_TRIPLES = 100_000
+LARGE = 1_000_000
+"""Triples."""
 PART = 250_000
 """Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 
@@ -77,6 +80,8 @@ class SemanticMap:
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
         self._checkpointed = 0
+        self._changed_since = 0
+        """Triples that changed since the checkpoint."""
         self._replay(start)
 
     # Asking
@@ -268,9 +273,16 @@ class SemanticMap:
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
+        if quiet and self._changed_since > CHECKPOINT_EVERY_TRIPLES:
+            return True
         if quiet and self._journal.tbox_changes(after=self._checkpointed):
             return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
+
+    @property
+    def is_large(self) -> bool:
+        """Does a checkpoint take longer than a node has to stop?"""
+        return len(self.reasoner) > LARGE
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.
@@ -288,7 +300,7 @@ class SemanticMap:
             ),
             self._progress,
         )
-        self._checkpointed = self.seq
+        self._checkpointed, self._changed_since = self.seq, 0
 
     def _spelled_out(self, transaction: Transaction) -> Transaction:
         """The transaction with its intents said in triples, too."""
@@ -412,6 +424,7 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
+        self._changed_since += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
             before = {name: self._entities.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))

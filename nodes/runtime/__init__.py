@@ -1,1 +1,1 @@
-"""What every node is made of: its loop, its heartbeat, futures, and the map as a follower knows it."""
+"""What every node is built from: event loop, heartbeat, futures, and a replica of the map."""

@@ -1,4 +1,4 @@
-"""Class names as people write them."""
+"""Resolves class names as people write them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following the map: one way for every node that keeps a replica of it.
+"""Following the map: the one way in which nodes keep a replica of it up to date.
 
 Subscribe first, then fetch; whatever is missed, abridged or doubted after a restart of the knowledge base is
 fetched again.

@@ -1,4 +1,4 @@
-"""Futures of what a node waits for: resolving one, and going on from one."""
+"""Futures: resolving one, and chaining a function to one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The heartbeat: what a node says of its own state, once a second."""
+"""The heartbeat: a node publishes its state once a second."""
 
 from __future__ import annotations
 

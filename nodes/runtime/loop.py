@@ -1,4 +1,4 @@
-"""What every `node.py` is made of: one thread that owns the node's state, and a queue that feeds it.
+"""The event loop of every node: one thread that owns the node's state, and a queue that feeds it.
 
 Callbacks of Zenoh's threads only queue. Whatever fails in a handler is caught here and nowhere else:
 it is logged, answered, shown in the heartbeat, and the node lives on.
@@ -261,7 +261,7 @@ class Node:
         except errors.SemmapError as error:
             self.report(error.text)
         except Exception as error:
-            log.exception("fault in %s", self.name)
+            log.exception("internal error in %s", self.name)
             self.report(f"{type(error).__name__}: {error}")
         while self._afterwards:
             self._guard(self._afterwards.pop(0))
@@ -308,10 +308,10 @@ class Node:
 
     def _refuse(self, request: bus.Request, error: BaseException) -> None:
         if not isinstance(error, errors.SemmapError):
-            log.error("fault in %s", request.verb, exc_info=error)
+            log.error("internal error in %s", request.verb, exc_info=error)
             self.report(f"{request.verb}: {type(error).__name__}: {error}")
             error = errors.InternalError(
-                f"a fault in {self.name}, which goes on: {type(error).__name__}: {error}"
+                f"internal error in {self.name}, which keeps running: {type(error).__name__}: {error}"
             )
         request.refuse(error)
 

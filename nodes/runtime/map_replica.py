@@ -1,4 +1,4 @@
-"""What a node knows of the map by following it: the last snapshot, kept fresh by the commits since."""
+"""A node's replica of the map: a snapshot, updated by the commits since."""
 
 from __future__ import annotations
 

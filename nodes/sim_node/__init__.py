@@ -1,1 +1,1 @@
-"""The simulator: a MuJoCo world that follows orders and physics, and what its cameras see."""
+"""The simulator: a MuJoCo world with cameras, controlled by the map and by hand."""

@@ -1,4 +1,4 @@
-"""What the simulator keeps about each body, and poses as arrays."""
+"""Records of the simulator's bodies, and their poses as arrays."""
 
 from __future__ import annotations
 

@@ -97,9 +97,7 @@ class Simulator:
                 keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=bus.RESTART_S, beating=True
             )
         except errors.NoAnswer:
-            self._node.report(
-                "the knowledge base does not answer: bodies get the models named like their classes"
-            )
+            self._node.report("the knowledge base is not answering; using models named like the classes")
             return ClassNames()
         return ClassNames(found)
 
@@ -122,26 +120,24 @@ class Simulator:
         return self._world.scene()
 
     def _pause(self, message: Pause) -> Done:
-        state = "time runs" if message.off else "time stands still"
+        state = "running" if message.off else "paused"
         if self._paused is not message.off:
-            return Done(text=f"{state} already")
+            return Done(text=f"time is already {state}")
         self._paused = not message.off
         self._clock_s = time.monotonic()
         self._node.describe(self._summary())
-        return Done(text=f"{state} again" if message.off else state)
+        return Done(text=f"time is {state}")
 
     def _step(self, message: StepOnce) -> Done:
         if not self._paused:
-            raise errors.Refused(
-                "time runs by itself; `semmap pause` stops it, and then it goes step by step"
-            )
+            raise errors.Refused("time is running; pause it first with: semmap pause")
         timestep_s, before_s = float(self._world.model.opt.timestep), self._now_s
         end_s = before_s + max(message.seconds, timestep_s)
         while (left_s := end_s - self._now_s) > timestep_s / 2:
             self._world.step(min(left_s, _PUBLISH_S, self._turn_s()))
             self._node.tick()  # it may take minutes, and who is silent so long is replaced
         passed_s = round(self._now_s - before_s, 6)
-        return self._told(Done(text=f"{passed_s:g} s later; it is {self._now_s:.2f} s"))
+        return self._told(Done(text=f"advanced by {passed_s:g} s to {self._now_s:.2f} s"))
 
     @property
     def _now_s(self) -> float:
@@ -150,7 +146,7 @@ class Simulator:
 
     def _reset(self, _: Reset) -> Done:
         count = self._world.reset()
-        return self._told(Done(text=f"back where they were ordered to be: {wording.bodies(count)}"))
+        return self._told(Done(text=f"put back to the ordered poses: {wording.bodies(count)}"))
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
         return self._studio.paint(self._still(), self._view(query))

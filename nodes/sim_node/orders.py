@@ -1,4 +1,4 @@
-"""What is ordered of the world, looked at before anything is done: each order is accepted or has a reason."""
+"""Validates orders before anything is done: each is accepted, or rejected with a reason."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def newcomers(
     for order in orders:
         try:
             if order.name in accepted:
-                raise ModelError(f"a body named {order.name} is ordered twice")
+                raise ModelError(f"a body named {order.name} is requested twice")
             if taken(order.name):
-                raise ModelError(f"the scene has a body named {order.name} already")
+                raise ModelError(f"the scene already has a body named {order.name}")
             _check_reach(order.pose)
             accepted[order.name] = _newcomer(order, models(order.model, order.size_m))
         except ModelError as error:
@@ -77,4 +77,4 @@ def moves(placements: Iterable[Placement], there: Collection[str]) -> tuple[list
 def _check_reach(pose: Pose) -> None:
     distance = float(np.linalg.norm(pose.position_m))
     if distance > REACH_M:
-        raise ModelError(f"{distance:.0f} m from the origin is too far; bodies stand within {REACH_M:.0f} m")
+        raise ModelError(f"{distance:.0f} m from the origin is too far; the limit is {REACH_M:.0f} m")

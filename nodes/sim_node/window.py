@@ -1,4 +1,4 @@
-"""MuJoCo's own window on the world: look around; a double click names a thing, Ctrl-drag takes it along."""
+"""MuJoCo's interactive viewer: look around; double click selects a body, Ctrl-drag moves it."""
 
 from __future__ import annotations
 
@@ -76,4 +76,4 @@ def _require_display() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if not glfw.init():
-            raise BadRequest("no window can be opened here: there is no display")
+            raise BadRequest("cannot open a window: there is no display")

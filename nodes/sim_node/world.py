@@ -1,4 +1,4 @@
-"""The simulated world: bodies that are spawned, deleted, moved by hand, and fall, rest and sleep between."""
+"""The simulated world: bodies are spawned, deleted and moved by hand; they fall, rest and sleep."""
 
 from __future__ import annotations
 

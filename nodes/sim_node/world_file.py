@@ -51,7 +51,7 @@ def open_world(
     world = World(base_scene.bare_floor(views), name=path.name, models=models, meanwhile=meanwhile)
     spawned = world.spawn(_orders(scene.entities, classes or ClassNames()))
     for name, reason in spawned.failed.items():
-        raise BadFile(f"{path.name}: {name} cannot be made: {reason}")
+        raise BadFile(f"{path.name}: {name} cannot be created: {reason}")
     if views is None:
         world.look_over()
     return world

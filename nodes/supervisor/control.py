@@ -1,4 +1,4 @@
-"""supervisord: its configuration, and talking to it over its unix socket."""
+"""supervisord: its configuration, and control over its unix socket."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Supervisor:
             self.data.mkdir(parents=True, exist_ok=True)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
-            raise errors.BadFile(f"no data can be kept in {self.data}: {error.strerror}") from None
+            raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
@@ -101,8 +101,8 @@ class Supervisor:
             self._rpc().supervisor.shutdown()
         except (OSError, xmlrpc.client.Error):
             others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
-            hint = f"; --data stops one of these: {others}" if others else ""
-            raise errors.NoAnswer(f"no system runs on the data in {self.data}{hint}") from None
+            hint = f"; running systems: {others}" if others else ""
+            raise errors.NoAnswer(f"no system is running on {self.data}{hint}") from None
         deadline = time.monotonic() + 2 * _STOP_WAIT_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)

@@ -1,4 +1,4 @@
-"""Tells the programs of this machine that a system is run at an endpoint, also while nothing listens there.
+"""Announces to programs on this machine that a system runs at an endpoint, even while nothing listens there.
 
 `semmap up` holds a lock from before it seeds until everything has stopped. A connection that is refused
 meanwhile is worth trying again: the coordinator is about to listen, at first or after a restart. Where

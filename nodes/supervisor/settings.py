@@ -1,4 +1,4 @@
-"""What `semmap up` may be told. It is written to a file that each node's process reads."""
+"""The settings of `semmap up`. They are written to a file that each node's process reads."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
-                raise ValueError(f"'{endpoint}' is no Zenoh endpoint, such as {DEFAULT_ENDPOINT}")
+                raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
         if self.perception and self.sim and self.camera_hz and self.truth != "perceived":
             raise ValueError(
-                f"with --truth {self.truth} the simulator's cameras show what the map says already, so"
-                " perception cannot look through them: add --truth perceived, or --camera-hz 0 for frames"
-                " of other cameras"
+                f"with --truth {self.truth} the simulator's cameras only show what the map already says, so"
+                " perception cannot use them; add --truth perceived, or --camera-hz 0 to use other"
+                " cameras"
             )
 
     @property

@@ -1,4 +1,4 @@
-"""`semmap up`: seed, start, tell when each node is ready, watch, and stop everything on Ctrl-C."""
+"""`semmap up`: seeds the map, starts the nodes, reports when they are ready, watches and stops them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     supervisor = Supervisor(Path(settings.data))
     if supervisor.is_running():
         down = f"semmap down --data {shlex.quote(settings.data)}"
-        raise errors.Refused(f"a system runs on {settings.data} already; stop it with: {down}")
+        raise errors.Refused(f"a system is already running on {settings.data}; stop it with: {down}")
     _require_free(settings.listen)
     if settings.record:
         settings = structs.replace(settings, live_view=_live_view())
@@ -129,7 +129,7 @@ class _Foreground:
             ended = gave_up or info["statename"] == "FATAL"
             if ended and not self._stopping and self._process.poll() is None:
                 words = self._supervisor.last_words(node)
-                raise errors.Refused(f"{node} ended: {words} (log: {self._supervisor.log_of(node)})")
+                raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
 
     def _restart_what_hangs(self) -> None:
         for node, reason in self._watchdog.hanging():
@@ -145,7 +145,7 @@ class _Foreground:
         with contextlib.suppress(errors.SemmapError, OSError):
             classes = bus.ask(session, keys.CMD, Classes.VERB, Classes(), reply_type(Classes))
             if strange := passed_over(Path(self._settings.models), {c.model for c in classes}):
-                said = f"passed over, for no class has a model of that name: {', '.join(strange)}"
+                said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {said}")
 
     def _greet(self) -> None:
@@ -176,7 +176,7 @@ def _require_free(endpoint: str) -> None:
             probe.bind((host, port))
         except OSError as error:
             raise errors.Refused(
-                f"cannot listen on {endpoint}: {error.strerror}; give another with --listen"
+                f"cannot listen on {endpoint}: {error.strerror}; choose another with --listen"
             ) from None
 
 

@@ -1,4 +1,4 @@
-"""Precedence: who may change what was said by whom."""
+"""Precedence: who may change what whom has asserted."""
 
 import pytest
 
@@ -105,8 +105,8 @@ def test_the_same_conflict_again_changes_nothing(door):
 @pytest.mark.parametrize(
     ("command", "truth", "said"),
     [
-        (c.Remove(names=("cup1",)), "scene", "comes back"),
-        (c.Clear(), "perceived", "comes back"),
+        (c.Remove(names=("cup1",)), "scene", "is added again"),
+        (c.Clear(), "perceived", "is added again"),
         (c.Remove(names=("cup1",)), "map", None),
         (c.Update(name="cup1", at=AT), "scene", "semmap move"),
         (c.Update(name="cup1", yaw=1.0), "scene", "semmap move"),

@@ -369,6 +369,27 @@ def test_a_change_too_large_to_be_passed_on_is_known_to_the_next_command(door, m
     assert "seat3" not in door.map.entities
 
 
+def five_chairs(name="seat"):
+    entities = b",".join(b'{"class": "Chair", "name": "%s%d"}' % (name.encode(), i) for i in range(5))
+    return b'{"entities": [' + entities + b"]}"
+
+
+def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
+    monkeypatch.setattr("nodes.coordinator.door.loading.PART", 2)
+    before = door.map.seq
+    loaded = door.change(c.Load(id="five", content=five_chairs(), filename="five.json", parts=True))
+    assert len(loaded.names) == 5
+    assert loaded.commit == door.map.seq == before + 3
+    assert {f"seat{i}" for i in range(5)} <= set(door.map.entities)
+    again = door.change(c.Load(id="five", content=five_chairs(), filename="five.json", parts=True))
+    assert again.commit == loaded.commit
+
+
+def test_what_takes_the_place_of_something_else_is_one_commit(door):
+    with pytest.raises(errors.BadRequest, match="without --parts"):
+        door.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
+
+
 def test_a_property_is_set_and_unset(door):
     add(door, name="chair1", set=("isOpen=no",))
     assert door.map.entity("chair1").properties == {"isOpen": False}

@@ -463,3 +463,14 @@ def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, mo
     assert due == [(False, False), (True, False), (True, True)]
     semantic_map.checkpoint()
     assert not semantic_map.checkpoint_is_due(quiet=True)
+
+
+def test_a_checkpoint_is_due_after_many_triples_in_a_quiet_moment(semantic_map, monkeypatch):
+    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_EVERY_TRIPLES", 10)
+    semantic_map.commit(transaction(1, chair("chair1")))
+    assert not semantic_map.checkpoint_is_due(quiet=True)
+    semantic_map.commit(transaction(2, chair("chair2")))
+    assert semantic_map.checkpoint_is_due(quiet=True)
+    assert not semantic_map.checkpoint_is_due(quiet=False)
+    semantic_map.checkpoint()
+    assert not semantic_map.checkpoint_is_due(quiet=True)

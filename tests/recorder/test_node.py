@@ -93,7 +93,7 @@ class World:
 
     def _scene(self, _):
         if self.scene is None:
-            raise errors.Refused("no simulator runs")
+            raise errors.Refused("no simulator is running")
         return self.scene
 
     def _surfaces(self, query):

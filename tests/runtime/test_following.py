@@ -19,7 +19,7 @@ class KnowledgeBase:
     """Serves the snapshot that it is given, and says what happens."""
 
     def __init__(self, session):
-        self.node = Node("kb_node", session)
+        self.node = Node("played", session)  # its own heart would beat between the beats that are played
         self.snapshot = Snapshot(seq=1, entities=(entity("cup1"),))
         self.asked = 0
         self._commits = bus.publisher(session, keys.COMMIT)

@@ -113,21 +113,21 @@ def test_poses_come_twenty_times_a_second(client, poses):
 
 
 def test_paused_time_goes_on_step_by_step_only(client):
-    assert ask(client, "pause", Pause()).text == "time stands still"
-    assert ask(client, "pause", Pause()).text == "time stands still already"
+    assert ask(client, "pause", Pause()).text == "time is paused"
+    assert ask(client, "pause", Pause()).text == "time is already paused"
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
     time.sleep(0.1)
-    assert ask(client, "step", StepOnce(seconds=0.5)).text.startswith("0.5 s later")
+    assert ask(client, "step", StepOnce(seconds=0.5)).text.startswith("advanced by 0.5 s")
     assert ask(client, "snapshot", SceneQuery()).sim_time_s == pytest.approx(before + 0.5)
-    assert ask(client, "step", StepOnce(seconds=1e-9)).text.startswith("0.002 s later")  # no less
-    assert ask(client, "pause", Pause(off=True)).text == "time runs again"
-    assert ask(client, "pause", Pause(off=True)).text == "time runs already"
+    assert ask(client, "step", StepOnce(seconds=1e-9)).text.startswith("advanced by 0.002 s")  # no less
+    assert ask(client, "pause", Pause(off=True)).text == "time is running"
+    assert ask(client, "pause", Pause(off=True)).text == "time is already running"
     wait_for(lambda: ask(client, "snapshot", SceneQuery()).sim_time_s > before + 0.55)
 
 
 def test_a_step_is_refused_while_time_runs(client):
     before = ask(client, "snapshot", SceneQuery()).sim_time_s
-    with pytest.raises(errors.Refused, match="`semmap pause` stops it"):
+    with pytest.raises(errors.Refused, match="pause it first with: semmap pause"):
         ask(client, "step", StepOnce(seconds=60.0))
     assert ask(client, "snapshot", SceneQuery()).sim_time_s < before + 50.0
 

@@ -334,11 +334,11 @@ def test_names_that_are_given_are_nobody_elses(tmp_path):
 
 
 def test_a_world_that_does_not_compile_is_refused(tmp_path):
-    with pytest.raises(BadFile, match="no MJCF scene"):
+    with pytest.raises(BadFile, match="not an MJCF scene"):
         read_mjcf(tmp_path / "missing.xml")
     broken = tmp_path / "broken.xml"
     broken.write_text("<mujoco><worldbody><geom type='blob'/></worldbody></mujoco>")
-    with pytest.raises(BadFile, match="no MJCF scene that compiles"):
+    with pytest.raises(BadFile, match="not an MJCF scene that compiles"):
         read_mjcf(broken)
 
 

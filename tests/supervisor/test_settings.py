@@ -51,7 +51,7 @@ def test_perception_does_not_look_at_what_the_map_says_itself():
 def test_what_is_no_endpoint_is_refused(endpoint):
     for fields in ({"listen": endpoint}, {"connect": ("tcp/10.0.0.1:7447", endpoint)}):
         with pytest.raises(
-            ValueError, match=f"'{endpoint}' is no Zenoh endpoint, such as tcp/127.0.0.1:7447"
+            ValueError, match=f"'{endpoint}' is not a valid Zenoh endpoint; example: tcp/127.0.0.1:7447"
         ):
             settings(**fields)
 

@@ -12,6 +12,7 @@ import pytest
 from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import JOURNAL, SETTINGS
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import vocabulary as v
 from tests.conftest import free_endpoint, running
 
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
@@ -116,18 +117,56 @@ def test_a_port_in_use_is_told(tmp_path):
         (("--abox", "nowhere.ttl"), "there is no file nowhere.ttl"),
         (("--abox", "/"), "is a directory"),
         (("--tbox", "nowhere.ttl"), "there is no file"),
-        (("--models", "nowhere"), "nowhere is no folder"),
+        (("--models", "nowhere"), "nowhere is not a folder"),
         (("--abox", Path("demo", "picnic.json")), "semmap load"),
         (("--abox", Path("demo", "house.hrc")), "semmap load"),
         (("--threshold", "-1"), "--threshold must be"),
         (("--camera-size", "0", "0"), "--camera-size: the 1st must be"),
         (("--truth", "god"), "god"),
-        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is no Zenoh endpoint"),
+        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is not a valid Zenoh endpoint"),
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],
 )
 def test_bad_options_are_told(tmp_path, words, said):
     status, line = up(tmp_path, *words)
+    assert status == 2
+    assert said in line
+
+
+def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(tmp_path):
+    home, own = tmp_path / "home.ttl", tmp_path / "own"
+    home.write_text(HOUSEHOLD_TTL.read_text())
+    own.mkdir()
+    (own / "stools.omn").write_text(
+        f"Prefix: dm: <{v.TBOX}>\nOntology: <http://o.org/stools>\nImport: <http://o.org/home>\n"
+        "Import: <http://o.org/nowhere>\nClass: dm:Chair\nClass: dm:Barstool\n    SubClassOf: dm:Chair\n"
+    )
+    (own / "more.ofn").write_text(f"Ontology(<http://o.org/more> Declaration(Class(<{v.TBOX}Pouffe>)))")
+    data = tmp_path / "data"
+    words = ("--tbox", own, "--import", f"http://o.org/home={home}", "--no-sim", "--no-record")
+    note = "1 import was not found, and the TBox holds without: http://o.org/nowhere"
+    for also in (words, words[-2:]):  # the second time it goes on with what it has
+        with running(data, *also) as system, system.client() as client:
+            assert any(line.startswith("TBox ") and line.strip().endswith(note) for line in system.said)
+            assert {"Barstool", "Pouffe", "Chair"} <= {c.name for c in client.classes()}
+            assert client.add("Barstool").commit
+            assert note in next(node for node in client.status().nodes if node.node == "kb_node").notes
+            assert len(client.list("Chair")) == (1 if also is words else 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "Ontology(<urn:o>\n\n  Nonsense())",
+            "own.ofn is no valid OWL functional syntax: line 3 cannot be read",
+        ),
+        ("<urn:a> <urn:b> <urn:c> .", "own.ofn has no class: is it a TBox"),
+    ],
+)
+def test_an_ontology_that_cannot_be_read_is_told(tmp_path, text, said):
+    (tmp_path / "own.ofn").write_text(text)
+    status, line = up(tmp_path / "data", "--tbox", tmp_path / "own.ofn")
     assert status == 2
     assert said in line
 
@@ -140,7 +179,7 @@ def test_a_model_file_of_no_class_is_told(tmp_path):
     words = ("--models", models, "--abox", "none", "--no-record")
     with running(tmp_path / "data", *words) as system:
         (line,) = [line for line in system.said if line.startswith("models ")]
-    assert "passed over, for no class has a model of that name: chiar.obj (did you mean chair" in line
+    assert "ignored, because no class has a model of that name: chiar.obj (did you mean chair" in line
 
 
 def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):

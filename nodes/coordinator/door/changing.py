@@ -24,7 +24,7 @@ UNCHANGED = "unchanged: already up to date"
 
 @once
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
-    """Put an entity into the map."""
+    """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
     name = command.name or free_name(found.name, view.entities)
     if name in view.entities:
@@ -138,7 +138,7 @@ def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
     names = tuple(entity.name for entity in leaving)
     if not names:
-        return Changed(commit=None, text="the map is empty already")
+        return Changed(commit=None, text="the map is already empty")
     made = yield from commit(view, transactions.remove(command, reason, names))
     return changed(made, f"removed {len(names)}: {_few(names)}", names=names)
 

@@ -11,6 +11,7 @@ from msgspec import structs
 
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.known_map import KnownMap
+from nodes.runtime import heap
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.bridge import MadeBy
@@ -70,11 +71,17 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     if commit is None or commit.trial is not None:
         return commit
     if not view.take(commit) and commit.abridged is not None:
-        pages = view.begin_pages()
-        while not pages.are_complete:
-            pages.take((yield from ask(pages.query)))
-        view.begin(pages.snapshot)
+        yield from taken_anew(view)
     return commit
+
+
+def taken_anew(view: KnownMap) -> Talk[None]:
+    """The map as it is, page by page."""
+    pages = view.begin_pages()
+    while not pages.are_complete:
+        pages.take((yield from ask(pages.query)))
+    view.begin(pages.snapshot)
+    heap.trim()
 
 
 def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:

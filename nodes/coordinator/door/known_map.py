@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from operator import attrgetter
 
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
@@ -34,8 +35,9 @@ class KnownMap(map_replica.MapReplica[Effects]):
 
     def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
         """The entities, or those of a class by inference, in the order of their names."""
-        known = sorted(self.entities.items())
-        return tuple(e for _, e in known if class_name is None or class_name in e.types)
+        there = self.entities.values()
+        found = list(there) if class_name is None else [e for e in there if class_name in e.types]
+        return tuple(sorted(found, key=attrgetter("name")))
 
     def begin(self, snapshot: Snapshot) -> bool:
         """See `MapReplica.begin`."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from typing import Final
 
 from msgspec import structs
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, once, taken, taken_with_classes
+from nodes.coordinator.door.committing import changed, commit, once, taken, taken_anew, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
@@ -17,10 +18,13 @@ from nodes.runtime.class_names import AmbiguousClass, ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
-from schemas.commits import Effects, NewEntity
+from schemas.commits import Effects, NewEntity, Transaction
 from schemas.entities import ClassInfo, free_name
 from schemas.replies import Changed
 from schemas.scene_files import Described
+
+PART: Final = 10_000
+"""Entities in a part of a scene that is loaded in parts."""
 
 READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
     "scene": lambda content, filename: scene_files.read(content, filename).entities,
@@ -33,6 +37,10 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
     """Add what a file describes."""
     if command.source == "operator":
         command = structs.replace(command, source="file")
+    if command.parts and (command.replace or command.tbox):
+        raise errors.BadRequest("what replaces something is one commit; load it without --parts")
+    if command.parts and command.dry_run:
+        raise errors.BadRequest("a dry run is of one commit; try it without --parts")
     if command.tbox:
         return (yield from _load_tbox(view, command))
     if command.replace:
@@ -59,8 +67,33 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
         new.append(transactions.described(name, found, item))
     leaving = tuple(view.entities) if command.replace else ()
     change = transactions.transaction(command, f"load {command.filename}", remove=leaving, add=new)
-    made = yield from commit(view, change)
+    if command.parts:
+        made = yield from _commit_parts(view, change)
+    else:
+        made = yield from commit(view, change)
     return _loaded(command, made, tuple(names), skipped, notes)
+
+
+def _commit_parts(view: KnownMap, whole: Transaction) -> Talk[Effects | None]:
+    """The last commit; each part is one, and the last part's has the command's id."""
+    last: Effects | None = None
+    done: list[int] = []
+    starts = range(0, len(whole.add), PART)
+    for number, start in enumerate(starts, start=1):
+        part = structs.replace(
+            whole,
+            id=whole.id if number == len(starts) else f"{whole.id}/{number}",
+            reason=f"{whole.reason}, part {number} of {len(starts)}",
+            add=whole.add[start : start + PART],
+        )
+        try:
+            made = yield from commit(view, part)
+        except errors.SemmapError as error:
+            raise errors.in_part(error, done, number, len(starts)) from None
+        if made is not None:
+            last = made
+            done.append(made.seq)
+    return last
 
 
 def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
@@ -74,11 +107,15 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         replace=command.replace,
         skip_unknown=command.skip_unknown,
         strict=command.strict,
+        parts=command.parts,
         dry_run=command.dry_run,
     )
     loaded = yield from ask(document)
-    commit = yield from taken(view, loaded.commit)
-    return _loaded(command, commit, loaded.names, loaded.skipped, loaded.notes)
+    if loaded.parts == 1:
+        yield from taken(view, loaded.commit)
+    elif loaded.commit is not None:
+        yield from taken_anew(view)
+    return _loaded(command, loaded.commit, loaded.names, loaded.skipped, loaded.notes)
 
 
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:

@@ -1,1 +1,1 @@
-"""The scene's side: what must be done so that map and scene agree, and commands to the scene."""
+"""Keeping map and scene in agreement, and commands to the scene."""

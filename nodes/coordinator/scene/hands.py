@@ -1,4 +1,4 @@
-"""Hands that move bodies: where such a body comes to rest is the word of who had it moved."""
+"""Moves by hand: the new pose of such a body is attributed to the client that moved it."""
 
 from __future__ import annotations
 

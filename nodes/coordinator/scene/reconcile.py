@@ -1,4 +1,4 @@
-"""The keeper: what must be done so that map and scene say the same. A pure function, level-triggered.
+"""The reconciler: the actions that bring map and scene into agreement. A pure function, level-triggered.
 
 It looks only at how things are, never at how they came to be, so it also mends what was missed while any
 node was away. Who changed last wins: a body carries the number of the commit whose pose it was last ordered
@@ -6,7 +6,7 @@ to take, an entity that of the commit which last changed its pose. If the map's 
 come from the scene, the body is ordered there; otherwise a body that rests elsewhere was moved, and the map
 follows.
 
-Where only perception tells the map (`perceived`) nothing is to be done: an entity without a body is a belief,
+If only perception updates the map (`perceived`), nothing is to be done: an entity without a body is a belief,
 a body without an entity has not been seen yet, and a pose that differs will be seen.
 """
 

@@ -1,4 +1,4 @@
-"""The keeper at work: what `reconcile` wants is asked of the simulator and of the door.
+"""Executes what `reconcile` decides: orders to the simulator, and changes of the map.
 
 One batch of orders is under way at a time, and ends with a fresh snapshot; so the next look at the scene is
 never older than the orders before it.
@@ -38,7 +38,7 @@ from schemas.scenes import (
 log = logging.getLogger(__name__)
 
 T = TypeVar("T")
-GHOSTLY = "overlaps something, so it does not collide until it is free"
+GHOSTLY = "overlaps another body, so it does not collide until there is room"
 
 
 class AskSim(Protocol):
@@ -129,7 +129,7 @@ class Keeping:
         Raises NoAnswer while no simulator runs.
         """
         if not self.scene.known:
-            raise errors.NoAnswer("no simulator runs")
+            raise errors.NoAnswer("no simulator is running")
         self._failed.clear()
         self.keep()
         placements = tuple(
@@ -143,31 +143,34 @@ class Keeping:
         """What has become of the body of `entity`."""
         body = self.scene.bodies.get(entity.name)
         if entity.place:
-            return BodyState(status="none", detail="places have no bodies")
+            return BodyState(status="none", detail="a place has no body")
         if self._config.truth == "perceived":
-            return BodyState(status="none", detail="only perception tells the map", model=entity.model)
+            return BodyState(
+                status="none", detail="the map is updated by perception only", model=entity.model
+            )
         if not self.scene.known:
-            return BodyState(status="unknown", detail="no simulator runs", model=entity.model)
+            return BodyState(status="unknown", detail="no simulator is running", model=entity.model)
         if body is not None:
             detail = GHOSTLY if body.ghost else ""
             return BodyState(status="ghost" if body.ghost else "present", detail=detail, model=body.model)
         if entity.name in self._failed and self._failed[entity.name][0] == latest(entity):
             return BodyState(status="failed", detail=self._failed[entity.name][1], model=entity.model)
         if self._config.truth == "scene":
-            return BodyState(status="missing", detail="the scene does not have it", model=entity.model)
+            return BodyState(status="missing", detail="it is not in the scene", model=entity.model)
         detail = "" if entity.pose is not None else "it has no position"
         return BodyState(status="pending", detail=detail, model=entity.model)
 
     def problems(self) -> list[str]:
         """What is amiss between map and scene, one sentence each."""
-        entities = sorted(self._door.map.entities.items())
-        states = ((name, self.body_state(entity)) for name, entity in entities)
-        amiss = [
+        entities = self._door.map.entities.values()
+        may_lack_bodies = self.scene.known and self._config.truth != "perceived"
+        states = ((e.name, self.body_state(e)) for e in entities) if may_lack_bodies else ()
+        amiss = sorted(
             f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
             for name, state in states
             if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
-        ]
-        seen = [f"{name}: perception: {entity.conflict}" for name, entity in entities if entity.conflict]
+        )
+        seen = sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
         foreign = sorted((name, why) for name, why in self._foreign.items() if name in self.scene.bodies)
         return amiss + seen + [f"{name}: {why}" for name, why in foreign]
 
@@ -204,7 +207,7 @@ class Keeping:
                 self._next()
             else:
                 self._busy = False
-                self._report(f"the simulator did not {call.VERB}: {error}")
+                self._report(f"the simulator failed to {call.VERB}: {error}")
 
         self._ask(call).add_done_callback(on_done)
 
@@ -233,7 +236,7 @@ class Keeping:
         try:
             self._door.follow(placement.name, rounded(placement.pose))
         except errors.Refused as error:
-            self._report(f"{placement.name} goes back, because the map refused its new place: {error.text}")
+            self._report(f"{placement.name} goes back, because the map rejected its new pose: {error.text}")
             entity = self._door.map.entities[placement.name]
             if entity.pose is not None:
                 commit = entity.pose_provenance.commit
@@ -247,7 +250,7 @@ class Keeping:
         try:
             if body.class_ is None:
                 raise errors.UnknownClass(
-                    "nothing says its class: name it like chair_3 or add a text semmap:BODY"
+                    'unknown class; name it like chair_3, or add <text name="semmap:BODY" data="CLASS"/>'
                 )
             pose = rounded(body.pose)
             x, y, z = pose.position_m

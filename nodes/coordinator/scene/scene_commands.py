@@ -63,7 +63,7 @@ class Running:
             return self._ask_scene(command)
         return then(
             self._keeping.place_all(),
-            lambda reply: Done(text=f"back where the map says: {wording.bodies(len(reply.bodies))}"),
+            lambda reply: Done(text=f"put back where the map says: {wording.bodies(len(reply.bodies))}"),
         )
 
     def picture(self, command: c.TakePicture) -> Future[Picture]:
@@ -73,7 +73,7 @@ class Running:
 
     def _ask_scene(self, call: Call[R]) -> Future[R]:
         if not self._keeping.scene.known:
-            raise errors.NoAnswer("no simulator runs")
+            raise errors.NoAnswer("no simulator is running")
         return self._ask(call)
 
 
@@ -83,5 +83,7 @@ def _let_go(command: c.Move, body: Body) -> str:
     if body.ghost:
         return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {GHOSTLY}"
     if room_z_m - z > _LIFTED_M:
-        return f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and let go"
-    return f"put {body.name} at ({x:g}, {y:g}, {z:g}) and let go"
+        return (
+            f"put {body.name} at ({x:g}, {y:g}, {room_z_m:.2f}), the lowest free place there, and released it"
+        )
+    return f"put {body.name} at ({x:g}, {y:g}, {z:g}) and released it"

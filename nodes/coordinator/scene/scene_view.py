@@ -1,4 +1,4 @@
-"""What the coordinator knows of the scene: the last snapshot, kept fresh by the poses."""
+"""The coordinator's view of the scene: the last snapshot, updated by the poses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""In what portions bodies are ordered of the simulator."""
+"""Batches in which bodies are ordered from the simulator."""
 
 from __future__ import annotations
 

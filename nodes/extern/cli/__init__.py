@@ -1,4 +1,4 @@
-"""The command line: it begins in `app.py`; `verbs.py` gathers the verbs.
+"""The command line: `app.py` is the entry point, `all_verbs.py` lists the verbs.
 
-`talking.py` is what they share, `show.py` the looks.
+`calling.py` is what the verbs share, `output/` formats replies, `completing.py` completes words in a shell.
 """

@@ -1,4 +1,4 @@
-"""All verbs of the command line. They do nothing that is not a command; watching is a subscription."""
+"""All verbs of the command line. Each sends a command; only `watch` subscribes instead."""
 
 from __future__ import annotations
 

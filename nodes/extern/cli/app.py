@@ -1,4 +1,4 @@
-"""`semmap`: where the command line begins.
+"""`semmap`: the entry point of the command line.
 
 It imports what it is made of when it is called, so that Ctrl-C ends it quietly while it still starts, too.
 """

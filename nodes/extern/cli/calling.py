@@ -1,4 +1,4 @@
-"""What the verbs of the command line that talk to a system have in common."""
+"""What all verbs that talk to a running system share: the connection, errors, exit statuses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIME = (
     " whole second, 12:30 the minute (of today, without a date), the date alone the day. Or seconds since"
     " 1970, or a stamp_ns of the JSON."
 )
-"""For the help of options that take one."""
+"""For the help of options that take a time."""
 
 connect_option = click.option(
     "--connect",

@@ -14,6 +14,7 @@ from xml.parsers import expat
 
 import pyoxigraph
 
+from nodes.kb_node.documents.fault_lines import line_of_fault
 from nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from ontology import vocabulary as v
@@ -47,6 +48,7 @@ _TOLD_EVERY = 50_000
 _BOM = b"\xef\xbb\xbf"
 _XML = re.compile(rb"\s*<(\?xml|!DOCTYPE|!--|[\w.:-]+\s[^>]*\bxmlns)")
 _JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
+_LINE = re.compile(r"\bline \d")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
@@ -66,10 +68,10 @@ def parse(
     """
     name = filename or "the document"
     content = content.removeprefix(_BOM)
-    if not content.strip():
+    if not content or content.isspace():
         raise errors.BadFile(f"{name} is empty")
     try:
-        text = content.decode()
+        content.decode()
     except UnicodeDecodeError as error:
         where = content.count(b"\n", 0, error.start) + 1
         raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
@@ -78,11 +80,17 @@ def parse(
         if syntax in ("rdfxml", "owlxml"):
             _require_well_formed(content)
         if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
-            return [_labelled(triple, label_prefix) for triple in owl_syntaxes.parse(text, syntax)]
+            return [
+                _labelled(triple, label_prefix) for triple in owl_syntaxes.parse(content.decode(), syntax)
+            ]
         quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
         return _triples(quads, label_prefix, progress)
     except (SyntaxError, ValueError) as error:
-        raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {_reason(error)}") from None
+        reason = _reason(error)
+        if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
+            line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
+            reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
+        raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {reason}") from None
 
 
 def _triples(

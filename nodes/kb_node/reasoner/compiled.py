@@ -202,9 +202,13 @@ class CompiledEngine:
                 if triple in self._schema_triples:
                     yield triple
 
-    def without_known_schema(self, triples: Iterable[Triple], *, known: bool) -> list[Triple]:
-        """Triples without those of the schema that are asserted already (or, unless `known`, are not)."""
-        return [t for t in triples if not is_schema(t) or (t in self._schema_triples) != known]
+    def without_idle_axioms(
+        self, delete: Sequence[Triple], insert: Sequence[Triple]
+    ) -> tuple[list[Triple], list[Triple]]:
+        """A change without the triples of the schema that it leaves as they are."""
+        there, coming = self._schema_triples, set(insert)
+        gone = [t for t in delete if not is_schema(t) or (t in there and t not in coming)]
+        return gone, [t for t in insert if not is_schema(t) or t not in there]
 
     def by_subject(self) -> Iterator[list[Triple]]:
         """The asserted triples in groups, between which the ABox may change."""

@@ -91,8 +91,7 @@ class Reasoner:
             except Refused as refused:
                 raise Inconsistent(refused.explanation) from None
             except NotCompilable:  # undone
-                gone = engine.without_known_schema(delete, known=False)
-                new = engine.without_known_schema(insert, known=True)
+                gone, new = engine.without_idle_axioms(delete, insert)
                 if len(gone) + len(new) < len(delete) + len(insert):
                     return self.apply(delete=gone, insert=new)
         return self._apply_anew(delete, insert)

@@ -11,8 +11,9 @@ import sys
 import zlib
 from array import array
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import chain, islice
-from typing import Any, Final
+from typing import Final
 
 from msgspec import Struct, msgpack
 
@@ -61,12 +62,18 @@ _entities = msgpack.Decoder(list[Entity])
 
 def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> bytes:
     """The body of a checkpoint. `progress` is called between frames."""
-    body = _Body(
-        seq=checkpoint.seq,
-        read_by=checkpoint.read_by,
-        triples=list(_frames_of_triples(checkpoint.triples, progress)),
-        entities=[_dense(part) for part in parts(checkpoint.entities, _ENTITIES, progress)],
-    )
+    with ThreadPoolExecutor(1) as beside:  # compresses a frame while the next one is made
+        triples = [beside.submit(_dense, f) for f in _frames_of_triples(checkpoint.triples, progress)]
+        entities = [
+            beside.submit(_dense, msgpack.encode(part))
+            for part in parts(checkpoint.entities, _ENTITIES, progress)
+        ]
+        body = _Body(
+            seq=checkpoint.seq,
+            read_by=checkpoint.read_by,
+            triples=[frame.result() for frame in triples],
+            entities=[frame.result() for frame in entities],
+        )
     return _MARK + msgpack.encode(body)
 
 
@@ -100,7 +107,7 @@ def _frames_of_triples(triples: Iterable[Triple], progress: Callable[[], None]) 
         before = len(known)
         numbers = array("I", [number(term, len(known)) for term in chain.from_iterable(part)])
         new_terms = list(islice(reversed(known), len(known) - before))[::-1]
-        yield _dense(_Triples(new_terms, _in_order(numbers).tobytes()))
+        yield msgpack.encode(_Triples(new_terms, _in_order(numbers).tobytes()))
 
 
 def _numbers(content: bytes) -> array[int]:
@@ -116,5 +123,5 @@ def _in_order(numbers: array[int]) -> array[int]:
     return numbers
 
 
-def _dense(frame: Any) -> bytes:
-    return zlib.compress(msgpack.encode(frame), codec.DENSITY)
+def _dense(frame: bytes) -> bytes:
+    return zlib.compress(frame, codec.DENSITY)

@@ -1,4 +1,4 @@
-"""The surface of a model as triangles, for those who draw it elsewhere."""
+"""The surface of a model as triangles, for renderers elsewhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Forms that many models share: legs, hollow walls, turned profiles, panels."""
+"""Shapes that many models share: legs, hollow walls, turned profiles, panels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a model's name and a size to a checked model."""
+"""Builds a model by name and size, and validates it."""
 
 from __future__ import annotations
 

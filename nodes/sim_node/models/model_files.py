@@ -44,7 +44,7 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     try:
         parts, density = _mesh_parts(path) if path.suffix in MESHES else _mjcf_parts(path)
         if all(part.role is Role.SEEN for part in parts):
-            raise ModelError("it holds nothing that has a shape and collides")
+            raise ModelError("it contains no colliding geometry")
         if size_m is not None:
             parts = _stretched(parts, size_m)
         extents = _extents(parts)
@@ -55,12 +55,12 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     except OSError:
         raise
     except ModelError as error:
-        raise ModelError(f"the model file {path} cannot be used: {error}") from None
+        raise ModelError(f"cannot use the model file {path}: {error}") from None
     except Exception as error:  # the readers of the file formats raise whatever they come across
         said = " ".join(str(error).split())
         if not isinstance(error, ValueError):  # a reader that stumbled, not one that complains
-            said = f"its content makes no sense ({type(error).__name__}: {said})"
-        raise ModelError(f"the model file {path} cannot be used: {said}") from None
+            said = f"its content is invalid ({type(error).__name__}: {said})"
+        raise ModelError(f"cannot use the model file {path}: {said}") from None
     return model
 
 
@@ -135,7 +135,7 @@ def _mjcf_parts(path: Path) -> tuple[list[Part], float]:
         return parts, DENSITY
     mass_kg = float(model.body_mass[1:].sum())
     if mass_kg <= 0.0:
-        raise ModelError("it weighs nothing; its geoms need a mass or a density")
+        raise ModelError("its mass is zero; give its geoms a mass or a density")
     return parts, mass_kg / max(float(np.prod(_extents(parts))), 1e-9)
 
 

@@ -1,4 +1,4 @@
-"""The size of every model of the library, for those who do not have the library.
+"""The size of every library model, for code that runs without the library.
 
 `python -m nodes.sim_node.models.own_sizes` writes `ontology/model_sizes.json`; a test holds it to the models.
 """

@@ -1,4 +1,4 @@
-"""Where models come from: a person's own files, or the library."""
+"""Model sources: the user's files, or the library."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class Models:
         try:
             return read_model(path, size_m, path.stat().st_mtime_ns)
         except OSError as error:
-            raise ModelError(f"the model file {path} cannot be read: {error.strerror}") from None
+            raise ModelError(f"cannot read the model file {path}: {error.strerror}") from None
 
     def _path(self, name: str) -> Path | None:
         if name.endswith(SUFFIXES):
             if self.folder is None and not Path(name).is_absolute():
                 raise ModelError(
-                    f"the model file {name} is looked for in the folder of `semmap up --models DIR`,"
-                    " and none was given; or the TBox gives its whole path"
+                    f"the model file {name} is looked up in the folder given by `semmap up --models DIR`,"
+                    " but none was given; a TBox may also give an absolute path"
                 )
             return (self.folder or Path()) / name
         candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []

@@ -1,4 +1,4 @@
-"""The world before any entity: a bare floor or a person's MJCF scene, and the bodies that are in it."""
+"""The base scene: a bare floor or the user's MJCF scene, with the bodies in it."""
 
 from __future__ import annotations
 
@@ -67,7 +67,9 @@ def read_mjcf(path: Path) -> mujoco.MjSpec:
         spec = mujoco.MjSpec.from_file(str(path))
         spec.copy().compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
-        raise BadFile(f"the world file {path} is no MJCF scene that compiles: {_one_line(error)}") from None
+        raise BadFile(
+            f"the world file {path} is not an MJCF scene that compiles: {_one_line(error)}"
+        ) from None
     return spec
 
 

@@ -1,4 +1,4 @@
-"""Berths: bodies of a compiled model that take whoever comes.
+"""Body slots: spare bodies of a compiled model that newcomers are written into.
 
 To compile costs time with the square of the number of free bodies, so a model is compiled with some bodies
 more than are asked for. A newcomer is written into one of these: the rows that it has in a model compiled of

@@ -1,4 +1,4 @@
-"""MuJoCo's side of the world: a compiled model with berths for those who come, and state that outlives it."""
+"""The MuJoCo engine: a compiled model with spare body slots, and state that survives recompiling."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which bodies rest."""
+"""Detects which bodies are at rest."""
 
 from __future__ import annotations
 

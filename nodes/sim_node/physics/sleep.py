@@ -1,4 +1,4 @@
-"""Who sleeps. MuJoCo's unit of sleep is the kinematic tree: here, one free body.
+"""Sleeping bodies. MuJoCo's unit of sleep is the kinematic tree: here, one free body.
 
 `tree_asleep` counts up to -1 while a tree comes to rest, and then names the next tree of the heap that sleeps
 together. `tree_awake` is what the last step made of it; to mark a sleeper there wakes all its heap.

@@ -1,1 +1,1 @@
-"""Who has room where: obstacles, clearance, and bodies that come, go and settle."""
+"""Placement: obstacles, clearance, and how bodies are added, removed and settled."""

@@ -1,4 +1,4 @@
-"""Who is in whose way: the felt geoms of a scene at one moment, and who may stand on whom."""
+"""Obstacles: the colliding geoms of a scene at one moment, and which body may stand on which."""
 
 from __future__ import annotations
 

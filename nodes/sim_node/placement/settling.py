@@ -1,4 +1,4 @@
-"""Bodies come, go and are set down: who has no room is a ghost, and turns solid as soon as there is some."""
+"""Settling: adds, removes and sets down bodies; one without room is a ghost until there is room."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What cameras in the simulated world see."""
+"""Cameras in the simulated world."""

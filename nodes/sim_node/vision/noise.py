@@ -1,4 +1,4 @@
-"""The faults of a structured-light depth camera, in the manner of the first Kinect."""
+"""Noise model of a structured-light depth camera, like the first Kinect."""
 
 from __future__ import annotations
 

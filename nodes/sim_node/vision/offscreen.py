@@ -1,4 +1,4 @@
-"""A camera with graphics: OpenGL off screen, the context kept alive from one model to the next."""
+"""Rendering with OpenGL off screen; the context is kept from one model to the next."""
 
 from __future__ import annotations
 

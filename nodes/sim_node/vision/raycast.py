@@ -1,4 +1,4 @@
-"""A camera without graphics: one ray a pixel, flat colours, a lamp above and its shadows."""
+"""Rendering without OpenGL: one ray per pixel, flat colours, one light with shadows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where pictures are made: a thread of its own, which works on copies and never holds the world up."""
+"""Renders images on a thread of its own, from copies, so that the simulation is never blocked."""
 
 from __future__ import annotations
 

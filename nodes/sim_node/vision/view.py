@@ -1,4 +1,4 @@
-"""Where a camera is and how it projects.
+"""Camera poses and projections.
 
 The camera's own frame is the optical one: x to the right of the picture, y down, z into the scene. Pixel
 (u, v) of a point is `intrinsics @ point_camera` divided by its z, with the centre of the first pixel at 0.5.

@@ -126,7 +126,7 @@ def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
 
 def test_a_reset_without_a_simulator_is_refused(door):
     keeping = Keeping(CoordinatorConfig("map"), door, lambda *_: Future(), print)
-    with pytest.raises(errors.NoAnswer, match="no simulator runs"):
+    with pytest.raises(errors.NoAnswer, match="no simulator is running"):
         keeping.place_all()
 
 

@@ -42,10 +42,14 @@ def said_of_a_move(z: float, put: Body) -> str:
 @pytest.mark.parametrize(
     ("z", "put", "said"),
     [
-        (0.5, cup(0.5), "put cup1 at (1, 2, 0.5) and let go"),
-        (0.74, cup(0.7505), "put cup1 at (1, 2, 0.74) and let go"),
-        (-3.0, cup(0.0005), "put cup1 at (1, 2, 0.00), the lowest free place there, and let go"),
-        (0.5, cup(0.5, ghost=True), "put cup1 at (1, 2, 0.5), where it overlaps something, so it does not"),
+        (0.5, cup(0.5), "put cup1 at (1, 2, 0.5) and released it"),
+        (0.74, cup(0.7505), "put cup1 at (1, 2, 0.74) and released it"),
+        (-3.0, cup(0.0005), "put cup1 at (1, 2, 0.00), the lowest free place there, and released it"),
+        (
+            0.5,
+            cup(0.5, ghost=True),
+            "put cup1 at (1, 2, 0.5), where it overlaps another body, so it does not",
+        ),
     ],
 )
 def test_a_hand_says_where_it_let_go(z, put, said):

@@ -176,6 +176,32 @@ def test_what_is_no_rdf_is_told_in_one_line(content, text):
     assert "\n" not in caught.value.text
 
 
+_RDF = b'<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"'
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        (
+            _RDF + b'\n xmlns:o="urn:o:">\n<o:A rdf:about="http://x y"/>\n</rdf:RDF>',
+            "' ' (line 3)",
+        ),
+        (_RDF + b">\n\n<rdf:Description>\n<rdf:x>a<b/>\n</rdf:x></rdf:Description>\n</rdf:RDF>", "(line 4)"),
+        (_RDF + b">\n<rdf:Description>\n</rdf:RDF>", "line 3"),
+        (
+            b'{"@context": {"a": "urn:a:"},\n"@id": "a:b",\n"a:c": {"@id": "a:d", "@value": 1}}\n',
+            "before line 3)",
+        ),
+        (b'{"@id": "urn:a",\n"urn:b":,}', "line 2"),
+        (b"<urn:a> <urn:b> <urn:c> .\n<urn:a> <urn:b> .\n", "line 2"),
+    ],
+)
+def test_a_fault_is_told_with_its_line(content, text):
+    with pytest.raises(errors.BadFile) as caught:
+        rdf.parse(content, "f")
+    assert text in caught.value.text
+
+
 def test_imports_are_only_triples():
     content = b"<urn:o> <http://www.w3.org/2002/07/owl#imports> <http://127.0.0.1:9/never> ."
     assert rdf.parse(content, "f") == [("<urn:o>", v.OWL_IMPORTS, "<http://127.0.0.1:9/never>")]

@@ -100,6 +100,11 @@ FACTS = (
     "{i} owl:sameAs {i}",
     "{i} owl:differentFrom {i}",
 )
+TRANSITIVE = [text for text in AXIOMS if "TransitiveProperty" in text] * 6 + [
+    text
+    for text in AXIOMS
+    if "{e}" in text or text.startswith("{p} ") or "rdfs:subClassOf" in text or "disjointWith" in text
+]
 
 
 class Change(NamedTuple):

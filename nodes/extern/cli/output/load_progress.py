@@ -1,4 +1,4 @@
-"""How far the loading of a big file is, on stderr."""
+"""Progress of loading a large file, on stderr."""
 
 from __future__ import annotations
 

@@ -48,7 +48,11 @@ def entity_table(entities: Iterable[Entity]) -> Table:
 def entity_line(entities: Sequence[Entity]) -> str:
     """How many they are, and where it is said why some bodies could not be made."""
     failed = sum(e.body is not None and e.body.status == "failed" for e in entities)
-    why = f"; {wording.bodies(failed)} could not be made: semmap status says why" if failed else ""
+    why = (
+        f"; {wording.bodies(failed)} could not be created; for the reason see: semmap status"
+        if failed
+        else ""
+    )
     return wording.entities(len(entities)) + why
 
 
@@ -121,7 +125,9 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
         for parent in c.parents or ("",):
             children.setdefault(parent, []).append(c.name)
     root = Tree(
-        Text.assemble(("classes", "bold"), (" (entities by inference; those that say so themselves)", "dim"))
+        Text.assemble(
+            ("classes", "bold"), (" (entities, inferred types included; asserted ones in brackets)", "dim")
+        )
     )
     _grow(root, "", children, by_name)
     return root
@@ -149,9 +155,11 @@ def status_table(status: SystemStatus) -> Table:
 def status_line(status: SystemStatus) -> str:
     """The map and the scene in one line."""
     verdicts = {
-        True: "map and scene agree" + (", but for:" if status.problems else ""),
-        False: "map and scene do not agree (yet)",
-        None: "only perception tells the map" if status.truth == "perceived" else "no simulator runs",
+        True: "map and scene agree" + (", except for:" if status.problems else ""),
+        False: "map and scene do not agree yet",
+        None: "the map is updated by perception only"
+        if status.truth == "perceived"
+        else "no simulator is running",
     }
     agree = verdicts[status.in_agreement]
     counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"
@@ -175,7 +183,7 @@ def changed(reply: Changed) -> Iterable[str]:
 
 def inferred(reply: Inferred) -> Iterable[str]:
     """What follows, one line a triple."""
-    return reply.text or ("nothing follows that was not said",)
+    return reply.text or ("nothing follows beyond what is asserted",)
 
 
 def explanation(e: Explanation) -> Iterable[str]:

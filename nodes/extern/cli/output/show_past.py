@@ -46,7 +46,7 @@ def _what(commit: LoggedCommit) -> str:
 
 def sighting_card(s: Sighting) -> Table:
     """Where an entity was last, and by whose word."""
-    rows = {"name": s.name, "where": pose_text(s.pose), "when and by whom": provenance_text(s.provenance)}
+    rows = {"name": s.name, "where": pose_text(s.pose), "last change": provenance_text(s.provenance)}
     if s.removed is not None:
         rows["removed"] = provenance_text(s.removed)
     return card(rows)

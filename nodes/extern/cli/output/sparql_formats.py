@@ -1,4 +1,4 @@
-"""Answers of SPARQL as text: a table, the W3C's JSON and CSV, or Turtle."""
+"""SPARQL results as text: a table, JSON, CSV or Turtle."""
 
 from __future__ import annotations
 
@@ -101,7 +101,9 @@ def _binding(term: Term) -> dict[str, str]:
 
 def _turtle(result: SparqlResult) -> str:
     if result.kind != "graph":
-        raise errors.BadRequest("turtle is for graphs (CONSTRUCT, DESCRIBE); rows come as table, json or csv")
+        raise errors.BadRequest(
+            "--format turtle needs a CONSTRUCT or DESCRIBE query; for rows use table, json or csv"
+        )
     lines = "".join(f"{' '.join(map(str, row))} .\n" for row in result.rows).encode()
     extras.require("RDF as Turtle", "kb")
     import pyoxigraph as ox

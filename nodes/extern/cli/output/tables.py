@@ -1,4 +1,4 @@
-"""What tables and cards in a terminal are made of."""
+"""Building blocks of tables and cards in a terminal."""
 
 from __future__ import annotations
 

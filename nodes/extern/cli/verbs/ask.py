@@ -1,4 +1,4 @@
-"""The verbs that ask, from `list` to `sparql`, and `watch`."""
+"""The verbs that query: `list`, `get`, `check`, `infer`, `explain`, `sparql` and others, and `watch`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from schemas import commands, errors, keys
 from schemas.entities import Entity
 
 _format = functools.partial(click.option, "--format", "format")
-_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"As it was after a commit, or a time. {TIME}")
+_as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
 _STATUS_S = 20.0
 """Seconds: whoever asks how things stand is told of a system that is too busy to say."""
 
@@ -33,7 +33,7 @@ _STATUS_S = 20.0
     "class_",
     metavar="CLASS",
     shell_complete=class_names,
-    help="Only those of this class, also by inference.",
+    help="Only entities of this class, inferred types included.",
 )
 @click.option(
     "--on", metavar="THING", shell_complete=entity_names, help="Only what stands on it, or on what is on it."
@@ -86,7 +86,7 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
 @talks
 def check(client: Client, engine: Any) -> None:
-    """Is the map consistent, and if not, why?"""
+    """Check whether the map is consistent; if it is not, explain why."""
     checked = client.check(engine)
     print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     if not checked.consistent:
@@ -97,7 +97,7 @@ def check(client: Client, engine: Any) -> None:
 @click.argument("name", required=False, shell_complete=entity_names)
 @talks
 def infer(client: Client, name: str | None) -> None:
-    """What follows that was not said, about one entity or all."""
+    """List the inferred facts about one entity, or about all."""
     print_lines(show.inferred(client.infer(name)))
 
 
@@ -109,7 +109,7 @@ def infer(client: Client, name: str | None) -> None:
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
 def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
-    """Why something holds: semmap explain fridge1 type Device.
+    """Explain why a fact holds: semmap explain fridge1 type Device.
 
     PREDICATE is a property, or type, sameAs, differentFrom. With --not, why it cannot hold: semmap explain
     --not cup1 type Room.
@@ -163,11 +163,11 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's ending, else rdfxml.")
-@click.option("--inferred", is_flag=True, help="With what follows.")
+@_format(type=click.Choice(commands.RDF_FORMATS), help="Default: by the file's suffix, else rdfxml.")
+@click.option("--inferred", is_flag=True, help="Include inferred facts.")
 @talks
 def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
-    """Write the map to FILE, checked first and all at once."""
+    """Export the map to FILE: checked for consistency first, written atomically."""
     document = client.export(format or _format_of(file), inferred=inferred)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
@@ -177,7 +177,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
 @_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @talks
 def classes(client: Client, format: str) -> None:
-    """The class tree, with the number of entities of each class."""
+    """Show the class tree with the number of entities of each class."""
     if format == "json":
         print_json(client.classes())
     else:
@@ -200,7 +200,7 @@ def properties(client: Client, format: str) -> None:
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @talks
 def status(client: Client, format: str) -> None:
-    """The nodes and the map."""
+    """Show the state of the nodes, the map and the scene."""
     status = client.send(commands.Status(), timeout_s=_STATUS_S)
     if format == "json":
         print_json(status)
@@ -213,31 +213,46 @@ def status(client: Client, format: str) -> None:
 
 @click.command()
 @click.argument("query")
-@click.option("--inferred", is_flag=True, help="Over what follows, too.")
+@click.option("--inferred", is_flag=True, help="Query inferred facts, too.")
 @_format(
     type=click.Choice(sparql_formats.FORMATS),
-    help="Default: table for rows, else turtle.",
+    help="Default: table for rows, turtle for graphs.",
 )
-@click.option("--timeout", type=float, default=5.0, show_default=True, metavar="S", help="Cancelled after.")
-@click.option("--limit", type=int, default=10_000, show_default=True, metavar="N", help="Refused beyond.")
+@click.option(
+    "--timeout",
+    type=float,
+    default=5.0,
+    show_default=True,
+    metavar="S",
+    help="Cancel the query after S seconds.",
+)
+@click.option(
+    "--limit",
+    type=int,
+    default=10_000,
+    show_default=True,
+    metavar="N",
+    help="Refuse results of more than N rows.",
+)
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
-    """Answer a SPARQL 1.1 query that reads: SELECT, ASK, CONSTRUCT, DESCRIBE.
+    """Run a read-only SPARQL 1.1 query: SELECT, ASK, CONSTRUCT or DESCRIBE.
 
-    QUERY is the query, @FILE or - for stdin. Known prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
+    QUERY is the query text, @FILE, or - for stdin. Predefined prefixes: dm: (TBox), : (ABox), rdf:, rdfs:,
+    owl:, xsd:.
     """
     sparql_answers.ask(client, query, **options)
 
 
 @click.command()
 @click.argument("keyexpr", default=keys.COMMIT.key)
-@click.option("--sparql", "query", metavar="QUERY", help="The rows of a SELECT instead, as they come and go.")
-@click.option("--inferred", is_flag=True, help="With --sparql: over what follows, too.")
+@click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
+@click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
 @talks
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
-    """Print what is published on a key expression, as it happens; without one, the commits."""
+    """Print messages on a Zenoh key expression as they are published; by default, the commits."""
     if query is not None and keyexpr != keys.COMMIT.key:
-        raise errors.BadRequest("watch takes a key expression or --sparql, not both")
+        raise errors.BadRequest("give a key expression or --sparql, not both")
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
@@ -274,6 +289,6 @@ def _format_of(file: Path) -> commands.RdfFormat:
     }
     if (known := endings.get(file.suffix.lower())) is None:
         raise errors.BadRequest(
-            f"what format is {file.name}? End it with {', '.join(endings)}, or say --format"
+            f"cannot tell the format of {file.name} by its suffix ({', '.join(endings)}); use --format"
         )
     return known

@@ -15,6 +15,7 @@ from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
+from schemas import errors
 
 
 def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -26,21 +27,23 @@ def _stated(fields: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in fields.items() if value not in (None, False)}
 
 
-_id = click.option("--id", "id", metavar="ID", help="Command id: the same one twice is executed once.")
+_id = click.option(
+    "--id", "id", metavar="ID", help="Command id; a command sent twice with one id is executed once."
+)
 _dry_run = click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
 _set = click.option(
     "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="State a property; may be repeated."
 )
 _if_is = click.option("--if-is", metavar="VALUE", help="Only if this is a value now (compare and set).")
 _describing = _options(
-    vector_option("--at", metavar="X Y Z", help="Bottom centre in the map frame [m]."),
-    click.option("--yaw", type=float, metavar="RAD", help="Rotation about z."),
+    vector_option("--at", metavar="X Y Z", help="Position of the bottom centre in the map frame [m]."),
+    click.option("--yaw", type=float, metavar="RAD", help="Rotation about the z axis [rad]."),
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
-    vector_option("--size", metavar="X Y Z", help="Extent along its own axes [m]."),
-    click.option("--ref", metavar="TEXT", help="What people call it."),
-    click.option("--alt", multiple=True, metavar="TEXT", help="What they call it too; may be repeated."),
-    click.option("--confidence", type=float, metavar="P", help="How sure that is, 0 to 1."),
-    click.option("--wait", is_flag=True, help="Reply when its body stands in the scene."),
+    vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
+    click.option("--ref", metavar="TEXT", help="Preferred reference: what people call it."),
+    click.option("--alt", multiple=True, metavar="TEXT", help="Alternative reference; may be repeated."),
+    click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
+    click.option("--wait", is_flag=True, help="Wait until its body stands in the scene."),
     _id,
 )
 
@@ -50,11 +53,11 @@ _describing = _options(
 @click.argument("name", required=False)
 @_describing
 @_set
-@click.option("--default", is_flag=True, help="At the next free place, named and called after its class.")
+@click.option("--default", is_flag=True, help="Use the next free place and the class's label as reference.")
 @_dry_run
 @talks
 def add(client: Client, **fields: Any) -> None:
-    """Put an entity into the map."""
+    """Add an entity to the map."""
     print_lines(show.changed(client.add(**given(fields))))
 
 
@@ -62,7 +65,11 @@ def add(client: Client, **fields: Any) -> None:
 @click.argument("name", shell_complete=entity_names)
 @_describing
 @click.option("--class", "class_", metavar="CLASS", shell_complete=class_names)
-@click.option("--conflict", metavar="TEXT", help="What is seen against it; an empty text takes that back.")
+@click.option(
+    "--conflict",
+    metavar="TEXT",
+    help="Record an observation that contradicts the map; an empty text clears it.",
+)
 @_set
 @click.option(
     "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Take a property back; may be repeated."
@@ -111,7 +118,7 @@ def unset(client: Client, **fields: Any) -> None:
 @_dry_run
 @talks
 def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
-    """Take entities out of map and scene."""
+    """Remove entities from the map and the scene."""
     print_lines(show.changed(client.remove(*names, dry_run=dry_run)))
 
 
@@ -119,21 +126,27 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
 @_dry_run
 @talks
 def clear(client: Client, dry_run: bool) -> None:
-    """Take every entity out of map and scene; the TBox stays."""
+    """Remove all entities from the map and the scene; the TBox stays."""
     print_lines(show.changed(client.clear(dry_run=dry_run)))
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--replace", is_flag=True, help="Instead of the present map.")
-@click.option("--skip-unknown", is_flag=True, help="Leave out what is of an unknown class.")
+@click.option("--replace", is_flag=True, help="Replace the present entities.")
+@click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Refuse what speaks of things that nobody says what they are.")
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
+@click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
 @import_option
 @_dry_run
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
     with progress(client):
-        reply = client.load(file, imports=dict(imports), **how)
+        try:
+            reply = client.load(file, imports=dict(imports), **how)
+        except errors.NoAnswer as error:
+            raise errors.NoAnswer(
+                f"{error.text}; whether {file.name} was loaded is not known here: semmap history tells"
+            ) from None
     print_lines(show.changed(reply))

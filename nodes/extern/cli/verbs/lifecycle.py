@@ -1,4 +1,4 @@
-"""The verbs that start, stop and mend a system: `up`, `down`, `node`, `repair`."""
+"""The verbs that start, stop and repair a system: `up`, `down`, `node`, `repair`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from schemas.keys import NODES
 _path = click.Path(path_type=Path)
 
 _PERCEPTION_HZ = 5.0
-"""How often the simulator's cameras see when somebody looks and nothing else is said."""
+"""Default frame rate of the simulator's cameras with --perception [Hz]."""
 
 
 def settings_options(function: Callable[..., None]) -> Callable[..., None]:
@@ -44,13 +44,18 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
     )
-    @click.option("--data", type=_path, default=None, help="Folder of the journal, the logs, the recordings.")
-    @click.option("--fresh", is_flag=True, help="Begin anew; the old data is kept aside.")
+    @click.option(
+        "--data",
+        type=_path,
+        default=None,
+        help="Folder for the journal, logs and recordings. Default: your user data folder.",
+    )
+    @click.option("--fresh", is_flag=True, help="Start a new map; the old one is moved to DIR/kept.")
     @click.option(
         "--truth",
         type=click.Choice(["map", "scene", "perceived"]),
         default=None,
-        help="Who owns existence. Default: as before, else map.",
+        help="What decides which entities exist. Default: as before, else map.",
     )
     @click.option(
         "--threshold",
@@ -58,7 +63,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=0.05,
         show_default=True,
         metavar="M",
-        help="A body that is off by more has moved.",
+        help="A body has moved when it is displaced by more.",
     )
     @click.option("--angle-threshold", type=float, default=5.0, show_default=True, metavar="DEG")
     @click.option(
@@ -69,29 +74,32 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Zenoh endpoint that the system listens on.",
     )
     @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
-    @click.option("--window", is_flag=True, help="With a window on the scene, where there is a display.")
+    @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
     @click.option(
-        "--models", type=_path, default=None, help="Folder of your own models: chair.glb for chair."
+        "--models",
+        type=_path,
+        default=None,
+        help="Folder of model files that replace library models (chair.glb for chair).",
     )
     @click.option(
         "--camera-hz",
         type=float,
         default=None,
         metavar="HZ",
-        help="Publish the cameras' pictures. Default: not at all, 5 with --perception.",
+        help="Frame rate of the simulated cameras. Default: 0 (off), 5 with --perception.",
     )
     @click.option("--camera-size", nargs=2, type=int, default=(640, 480), metavar="W H", show_default=True)
-    @click.option("--camera-noise", is_flag=True, help="With the noise of a Kinect's depth.")
-    @click.option("--perception", is_flag=True, help="Keep the map by what the cameras see.")
+    @click.option("--camera-noise", is_flag=True, help="Add Kinect-like noise to depth images.")
+    @click.option("--perception", is_flag=True, help="Update the map from camera frames.")
     @click.option(
         "--when-gone",
         type=click.Choice(["remove", "mark"]),
         default="remove",
         show_default=True,
-        help="What perception brought in and no longer sees is removed, or marked.",
+        help="What to do with entities that perception added and no longer sees.",
     )
-    @click.option("--no-sim", is_flag=True, help="Without the simulator.")
-    @click.option("--no-record", is_flag=True, help="Without the recorder.")
+    @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
+    @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
     @functools.wraps(function)
     def with_settings(name: str | None = None, **options: Any) -> None:
         own = {} if name is None else {"name": name}
@@ -103,20 +111,20 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 @click.command()
 @settings_options
 def up(settings: Settings) -> None:
-    """Start the whole system in the foreground; Ctrl-C ends it."""
+    """Start the system in the foreground; Ctrl-C stops it."""
     extras.require_nodes(settings.nodes)
     from nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception:
-        complain("the map will know only what a perception of yours tells it; ours comes with --perception")
+        complain("no perception node started; add --perception or publish your own observations")
     run_up(settings, say=lambda line: click.echo(line))
 
 
 @click.command()
-@click.option("--data", type=_path, default=None, help="Folder that the system was started on.")
-@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Or the endpoint that it listens on.")
+@click.option("--data", type=_path, default=None, help="Data folder of the system.")
+@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Endpoint that the system listens on.")
 def down(data: Path | None, connect: str | None) -> None:
-    """Stop a running system of this machine."""
+    """Stop a system that runs on this machine."""
     extras.require("semmap down", "kb")
     from nodes.supervisor import registry
     from nodes.supervisor.control import Supervisor
@@ -124,17 +132,17 @@ def down(data: Path | None, connect: str | None) -> None:
     if data is None and connect is not None:
         there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
         if not there:
-            raise errors.NoAnswer(f"no system of yours on this machine listens on {connect}")
+            raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = there
     Supervisor((data or default_data()).resolve()).shut_down()
     click.echo("stopped")
 
 
 @click.command()
-@click.option("--data", type=_path, default=None, help="Folder of the map; no system may run on it.")
-@click.option("--tbox", type=_path, default=None, help="What the map began with, where it is damaged too.")
+@click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
+@click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
-    """Let a damaged map go on from its last good commit; the damaged file is kept."""
+    """Repair a damaged map: restore the last good commit; the damaged file is kept."""
     extras.require("semmap repair", "kb")
     from nodes.kb_node.storage.repair import repair as repair_journal
 
@@ -145,9 +153,9 @@ def repair(data: Path | None, tbox: Path | None) -> None:
 @click.argument("name", type=click.Choice(NODES))
 @settings_options
 def node(name: str, settings: Settings) -> None:
-    """Run one node by itself, in the foreground.
+    """Run a single node in the foreground.
 
-    The coordinator listens on --listen; the others connect to it there.
+    The coordinator listens on --listen; the other nodes connect to it there.
     """
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
@@ -169,7 +177,7 @@ def _settings(
     folder = (data or default_data()).resolve()
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
-        complain(f"--abox is for a new map, and the one in {folder} goes on; --fresh begins a new one")
+        complain(f"--abox is ignored: there is a map in {folder}; --fresh starts a new one")
     of_the_flat = abox is None and not tbox
     if world is None:
         world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
@@ -225,17 +233,17 @@ def _settings_before(data: Path) -> Settings | None:
     except OSError:
         return None
     except errors.BadRequest:
-        complain(f"{data / SETTINGS} cannot be understood, so --truth and --world are not as before")
+        complain(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
         return None
     if not Path(settings.world).exists():
-        complain(f"the world {settings.world} is no longer there; the flat's is taken")
+        complain(f"the world {settings.world} no longer exists; using the flat's")
         return structs.replace(settings, world=str(FLAT_WORLD))
     return settings
 
 
 def _folder(path: Path) -> str:
     if not path.is_dir():
-        raise errors.BadFile(f"{path} is no folder")
+        raise errors.BadFile(f"{path} is not a folder")
     return str(path.resolve())
 
 

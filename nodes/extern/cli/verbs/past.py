@@ -16,15 +16,17 @@ _format = click.option(
 
 @click.command()
 @click.argument("name", required=False, shell_complete=entity_names)
-@click.option("--since", metavar="COMMIT|TIME", help="From this on.")
-@click.option("--until", metavar="COMMIT|TIME", help=f"Up to the end of this. {TIME}")
-@click.option("--limit", type=int, default=20, show_default=True, help="At most so many, the newest.")
+@click.option("--since", metavar="COMMIT|TIME", help="Commits from here on, inclusive.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"Commits up to here, inclusive. {TIME}")
+@click.option(
+    "--limit", type=int, default=20, show_default=True, help="Maximum number of commits, the newest ones."
+)
 @_format
 @talks
 def history(
     client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
 ) -> None:
-    """The commits, or those that touched an entity, newest last: who, when, why, what."""
+    """Show the commits, or those that changed an entity, newest last."""
     commits = client.history(name, since=since, until=until, limit=limit)
     if format == "json":
         print_json(commits)
@@ -39,7 +41,7 @@ def history(
 @_format
 @talks
 def last_seen(client: Client, name: str, format: str) -> None:
-    """When, where and by whom an entity was last seen or put, even if it is no more."""
+    """Show where and when an entity was last seen or placed, even if it has been removed."""
     sighting = client.last_seen(name)
     if format == "json":
         print_json(sighting)
@@ -52,5 +54,5 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
 @talks
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
-    """Take back a commit, unless later ones rest on it; without one, the newest that a client asked for."""
+    """Undo a commit unless later ones depend on it; by default, the newest that a client requested."""
     print_lines(show.changed(client.undo(commit, dry_run=dry_run)))

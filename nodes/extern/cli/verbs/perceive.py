@@ -1,4 +1,4 @@
-"""The verb that looks at frames in files; it needs no system."""
+"""The verb `perceive`: finds objects in files; it needs no running system."""
 
 from __future__ import annotations
 
@@ -28,23 +28,28 @@ _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the 
 @click.command()
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
-    "--labels", metavar="OUT.npy", type=click.Path(path_type=Path), help="Write each point's object."
+    "--labels",
+    metavar="OUT.npy",
+    type=click.Path(path_type=Path),
+    help="Write the object label of each point to this .npy file.",
 )
 @click.option(
     "--intrinsics",
     metavar="FILE.json",
     type=click.Path(path_type=Path),
-    help="Of the camera that took pictures: fx, fy, cx, cy [pixel]; depth_scale [m], map_from_camera.",
+    help="JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
 )
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None, format: str) -> None:
-    """Find the objects in FILE...: PCD or PLY clouds, or a colour and a depth picture (PNG).
+    """Find the objects in point clouds (PCD, PLY) or in a colour and a depth image (PNG).
 
     Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
     0 for background, 1 to n for the objects.
     """
     if labels is not None and labels.suffix != ".npy":
-        raise errors.BadRequest(f"labels are a NumPy array; call the file {labels.with_suffix('.npy').name}")
+        raise errors.BadRequest(
+            f"labels are written as a NumPy array; name the file {labels.with_suffix('.npy').name}"
+        )
     extras.require("semmap perceive", "perception")
     import numpy as np  # half of what the command line would take to start
 

@@ -1,4 +1,4 @@
-"""`semmap run`: a file of requests, one a line."""
+"""`semmap run`: a file of requests, one per line."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "wa
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--keep-going", is_flag=True, help="Go on after a request that fails.")
+@click.option("--keep-going", is_flag=True, help="Continue after a failed request.")
 @connect_option
 def run(file: Path, keep_going: bool, where: str | None) -> None:
-    """Send a file of requests, one a line: words of this command line, or a JSON message with its verb."""
+    """Execute a file of requests, one per line: a command line, or a JSON message with its verb."""
     lines = _decode_lines(file)
     failed = 0
     with connect(where, agent=f"run/{file.name}") as client:
@@ -45,7 +45,7 @@ def _run_line(client: Client, line: str, where: str) -> int:
         complain(f"{where}cannot read the line: {error}")
         return errors.BadRequest.exit_status
     if words and words[0] in _BY_THEMSELVES:
-        complain(f"{where}'{words[0]}' is no request to a running system")
+        complain(f"{where}'{words[0]}' cannot be used in a file of requests")
         return errors.BadRequest.exit_status
     return run_words(click.get_current_context().find_root().command, words, client, where)
 
@@ -73,6 +73,6 @@ def _decode_lines(file: Path) -> list[tuple[int, str]]:
     try:
         lines = read_file(file).decode().splitlines()
     except UnicodeDecodeError:
-        raise errors.BadFile(f"{file} is no text file") from None
+        raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     stripped = ((number, line.strip()) for number, line in enumerate(lines, start=1))
     return [(number, line) for number, line in stripped if line and not line.startswith("#")]

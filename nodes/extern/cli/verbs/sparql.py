@@ -22,7 +22,7 @@ def read_query(word: str) -> str:
     try:
         return content.decode()
     except UnicodeDecodeError:
-        raise errors.BadFile(f"{word} is no text file") from None
+        raise errors.BadFile(f"{word} is not a UTF-8 text file") from None
 
 
 def ask(

@@ -9,7 +9,7 @@ from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import ASSERTED
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 from schemas.explanations import Term, Triple
 
@@ -158,7 +158,15 @@ class View:
                     found.update(dict.fromkeys(self._abox.members(self._store.subject[edge])))
                 for edge in self._store.out.all(member):
                     found.update(dict.fromkeys(self._abox.members(self._store.object[edge])))
+                for p in self._schema.virtual:
+                    for turned in (False, True):
+                        found.update(dict.fromkeys(self._reached(member, (p, turned))))
         return iter(found)
+
+    def _reached(self, node: int, role: Role) -> Iterator[int]:
+        """Whom a transitive role leads to."""
+        for _, _, end in self._abox.reached(node, role).values():
+            yield from self._equals(end)
 
     def _inferred_of(self, node: int, p: Term | None) -> Iterator[Triple]:
         store, term = self._store, self._store.terms[node]
@@ -212,6 +220,10 @@ class View:
                     for q, backwards in schema.roles(store.predicate[edge]):
                         if backwards:
                             yield from ((q, other) for other in others)
+        for p in schema.virtual:
+            ends = {turned: list(self._reached(node, (p, turned))) for turned in (False, True)}
+            for q, backwards in schema.roles(p):
+                yield from ((q, other) for other in ends[backwards])
 
     def _equals(self, node: int) -> list[int]:
         members, value = self._abox.members(node), self._abox.value(node)
@@ -238,7 +250,13 @@ class View:
         if predicate is None:
             return False
         group = self._abox.steps.group((predicate, False))
-        return any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group))
+        if any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group)):
+            return True
+        return any(
+            self._abox.named(end, o) is not None
+            for role in self._schema.transitive_roles(predicate)
+            for _, _, end in self._abox.reached(node, role).values()
+        )
 
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual."""

@@ -92,6 +92,9 @@ class Individuals:
     def related(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
         """The edges that a role follows from a node: (edge, its end here, its end there)."""
         store = self.store
+        if group.is_wide:
+            yield from self._among_all(node, group)
+            return
         for member in self.members(node):
             for p in group.out:
                 for edge in store.out.of(member, p):
@@ -100,11 +103,42 @@ class Individuals:
                 for edge in store.into.of(member, p):
                     yield edge, member, store.subject[edge]
 
+    def _among_all(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
+        store, out, into = self.store, frozenset(group.out), frozenset(group.into)
+        predicate = store.predicate
+        for member in self.members(node):
+            for edge in store.out.all(member):
+                if predicate[edge] in out:
+                    yield edge, member, store.object[edge]
+            for edge in store.into.all(member):
+                if predicate[edge] in into:
+                    yield edge, member, store.subject[edge]
+
+    def reached(self, node: int, role: Role) -> dict[int, tuple[int, int, int]]:
+        """Who is reached from a node by one step of a role or more: the last edge, and its ends.
+
+        Of those that are the same, the first of their `members` stands for all.
+        """
+        group, found = self.steps.group(role), dict[int, tuple[int, int, int]]()
+        pending = [node]
+        for here in pending:
+            for edge, start, end in self.related(here, group):
+                if (one := self.members(end)[0]) not in found:
+                    found[one] = (edge, start, end)
+                    pending.append(end)
+        return found
+
     def find(self, one: int, role: Role, other: int) -> int:
         """An edge that implies a role between two nodes or their equals, or NONE."""
         group, store = self.steps.group(role), self.store
-        if len(self.members(one)) * len(self.members(other)) > MANY:
-            return next((edge for edge, _, end in self.related(one, group) if self.is_same(end, other)), NONE)
+        if group.is_wide or len(self.members(one)) * len(self.members(other)) > MANY:
+            there = self.related(other, Group(group.into, group.out))
+            for (edge, _, end), (back, _, start) in zip(self.related(one, group), there, strict=False):
+                if self.is_same(end, other):
+                    return edge
+                if self.is_same(start, one):
+                    return back
+            return NONE
         for x in self.members(one):
             for y in self.members(other):
                 for p in group.out:

@@ -30,6 +30,8 @@ _PARTS = frozenset(
     )
 )
 """Predicates that make a node a class expression."""
+_DEFINING = frozenset(iris("owl:intersectionOf owl:unionOf owl:oneOf owl:complementOf"))
+"""Predicates that say of a class with a name what it is."""
 _STATED_BY = {
     iri("owl:AllDifferent"): "different",
     iri("owl:AllDisjointClasses"): "classes",
@@ -68,6 +70,11 @@ def _apart(term: Term) -> Term:
     return f"_:wanted.{term[2:]}" if term.startswith("_:") else term
 
 
+def contradictory(reasoner: Reasoner) -> bool:
+    """Whether names for what must exist show a contradiction in a graph in which the rules find none."""
+    return Prover(reasoner).with_witnesses((), lambda: False)
+
+
 class _Stated:
     """A graph read as axioms and facts."""
 
@@ -81,6 +88,9 @@ class _Stated:
 
     def follows(self) -> bool:
         """Whether all of it is proved. Raises Unreadable."""
+        for s, p, _ in self._facts.facts:
+            if p in _PARTS and not is_named(s):
+                self._reader.expression(s)  # what cannot be read must not pass for something that there is
         search: list[Triple] = []
         says_more = any(not self._is_declaration(triple) for triple in self._facts.facts)
         for triple in self._facts.facts:
@@ -107,7 +117,7 @@ class _Stated:
     def _is_declared(self, triple: Triple, says_more: bool) -> bool:
         """A declaration says nothing (Direct Semantics); by itself, without axioms, it must be true."""
         s, _, o = triple
-        if o == iri("owl:Ontology") or self._is_structure(s):
+        if o == iri("owl:Ontology") or (self._is_structure(s) and self._is_used(s)):
             return True
         return says_more or self._reasoner.holds(triple) or self._axioms.is_used_as(s, o)
 
@@ -120,7 +130,16 @@ class _Stated:
             return self._has(s, TYPE, iri("owl:Ontology"))
         if p == TYPE and triple[2] in _STATED_BY:
             return False
-        return self._is_structure(s) and (p in _PARTS or p in _MEMBERS or p == iri("owl:inverseOf"))
+        is_part = p in _PARTS or p in _MEMBERS or p == iri("owl:inverseOf")
+        return is_part and self._is_structure(s) and self._is_used(s)
+
+    def _is_used(self, node: Term) -> bool:
+        """Whether an expression is a part of anything; that such a class exists is another claim."""
+        if next(iter(self._facts.match(None, None, node)), None) is not None:
+            return True
+        return any(
+            p not in _PARTS and (p != TYPE or o not in _DECLARED) for _, p, o in self._facts.match(node)
+        )
 
     def _is_structure(self, node: Term) -> bool:
         """Whether a blank node is an expression, a list or an axiom, not an individual."""
@@ -138,12 +157,12 @@ class _Stated:
         """Whether an axiom is proved; None if the triple is none. Raises Unreadable."""
         s, p, o = triple
         axioms = self._axioms
-        if p == TYPE and o in _STATED_BY:
+        if p == TYPE and o in _STATED_BY and not is_named(s):
             return self._stated(s, _STATED_BY[o])
         is_open = not is_named(s) and not self._is_structure(s)
         if is_open or (p != TYPE and self._reasoner.holds(triple)):
             return None
-        if p in _PARTS:
+        if p in _DEFINING and is_named(s):
             return all(axioms.same_class(self._reader.expression(s), d) for d in self._reader.definitions(s))
         if p in axioms.relations:
             return axioms.relations[p](s, o)
@@ -153,21 +172,25 @@ class _Stated:
 
     def _stated(self, node: Term, kind: str) -> bool:
         if kind == "never":
-            [source], [prop] = (
-                self._objects(node, name) for name in ("owl:sourceIndividual", "owl:assertionProperty")
-            )
-            [target] = [
-                *self._objects(node, "owl:targetIndividual"),
-                *self._objects(node, "owl:targetValue"),
-            ]
+            source = self._one(node, "owl:sourceIndividual")
+            prop = self._one(node, "owl:assertionProperty")
+            target = self._one(node, "owl:targetIndividual", "owl:targetValue")
             return self._axioms.never(self._reader.role(prop).edge(source, target))
         heads = [*self._objects(node, "owl:members"), *self._objects(node, "owl:distinctMembers")]
         members = [member for head in heads for member in self._reader.members(head)]
+        if not members:
+            raise Unreadable(node)
         if kind == "different":
             return self._axioms.all_different(members)
         if kind == "classes":
             return self._axioms.disjoint_classes(list(map(self._reader.expression, members)))
         return self._axioms.disjoint_properties(list(map(self._reader.role, members)))
+
+    def _one(self, node: Term, *names: str) -> Term:
+        found = [o for name in names for o in self._objects(node, name)]
+        if len(found) != 1:
+            raise Unreadable(node)
+        return found[0]
 
     def _objects(self, node: Term, name: str) -> list[Term]:
         return [o for _, _, o in self._facts.match(node, iri(name))]

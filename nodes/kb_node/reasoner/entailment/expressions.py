@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import count
 
-from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_literal, is_named, literal
+from nodes.kb_node.reasoner.terms import FIRST, NIL, REST, THING, TYPE, iri, is_named, literal
 from schemas.explanations import Term, Triple
 
 Match = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
@@ -219,7 +219,7 @@ def _bounded(
 
 def _number(term: Term) -> int:
     try:
-        return int(literal(term).text) if is_literal(term) else -1
+        return int(literal(term).text)
     except ValueError:
         raise Unreadable(term) from None
 

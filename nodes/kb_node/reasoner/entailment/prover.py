@@ -10,11 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
-from itertools import combinations, islice, product
+from itertools import combinations, islice
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.entailment.expressions import (
-    ANYTHING,
     And,
     AtLeast,
     AtMost,
@@ -32,6 +31,7 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     Writer,
     negated,
 )
+from nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import (
@@ -49,17 +49,12 @@ from schemas.explanations import Term, Triple
 
 _DEEPEST = 6
 """Expressions, definitions and case distinctions one inside the other."""
-_MOST = 3000
+_MOST = 1000
 """Suppositions in one proof."""
-_WIDEST = 24
-"""Alternatives, neighbours or members of an enumeration that are tried."""
 _INDIVIDUALS = 300
 """Individuals for whom witnesses are named."""
 _TOPS = (iri("owl:topObjectProperty"), iri("owl:topDataProperty"))
 _BOTTOMS = (iri("owl:bottomObjectProperty"), iri("owl:bottomDataProperty"))
-
-Alternatives = list[list[Triple]]
-"""Sets of triples of which one holds; none at all is a contradiction."""
 
 
 class Prover:
@@ -71,6 +66,7 @@ class Prover:
         self._depth = 0
         self._left = _MOST
         self._open: set[tuple[Term, Term]] = set()
+        self._witnessed: set[Term] = set()
         self.asserted = reasoner.asserted
         self.holds = reasoner.holds
         self.reader = Reader(reasoner.asserted)
@@ -85,7 +81,9 @@ class Prover:
     def follows(self, supposed: Iterable[Triple], goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached supposing some triples. From a contradiction everything follows."""
         supposed = [triple for triple in supposed if not is_literal(triple[0])]  # to suppose less is sound
-        things = {triple[0]: None for triple in supposed if not is_schema(triple)}
+        facts = [triple for triple in supposed if not is_schema(triple)]
+        ends = (term for s, p, o in facts for term in ((s,) if p == TYPE or is_literal(o) else (s, o)))
+        things = dict.fromkeys(ends)
         supposed += [(x, TYPE, THING) for x in things]
         supposed += [(x, p, x) for p in self._reflexive() for x in things]
         if any(p in _BOTTOMS for _, p, _ in supposed):
@@ -104,39 +102,8 @@ class Prover:
         return all(self.follows(supposed, goal) for supposed in alternatives)
 
     def given(self, x: Term, expression: Expression) -> Alternatives:
-        """What it says of x to be a member of a class, with names for what must exist."""
-        match expression:
-            case Named(term):
-                return [[]] if term == THING else [[(x, TYPE, term)]]
-            case And(parts):
-                choices = islice(product(*(self.given(x, part) for part in parts)), _WIDEST + 1)
-                whole = [[triple for part in choice for triple in part] for choice in choices]
-                return whole if len(whole) <= _WIDEST else [[]]
-            case Or(parts):
-                whole = [one for part in parts for one in self.given(x, part)]
-                return whole if len(whole) <= _WIDEST else [[]]
-            case OneOf(terms):
-                return [[(x, SAME_AS, term)] for term in terms] if len(terms) <= _WIDEST else [[]]
-            case AtLeast(number, role, filler) if number <= _WIDEST:
-                return self._given_values(x, number, role, filler)
-            case Has(role, value):
-                return [[role.edge(x, value)]]
-            case Self(role):
-                return [[role.edge(x, x)]]
-            case Not(OneOf((term,))):
-                return [[(x, DIFFERENT_FROM, term)]]
-            case Not(Has(role, value)):
-                return [self._never(role.edge(x, value))]
-            case Not(Self(role)):
-                return [self._never(role.edge(x, x))]
-            case Not(Named(term)) if term == THING:
-                return []
-        triples: list[Triple] = []
-        try:
-            node = self._writer.write(expression, triples)
-        except Unreadable:
-            return [[]]
-        return [[*triples, (x, TYPE, node)]]
+        """What it says of x to be a member of a class."""
+        return given(x, expression, self._writer)
 
     # Facts
 
@@ -171,7 +138,11 @@ class Prover:
             return False
         self._depth += 1
         try:
-            return self._member(x, expression) or self._by_cases(x, expression)
+            return (
+                self._member(x, expression)
+                or self._with_own_witnesses(x, lambda: self._member(x, expression))
+                or self._by_cases(x, expression)
+            )
         finally:
             self._depth -= 1
 
@@ -237,12 +208,8 @@ class Prover:
 
     def _has_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
         """So many values that are in a class and differ from one another, or at least one that must exist."""
-        if number <= 0 or self._has_known_values(x, number, role, filler):
+        if number <= 0:
             return True
-        new = list(self._must_exist([x]))
-        return bool(new) and self.follows(new, lambda: self._has_known_values(x, number, role, filler))
-
-    def _has_known_values(self, x: Term, number: int, role: Role, filler: Expression) -> bool:
         found = [y for y in self.values(x, role) if self.member(y, filler)]
         if number == 1 and found:
             return True
@@ -256,7 +223,7 @@ class Prover:
         s, o = (None, x) if role.backwards else (x, None)
         found: dict[Term, None] = {}
         for source in (self._reasoner.asserted, self._reasoner.inferred):
-            for triple in islice(source(s, role.property, o), _WIDEST):
+            for triple in islice(source(s, role.property, o), WIDEST):
                 found[triple[0 if role.backwards else 2]] = None
         return list(found)
 
@@ -304,6 +271,19 @@ class Prover:
                     continue
 
     # Witnesses
+
+    def _with_own_witnesses(self, x: Term, goal: Callable[[], bool]) -> bool:
+        """Whether a goal is reached when what must exist for x has names."""
+        if x in self._witnessed or is_literal(x):
+            return False
+        new = list(self._must_exist([x]))
+        if all(map(self._reasoner.holds, new)):
+            return False
+        self._witnessed.add(x)
+        try:
+            return self.follows(new, goal)
+        finally:
+            self._witnessed.remove(x)
 
     def with_witnesses(self, mentioned: Iterable[Term], goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached once what must exist, for two steps, has names."""
@@ -359,28 +339,6 @@ class Prover:
                     yield from ((node, part) for part in positive if isinstance(part, AtLeast | Self | OneOf))
             except Unreadable:
                 continue
-
-    def _given_values(self, x: Term, number: int, role: Role, filler: Expression) -> Alternatives:
-        values = [self.fresh() for _ in range(number)]
-        triples = [role.edge(x, y) for y in values]
-        triples += [(one, DIFFERENT_FROM, other) for one, other in combinations(values, 2)]
-        if filler == ANYTHING:
-            return [triples]
-        choices = list(islice(product(*(self.given(y, filler) for y in values)), _WIDEST + 1))
-        if len(choices) > _WIDEST:
-            return [triples]
-        return [[*triples, *(triple for part in choice for triple in part)] for choice in choices]
-
-    def _never(self, edge: Triple) -> list[Triple]:
-        s, p, o = edge
-        node = self.fresh()
-        target = "owl:targetValue" if is_literal(o) else "owl:targetIndividual"
-        return [
-            (node, TYPE, iri("owl:NegativePropertyAssertion")),
-            (node, iri("owl:sourceIndividual"), s),
-            (node, iri("owl:assertionProperty"), p),
-            (node, iri(target), o),
-        ]
 
 
 _EXISTENTIAL = (

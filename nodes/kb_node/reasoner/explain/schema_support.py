@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import chain
 from typing import TypeVar
 
 from nodes.kb_node.reasoner.tbox.axioms import Axioms
@@ -32,6 +33,8 @@ class SchemaSupport:
         if narrow == wide:
             return {}
         schema = self._schema
+        if passed := schema.passed_on.get(narrow):
+            return self.below(passed[1], wide)
         name, wider = schema.classes[narrow], schema.classes[wide]
         if not name.startswith("{"):
             return self.facts([(name, _SUB_CLASS_OF, wider)])
@@ -47,12 +50,19 @@ class SchemaSupport:
 
     def restriction(self, cls: int) -> Found:
         """What makes a class a restriction."""
+        if passed := self._schema.passed_on.get(cls):
+            return self.restriction(passed[0])
         return self.axiom(self._schema.classes[cls], *_RESTRICTION)
 
     def chains(self, result: Axioms) -> Found:
         """The chains that lead to a property, itself twice among them."""
         transitive = (result.term, TYPE, iri("owl:TransitiveProperty"))
         return self.axiom(result.term, "owl:propertyChainAxiom") | self.facts([transitive])
+
+    def transitive(self, prop: int) -> Found:
+        """That a property is transitive, and all that its steps imply."""
+        transitive = (self._schema.axioms[prop].term, TYPE, iri("owl:TransitiveProperty"))
+        return self.facts([transitive, *chain.from_iterable(self._schema.roles(prop).values())])
 
     def about(self, term: Term) -> Found:
         """The axioms that a class, property or individual may contradict another by."""

@@ -60,7 +60,28 @@ class Support:
                 implied = role if abox.store.subject[edge] == here else (predicate, True)
                 same = self._same(subject, here), self._same(there, node)
                 return union(self._edge(edge, implied), *(ends for ends in same if ends))
+        for chained in self._schema.transitive_roles(predicate):
+            if (found := self._of_chain(subject, chained, object_)) is not None:
+                return found
         raise AssertionError(f"no edge to {object_}")
+
+    def _of_chain(self, subject: int, role: Role, object_: Term) -> Found | None:
+        """The steps of a transitive role that lead from a node to a term."""
+        abox = self._abox
+        reached = abox.reached(subject, role)
+        last = next((end for _, _, end in reached.values() if abox.named(end, object_) is not None), None)
+        if last is None:
+            return None
+        found = self._told_by.transitive(role[0]) | (
+            self._same(last, _known(abox.named(last, object_))) or {}
+        )
+        here, is_first = last, True
+        while is_first or not abox.is_same(here, subject):
+            edge, start, end = reached[abox.members(here)[0]]
+            implied = role if abox.store.subject[edge] == start else (role[0], not role[1])
+            found |= self._edge(edge, implied) | (self._same(end, here) or {})
+            here, is_first = start, False
+        return found | (self._same(subject, here) or {})
 
     def of(self, claims: Iterable[Claim]) -> Found:
         """Asserted triples, of the schema too, from which all claims follow."""
@@ -207,6 +228,7 @@ class Support:
         for role in schema.roles(p):
             axioms = schema.axioms[role[0]]
             x, y = (o, s) if role[1] else (s, o)
+            chained = self._told_by.transitive(role[0]) if role[0] in schema.virtual else {}
             ends = ((x, axioms.domain, "rdfs:domain"), (y, axioms.range, "rdfs:range"))
             for end, mask, name in ends:
                 for wider in bits(mask) if end == node else ():
@@ -219,10 +241,12 @@ class Support:
                         )
             if x == node:
                 for restriction, filler in axioms.some:
-                    yield from self._through(edge, role, (restriction, cls), (y, filler), restriction, depth)
+                    for way in self._through(edge, role, (restriction, cls), (y, filler), restriction, depth):
+                        yield way | chained
             if y == node:
                 for restriction, filler in axioms.only:
-                    yield from self._through(edge, role, (filler, cls), (x, restriction), restriction, depth)
+                    for way in self._through(edge, role, (filler, cls), (x, restriction), restriction, depth):
+                        yield way | chained
 
     def _through(
         self, edge: int, role: Role, gained: tuple[int, int], needed: tuple[int, int], axiom: int, depth: int

@@ -14,6 +14,8 @@ Role = tuple[int, bool]
 
 ANY = -1
 """In the place of a class: everything."""
+WIDE = 12
+"""Properties of a group beyond which nobody looks for their edges one by one."""
 SAME, DIFFERENT = 0, 1
 """The numbers of owl:sameAs and owl:differentFrom among the properties."""
 
@@ -24,6 +26,11 @@ class Group:
 
     out: tuple[int, ...]
     into: tuple[int, ...]
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether it is quicker to look at all edges of a node than for those of each property."""
+        return len(self.out) + len(self.into) > WIDE
 
 
 @dataclass(frozen=True, slots=True)

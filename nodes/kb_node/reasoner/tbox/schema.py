@@ -17,6 +17,7 @@ from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.rule_table import NUMBERS
 from nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, Role
+from nodes.kb_node.reasoner.tbox.transitive import compile_transitive
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 from schemas.explanations import Term, Triple
 
@@ -39,6 +40,10 @@ class Schema:
         """The AllDisjoint and AllDifferent axioms in whose list a term is."""
         self.axioms: list[Axioms] = []
         self.chains: dict[Chain, None] = {}
+        self.virtual: tuple[int, ...] = ()
+        """The transitive properties whose chains are followed when somebody asks, instead of being stored."""
+        self.passed_on: dict[int, tuple[int, int]] = {}
+        """Classes of our own along a transitive property: by which restriction, and what its members are."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -49,6 +54,7 @@ class Schema:
         self._compile_properties()
         self._compile_restrictions()
         self._compile_individuals()
+        self.virtual = tuple(compile_transitive(self))
 
     # Numbers
 
@@ -116,6 +122,13 @@ class Schema:
             yield (self.property(fact[0]), not backwards), fact
         for fact in match(term, TYPE, iri("owl:SymmetricProperty")):
             yield (prop, not backwards), fact
+
+    def transitive_roles(self, prop: int) -> Iterator[Role]:
+        """The roles of virtual properties each of whose chains implies a property."""
+        for p in self.virtual:
+            for backwards in (False, True):
+                if (prop, backwards) in self.roles(p):
+                    yield p, backwards
 
     def group(self, role: Role) -> Group:
         """Along which edges of an individual a role leads."""

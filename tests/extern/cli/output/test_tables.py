@@ -113,5 +113,8 @@ def test_large_sizes_are_written_out():
 def test_bodies_that_could_not_be_made_are_told_below_the_list():
     failed = BodyState(status="failed", detail="too long")
     chairs = [entity("chair1"), structs.replace(entity("chair2"), body=failed)]
-    assert show.entity_line(chairs) == "2 entities; 1 body could not be made: semmap status says why"
+    assert (
+        show.entity_line(chairs)
+        == "2 entities; 1 body could not be created; for the reason see: semmap status"
+    )
     assert show.entity_line(chairs[:1]) == "1 entity"

@@ -30,7 +30,7 @@ def test_a_map_goes_on_as_it_was_run(data, capsys):
 def test_settings_that_are_lost_are_told(data, capsys):
     (data / SETTINGS).write_text("{")
     assert _settings_before(data) is None
-    assert "so --truth and --world are not as before" in capsys.readouterr().err
+    assert "--truth and --world are reset to their defaults" in capsys.readouterr().err
 
 
 def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
@@ -38,7 +38,7 @@ def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
     (data / SETTINGS).write_text(text.replace(str(EMPTY_WORLD), "/nowhere/world.xml"))
     before = _settings_before(data)
     assert (before.truth, before.world) == ("perceived", str(FLAT_WORLD))
-    assert "the world /nowhere/world.xml is no longer there" in capsys.readouterr().err
+    assert "the world /nowhere/world.xml no longer exists" in capsys.readouterr().err
 
 
 def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
@@ -49,6 +49,6 @@ def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
 
     goes_on = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none"])
     assert goes_on.stdout == f"perceived {EMPTY_WORLD}\n"
-    assert "--abox is for a new map" in goes_on.stderr
+    assert "--abox is ignored" in goes_on.stderr
     anew = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
     assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")

@@ -131,6 +131,9 @@ def test_axioms_that_are_there_already_change_nothing():
     reasoner.apply(insert=[*tbox, *triples(":cup1 a :Cup .")], delete=triples(":Mug rdfs:subClassOf :Cup ."))
     assert reasoner._engine is engine
     assert len(reasoner) == len(tbox) + 1
+    reasoner.apply(insert=tbox[:3], delete=tbox[:2])
+    assert len(reasoner) == len(tbox) + 1
+    assert reasoner.holds(triple(":cup1 a :Vessel"))
 
 
 OUTSIDE = {

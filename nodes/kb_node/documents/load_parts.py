@@ -1,0 +1,65 @@
+"""A large load in parts, each a transaction of its own: what is done is done, and memory stays bounded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
+
+from msgspec import structs
+
+from schemas import errors
+from schemas.commits import Commit, Transaction
+from schemas.explanations import Triple
+
+PART: Final = 100_000
+"""Triples; a part ends with the star that it ends in."""
+_STAR: Final = 64
+"""Triples of a star, at most."""
+
+
+def in_parts(transaction: Transaction, size: int = PART) -> list[Transaction]:
+    """The same, part by part: the last one has its command's id, so that this is done when all are."""
+    triples = transaction.insert
+    ends = list(_ends(triples, size))
+    parts = []
+    for number, (start, end) in enumerate(zip([0, *ends], ends, strict=False), start=1):
+        is_last = number == len(ends)
+        parts.append(
+            structs.replace(
+                transaction,
+                id=transaction.id if is_last else f"{transaction.id}/{number}",
+                reason=f"{transaction.reason}, part {number} of {len(ends)}",
+                insert=triples[start:end],
+            )
+        )
+    return parts
+
+
+def commit_each(
+    parts: Sequence[Transaction], commit: Callable[[Transaction], Commit | None], tell: Callable[[str], None]
+) -> list[Commit]:
+    """Those of the parts that change anything. Raises a part's error, which says what is committed."""
+    made: list[Commit] = []
+    for number, part in enumerate(parts, start=1):
+        tell(f"part {number} of {len(parts)}")
+        try:
+            if (done := commit(part)) is not None:
+                made.append(done)
+        except errors.SemmapError as error:
+            raise errors.in_part(error, [done.seq for done in made], number, len(parts)) from None
+    return made
+
+
+def _ends(triples: Sequence[Triple], size: int) -> Iterator[int]:
+    """Where parts end: before a triple whose subject those right before it do not mention."""
+    end = size
+    while end < len(triples):
+        near = {term for s, _, o in triples[max(0, end - _STAR) : end] for term in (s, o)}
+        while end < len(triples) and triples[end][0] in near:
+            near.update((triples[end][0], triples[end][2]))
+            end += 1
+        if end < len(triples):
+            yield end
+        end += size
+    if triples:
+        yield len(triples)

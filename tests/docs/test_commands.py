@@ -1,0 +1,163 @@
+"""The commands and programs that README and manual print are run; those that start systems are parsed."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+import pytest
+
+from nodes.extern.cli.all_verbs import app
+from tests.conftest import running
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(sh|console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PARSED = {
+    "up",
+    "down",
+    "node",
+    "repair",
+    "replay",
+    "completion",
+    "watch",
+    "perceive",
+    "tbox",
+    "backup",
+    "restore",
+}
+"""Verbs that start, stop or need something else than one running system."""
+CLOCK = re.compile(r"\b12:30\b")
+"""A time of day: whatever is meant, it is not in the future."""
+EXPECTED = {
+    "semmap load demo/nonsense.ttl": 1,
+    "semmap undo 17": 1,  # there is no such commit in the map that this is run on
+}
+"""Exit status of those that are printed because they are refused."""
+
+
+def blocks(page, *languages):
+    return [text for language, text in BLOCK.findall(page.read_text()) if language in languages]
+
+
+def commands(page):
+    """Command lines of a page, in order, without prompts and comments."""
+    for text in blocks(page, "sh", "console"):
+        is_console = any(line.startswith("$ ") for line in text.splitlines())
+        for line in text.replace("\\\n", " ").splitlines():
+            if is_console and not line.startswith("$ "):
+                continue
+            line = CLOCK.sub(time.strftime("%H:%M"), line.removeprefix("$ "))
+            words = shlex.split(line, comments=True)
+            if words and words[0] in ("semmap", "z"):
+                yield words
+
+
+def said_of_files(words, said):
+    """Is it only that the reader's own file is not here?"""
+    return any(f"there is no file {word}" in said and not (ROOT / word).exists() for word in words)
+
+
+def programs(page):
+    return [text for text in blocks(page, "python") if "import semmap" in text or "from semmap" in text]
+
+
+LINES = [pytest.param(page, id=page.name) for page in PAGES if any(commands(page))]
+PROGRAMS = [
+    pytest.param(text, id=f"{page.name}-{n}") for page in PAGES for n, text in enumerate(programs(page), 1)
+]
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """The shipped flat, and a folder as the repository's is to whoever reads."""
+    with running(tmp_path_factory.mktemp("flat"), "--no-record") as system:
+        yield system
+
+
+@pytest.fixture(autouse=True)
+def tidied(flat):
+    """What one page's programs add does not stand in the way of another's."""
+    with flat.client() as client:
+        before = {entity.name for entity in client.list()}
+        yield
+        if added := sorted({entity.name for entity in client.list()} - before):
+            client.remove(*added)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("demo", "ontology", "examples", "schemas"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("data", "__pycache__"))
+    return tmp_path
+
+
+def environment(system):
+    scripts = str(Path(sys.executable).parent)
+    return dict(os.environ) | {
+        "SEMMAP_CONNECT": system.endpoint,
+        "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONWARNINGS": "default",
+    }
+
+
+@pytest.mark.parametrize("page", LINES)
+def test_commands_work_as_printed(page, flat, folder):
+    for words in commands(page):
+        line = shlex.join(words)
+        if words[0] == "semmap" and (
+            words[1] in PARSED or any("..." in word or "[" in word for word in words)
+        ):
+            parse(words[1:])
+            continue
+        if words[0] == "z":
+            words = ["zenoh", "--mode", "client", "--connect", flat.endpoint, *words[1:]]
+            if "subscribe" in words:
+                continue  # it never ends
+        pipe = words.index("|") if "|" in words else len(words)
+        done = subprocess.run(
+            words[:pipe],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env=environment(flat),
+            timeout=60,
+            stdin=subprocess.DEVNULL,
+        )
+        if done.returncode == 2 and said_of_files(words, done.stderr):
+            continue
+        assert done.returncode == EXPECTED.get(line, 0), f"{line}\n{done.stdout}{done.stderr}"
+        if EXPECTED.get(line, 0) == 0:
+            assert not done.stderr.startswith("semmap: "), f"{line}\n{done.stderr}"
+
+
+def parse(words):
+    """Is it a command line that the verb understands? Nothing is started."""
+    name, *rest = words
+    command = app.commands[name]
+    while isinstance(command, click.Group) and rest:
+        command, rest = command.commands[rest[0]], rest[1:]
+    with command.make_context(name, [word.strip("[]") for word in rest if word != "..."]):
+        pass
+
+
+@pytest.mark.parametrize("text", PROGRAMS)
+def test_programs_work_as_printed(text, flat, folder):
+    script = folder / "test_program.py"
+    script.write_text(text.replace("timeout=60", "timeout=0.5"))
+    how = ["-m", "pytest", "-q", "-p", "no:cacheprovider"] if "def test_" in text else []
+    done = subprocess.run(
+        [sys.executable, *how, script],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        env=environment(flat),
+        timeout=60,
+    )
+    ended_for_lack_of_news = "timeout=60" in text and "NoAnswer" in done.stderr
+    assert done.returncode == 0 or ended_for_lack_of_news, done.stdout + done.stderr

@@ -1,0 +1,82 @@
+"""Transitive properties whose chains are followed when somebody asks, and are not stored."""
+
+import pytest
+
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from tests.kb_node.reasoner import proofs
+from tests.kb_node.reasoner.graphs import triple, triples
+
+TBOX = """
+:with a owl:TransitiveProperty , owl:SymmetricProperty .
+:in rdfs:subPropertyOf :with . :in owl:inverseOf :holds .
+:part a owl:TransitiveProperty ; rdfs:domain :Thing ; rdfs:range :Thing . :has owl:inverseOf :part .
+:Wet owl:onProperty :part ; owl:someValuesFrom :Water . :Kept owl:onProperty :part ; owl:allValuesFrom :Safe .
+"""
+
+
+def stored(reasoner):
+    return len([p for p in reasoner._engine._abox.store.predicate if p >= 0])
+
+
+@pytest.fixture
+def reasoner():
+    return Reasoner(triples(TBOX))
+
+
+def test_what_is_together_costs_what_is_said_and_no_more(reasoner):
+    facts = triples("".join(f":cup{i} :in :room{i % 3} , :flat . " for i in range(300)))
+    reasoner.apply(insert=facts)
+    assert stored(reasoner) == len(facts) == 600
+    assert len(list(reasoner.inferred(triple(":cup1 :with :x")[0], triple(":cup1 :with :x")[1]))) == 304
+    assert reasoner.holds(triple(":cup1 :with :cup299"))
+    assert not reasoner.holds(triple(":cup1 :with :elsewhere"))
+    explanation = reasoner.explain(triple(":cup1 :with :cup299"))
+    assert len(explanation.support) == 5
+    proofs.check(explanation, [*triples(TBOX), *facts])
+
+
+def test_what_a_restriction_says_goes_along_the_chain_and_back(reasoner):
+    chain = triples(":a :part :b . :c :has :b . :c :part :d .".replace(":c :has :b", ":b :part :c"))
+    wet = triple(":d a :Water")
+    reasoner.apply(insert=chain)
+    for change in ({"insert": [wet]}, {"delete": [chain[1]]}, {"insert": [chain[1]]}, {"delete": [wet]}):
+        reasoner.apply(**change)
+        told = set(reasoner.asserted())
+        assert reasoner.holds(triple(":a a :Wet")) == ({wet, *chain} <= told)
+        assert reasoner.holds(triple(":c a :Wet")) == (wet in told)
+    reasoner.apply(insert=[wet, triple(":a a :Kept")])
+    for fact in map(triple, (":a a :Wet", ":d a :Safe", ":a :part :d", ":d :has :a")):
+        proofs.check(reasoner.explain(fact), list(reasoner.asserted()))
+
+
+def test_who_is_of_a_restriction_need_not_have_what_it_speaks_of(reasoner):
+    """No rule says that something of `:Wet` has any part."""
+    reasoner.apply(insert=triples(":b a :Wet . :a :part :b ."))
+    assert not reasoner.holds(triple(":a a :Wet"))
+
+
+def test_the_ends_may_be_the_same_as_others(reasoner):
+    reasoner.apply(insert=triples(":a :part :b . :b owl:sameAs :c . :c :part :d . :d owl:sameAs :e ."))
+    told = list(reasoner.asserted())
+    for fact in map(triple, (":a :part :d", ":a :part :e", ":e :has :a")):
+        assert fact in set(reasoner.inferred(fact[0]))
+        assert fact in set(reasoner.inferred(None, None, fact[2]))
+        proofs.check(reasoner.explain(fact), told)
+    reasoner.apply(delete=triples(":b owl:sameAs :c ."))
+    assert not reasoner.holds(triple(":a :part :d"))
+
+
+@pytest.mark.parametrize(
+    "axiom",
+    [
+        ":part a owl:IrreflexiveProperty .",
+        ":part rdfs:subPropertyOf :near . :near a owl:AsymmetricProperty .",
+        ":has owl:propertyDisjointWith :part .",
+    ],
+)
+def test_where_a_rule_looks_at_pairs_a_circle_is_found(axiom):
+    reasoner = Reasoner(triples(TBOX + axiom))
+    reasoner.apply(insert=triples(":a :part :b . :b :part :c ."))
+    assert stored(reasoner) == 3
+    with pytest.raises(Inconsistent):
+        reasoner.apply(insert=triples(":c :part :a ."))

@@ -1,0 +1,66 @@
+"""What is written about the library is true of it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import semmap
+from nodes.extern.client_verbs import Verb, Verbs
+from nodes.runtime import extras
+
+ROOT = Path(__file__).parents[2]
+PYTHON = (ROOT / "docs" / "python.md").read_text()
+INSTALLATION = (ROOT / "docs" / "installation.md").read_text()
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+BLOCK = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
+PRIVATE = {"nodes", "schemas", "ontology"}
+
+
+def blocks():
+    return [(page.name, block) for page in PAGES for block in BLOCK.findall(page.read_text())]
+
+
+def imported(tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, None) for alias in node.names)
+        if isinstance(node, ast.ImportFrom):
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+@pytest.mark.parametrize(("page", "block"), blocks())
+def test_examples_use_what_is_public_only(page, block):
+    tree = ast.parse(block)
+    for module, name in imported(tree):
+        assert module.split(".")[0] not in PRIVATE, (page, module)
+        if module.split(".")[0] == "semmap" and name is not None:
+            assert name in __import__(module, fromlist=["x"]).__all__, (page, name)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "semmap":
+            assert hasattr(semmap, node.attr), (page, node.attr)
+
+
+def test_the_reasoner_s_example_runs(capsys):
+    (example,) = (block for block in BLOCK.findall(PYTHON) if "Reasoner(" in block)
+    exec(compile(example, "docs/python.md", "exec"), {})
+    assert "every urn:Cup is an urn:Dish" in capsys.readouterr().out
+
+
+def test_every_verb_is_named():
+    verbs = {name for name, verb in vars(Verbs).items() if isinstance(verb, Verb)} - {"list_as"}
+    assert verbs <= set(re.findall(r"`(\w+)`", PYTHON))
+
+
+def test_every_extra_has_a_row():
+    assert set(re.findall(r"\| `pip install 'semmap\[(\w+)\]'`", INSTALLATION)) == {*extras.MODULES, "all"}
+
+
+def test_the_citation_has_the_version():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert version == semmap.__version__
