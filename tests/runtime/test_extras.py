@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
 import sys
 import tomllib
 from importlib.metadata import packages_distributions
@@ -143,3 +144,27 @@ def test_names_are_guessed_without_rapidfuzz_too(monkeypatch):
     monkeypatch.setitem(sys.modules, "rapidfuzz", None)
     assert errors.did_you_mean("lst", ["list", "get", "add"]) == "; did you mean list?"
     assert errors.did_you_mean("xyzzy", ["list", "get", "add"]) == ""
+
+
+WITHOUT_EXTRAS = """
+import sys
+from nodes.runtime import extras
+
+for module in {m for modules in extras.MODULES.values() for m in modules}:
+    sys.modules[module] = None  # importing it is an ImportError
+
+import semmap, semmap.aio, semmap.commands, semmap.reasoner, semmap.testing, semmap.wire
+from nodes.extern import zenoh_codec
+from nodes.extern.cli.all_verbs import app
+from nodes.extern.cli.app import execute
+
+for verb in app.commands:
+    assert execute([verb, "--help"]) == 0, verb
+print("all of", len(app.commands))
+"""
+
+
+def test_the_library_and_the_help_of_every_verb_need_no_extra():
+    said = subprocess.run([sys.executable, "-c", WITHOUT_EXTRAS], capture_output=True, text=True)
+    assert said.returncode == 0, said.stderr
+    assert said.stdout.splitlines()[-1].startswith("all of")

@@ -83,7 +83,7 @@ BAD = [
     (("export", "map.foo"), 2, "cannot tell the format of map.foo"),
     (("undo", "9" * 30), 2, "commit"),
     (("run", "nowhere.txt"), 2, "there is no file"),
-    (("watch", "semmap//x"), 2, "no key expression"),
+    (("watch", "semmap//x"), 2, "is not a valid key expression"),
     (("watch", "semmap/**", "--sparql", "SELECT ?s {}"), 2, "not both"),
     (("picture", "."), 2, "scene.png"),
     (("picture", "scene.jpg"), 2, "scene.png"),

@@ -1,0 +1,109 @@
+"""More entities than are told of one by one: loaded, followed, listed, queried, and there after a restart."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import pytest
+
+from ontology import vocabulary as v
+from schemas.commits import MANY_ENTITIES
+from tests.conftest import running, until
+
+COUNT = MANY_ENTITIES + 500
+UP = ("--abox", "none", "--no-sim", "--no-record")
+COUNTED = f"SELECT (COUNT(?c) AS ?n) {{ ?c a <{v.bare(v.dm('Cup'))}> }}"
+
+
+def scene(file, count=COUNT):
+    entities = [
+        {"class": "Fridge" if i % 100 == 0 else "Cup", "name": f"thing{i}", "at": [i % 100, i // 100, 0]}
+        for i in range(count)
+    ]
+    file.write_text(json.dumps({"entities": entities}))
+    return file
+
+
+def counted(client):
+    ((found,),) = client.sparql(COUNTED, timeout=60.0).rows
+    return int(v.lexical(found))
+
+
+def test_a_commit_that_is_told_of_in_brief_is_known_to_everybody(tmp_path):
+    with running(tmp_path / "data", *UP) as system, system.client() as client:
+        with client.commits(timeout=60.0) as commits:
+            loaded = client.load(scene(tmp_path / "many.json"))
+            commit = next(commits)
+        assert len(loaded.names) == COUNT
+        assert (commit.seq, commit.changed, commit.inserted) == (loaded.commit, (), ())
+        assert commit.abridged.changed == COUNT
+        assert client.get(f"thing{COUNT - 1}").class_ == "Cup"
+        assert len(client.list("Fridge")) == COUNT // 100
+        assert client.status().entities == COUNT
+        assert counted(client) == COUNT - COUNT // 100
+        client.remove("thing1")
+        assert counted(client) == COUNT - COUNT // 100 - 1
+        assert client.status().entities == COUNT - 1
+        undone = client.undo(loaded.commit + 1)
+        assert undone.names == ("thing1",)
+    with running(tmp_path / "data", *UP) as system, system.client() as client:
+        assert client.status().entities == COUNT
+        assert counted(client) == COUNT - COUNT // 100
+
+
+@pytest.mark.parametrize("kind", ["scene", "turtle"])
+def test_a_load_in_parts(tmp_path, kind):
+    file = scene(tmp_path / "many.json")
+    if kind == "turtle":
+        file = tmp_path / "many.ttl"
+        stars = (
+            f'<{v.ABOX}thing{i}> a <{v.TBOX}Cup> ; <{v.RDFS}label> "cup {i}" .\n' for i in range(6 * COUNT)
+        )
+        file.write_text("".join(stars))
+    with running(tmp_path / "data", *UP) as system:
+        said = system.cli("load", file, "--parts")
+        with system.client() as client:
+            newest, *_ = reversed(client.history())
+            assert ", part 2 of 2" in newest.reason
+            assert client.status().commit == newest.seq
+            assert client.get(f"thing{COUNT - 1}").provenance.commit <= newest.seq
+            until(lambda: client.status().entities == (COUNT if kind == "scene" else 6 * COUNT), "all of it")
+        assert f"loaded {COUNT if kind == 'scene' else 6 * COUNT} entities" in said
+
+
+def test_a_part_that_is_refused_says_what_stays(tmp_path):
+    file = scene(tmp_path / "many.json")
+    document = json.loads(file.read_text())
+    document["entities"][-1]["class"] = "Kitchen"
+    document["entities"][-1]["affords"] = ["containing"]
+    document["entities"].append({"class": "Cup", "name": "thing0"})
+    file.write_text(json.dumps(document))
+    with running(tmp_path / "data", *UP) as system:
+        assert "the name 'thing0' is given twice" in system.cli("load", file, "--parts", status=1)
+        with system.client() as client:
+            assert client.status().entities == 0
+
+
+@pytest.mark.long
+def test_a_hundred_thousand(tmp_path):
+    """The store of SPARQL is on disk, and there at the next start; nodes live on meanwhile."""
+    count = 100_000
+    file = scene(tmp_path / "many.json", count)
+    data = tmp_path / "data"
+    with running(data, *UP) as system:
+        with system.client() as client:
+            pids = {node.node: node.pid for node in client.status().nodes}
+        with system.spawned("load", str(file), stderr=subprocess.PIPE) as loading:
+            said, told = loading.communicate()
+        assert loading.returncode == 0, told
+        assert f"loaded {count} entities" in said
+        assert "100,000 entities to check and write" in told
+        with system.client() as client:
+            assert counted(client) == count - count // 100
+            assert {node.node: node.pid for node in client.status().nodes} == pids
+        (store,) = [path for path in (data / "sparql").iterdir() if path.name[0].isdigit()]
+    with running(data, *UP) as system, system.client() as client:
+        client.add("Cup", "one_more", at=(0, 0, 0))
+        assert counted(client) == count - count // 100 + 1
+        assert store.exists()
