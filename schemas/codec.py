@@ -1,4 +1,4 @@
-"""MessagePack in and out, JSON for bare eyes, and text parameters of a selector."""
+"""Encoding and decoding: MessagePack, JSON, and the text parameters of a selector."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _unfolded(payload: bytes) -> bytes:
     try:
         content = unfolding.decompress(payload, LARGEST)
     except zlib.error as error:
-        raise BadRequest(f"{MALFORMED}it is no valid MessagePack, JSON or zlib: {error}") from None
+        raise BadRequest(f"{MALFORMED}it is not valid MessagePack, JSON or zlib: {error}") from None
     if not unfolding.eof:
         reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
         raise BadRequest(f"{MALFORMED}it {reason}")

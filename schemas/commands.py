@@ -1,4 +1,4 @@
-"""What one may ask: one verb, one Struct, one reply: `class Get(Command[Entity], tag="get")`.
+"""The commands: one verb, one Struct, one reply type: `class Get(Command[Entity], tag="get")`.
 
 The fields are the words of the command line (`semmap add Chair --at 1 2 0`), of a selector
 (`semmap/cmd/add?class=Chair;at=1,2,0`) and of a message (`{"verb": "add", "class": "Chair", ...}`)
@@ -75,7 +75,7 @@ class Command(
 
 
 class Add(Command[Changed], frozen=True, tag="add"):
-    """Put an entity into the map.
+    """Add an entity to the map.
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
@@ -151,7 +151,7 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
 
 
 class Remove(Command[Changed], frozen=True, tag="remove"):
-    """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 
     names: tuple[str, ...]
     dry_run: bool = False
@@ -162,7 +162,7 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
 
 class Clear(Command[Changed], frozen=True, tag="clear"):
-    """Take every entity out of the map and the scene. The TBox stays."""
+    """Remove all entities from the map and the scene. The TBox stays."""
 
     dry_run: bool = False
 
@@ -241,13 +241,13 @@ class Get(Command[Entity], frozen=True, tag="get"):
 
 
 class Check(Command[Checked], frozen=True, tag="check"):
-    """Is the map consistent, and if not, why? `owlrl` is the slow second opinion."""
+    """Check whether the map is consistent, and explain why not. `owlrl` is the slow second opinion."""
 
     engine: Literal["semmap", "owlrl"] = "semmap"
 
 
 class Infer(Command[Inferred], frozen=True, tag="infer"):
-    """What follows that was not said, about one individual or about all entities."""
+    """The inferred facts about one individual, or about all entities."""
 
     name: str | None = None
 
@@ -278,7 +278,7 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Export(Command[Document], frozen=True, tag="export"):
-    """The map as a document, checked first; with `inferred` also what follows from it."""
+    """Export the map as a document, checked first; with `inferred` including inferred facts."""
 
     format: RdfFormat = "rdfxml"
     inferred: bool = False
@@ -293,7 +293,7 @@ class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties
 
 
 class Status(Command[SystemStatus], frozen=True, tag="status"):
-    """The nodes and the map: who runs, since when, and what is amiss."""
+    """The state of the nodes, the map and the scene, and any problems."""
 
 
 # To ask about the past, and to take back
@@ -309,13 +309,13 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
-    """When, where and by whom an entity was last seen or put somewhere, even if it is no more."""
+    """When, where and by whom an entity was last seen or placed, even if it has been removed."""
 
     name: str
 
 
 class Undo(Command[Changed], frozen=True, tag="undo"):
-    """Take back a commit by another one, unless later ones rest on it; the scene follows.
+    """Undo a commit by a new one, unless later ones depend on it; the scene follows.
 
     Without `commit`: the newest that a client asked for, with the settling that followed it.
     """
@@ -333,7 +333,7 @@ TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
 class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
-    """A SPARQL 1.1 query over what is asserted or, with `inferred`, also over what follows from it.
+    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts.
 
     It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
     """
@@ -345,7 +345,7 @@ class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
 
 
 class Watch(Command[Watching], frozen=True, tag="watch"):
-    """A standing SELECT: its rows now, and what changes of them on `semmap/jena/query/<watch>`.
+    """A standing SELECT: its current rows, and their changes on `semmap/jena/query/<watch>`.
 
     `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
     evaluated again when a commit may touch it, and ends `lease` seconds after the last `renew`.
@@ -358,7 +358,7 @@ class Watch(Command[Watching], frozen=True, tag="watch"):
 
 
 class Renew(Command[Done], frozen=True, tag="renew"):
-    """Keep a standing query for another lease or, with `end`, end it."""
+    """Renew the lease of a standing query or, with `end`, end it."""
 
     watch: Name
     end: bool = False
@@ -368,7 +368,7 @@ class Renew(Command[Done], frozen=True, tag="renew"):
 
 
 class Move(Command[Moved], frozen=True, tag="move"):
-    """Take the body of an entity and put it elsewhere, as a hand would: the map follows when it rests."""
+    """Move the body of an entity by hand; the map follows when it comes to rest."""
 
     name: str
     at: Vector
@@ -376,19 +376,19 @@ class Move(Command[Moved], frozen=True, tag="move"):
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):
-    """Stop simulated time, or with `off` let it run again; where it does so already, it says that."""
+    """Pause simulated time, or with `off` resume it."""
 
     off: bool = False
 
 
 class StepOnce(Command[Done], frozen=True, tag="step"):
-    """Let paused time go on by `seconds`; refused while it runs by itself."""
+    """Advance paused time by `seconds`; refused while time is running."""
 
     seconds: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.1
 
 
 class Reset(Command[Done], frozen=True, tag="reset"):
-    """Put every body back where the map says it stands."""
+    """Put every body where the map says it stands."""
 
 
 class TakePicture(Command[Picture], frozen=True, tag="picture"):

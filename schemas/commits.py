@@ -1,4 +1,4 @@
-"""Changes of the map: what is asked of the knowledge base, and what it answers."""
+"""Changes of the map: transactions, and the commits they result in."""
 
 from __future__ import annotations
 

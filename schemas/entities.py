@@ -1,4 +1,4 @@
-"""What stands in the map: poses, sizes, names, references and where the knowledge came from."""
+"""Entities of the map: poses, sizes, names, references and provenance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why something follows, or why a map is inconsistent: data that a person or a program can read."""
+"""Explanations of why a fact follows or why a map is inconsistent, for people and programs."""
 
 from __future__ import annotations
 

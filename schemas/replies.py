@@ -1,4 +1,4 @@
-"""What commands are answered with; each command says with what (`schemas.commands`)."""
+"""Replies to commands; each command names its reply type (`schemas.commands`)."""
 
 from __future__ import annotations
 

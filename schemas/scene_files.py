@@ -81,7 +81,7 @@ class Camera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit
         if (self.look_at is None) == (self.orientation is None):
             raise ValueError("a camera needs either look_at or orientation")
         if self.look_at is not None and math.dist(self.at, self.look_at) < _NOWHERE_M:
-            raise ValueError("look_at is where the camera itself stands")
+            raise ValueError("look_at is the camera's own position")
         if self.orientation is not None:
             require_unit(self.orientation)
         if not _NARROWEST_RAD <= self.fovy <= _WIDEST_RAD:
@@ -137,8 +137,8 @@ def read(content: bytes, filename: str) -> SceneFile:
     except BadRequest as error:
         reason = error.text.removeprefix("malformed message: ")
         if _NO_JSON.search(content):
-            reason += "; JSON has no NaN and no Infinity"
-        raise BadFile(f"{filename or 'the file'} is no scene: {reason}") from None
+            reason += "; JSON does not allow NaN and Infinity"
+        raise BadFile(f"{filename or 'the file'} is not a valid scene: {reason}") from None
 
 
 def json_schema() -> str:

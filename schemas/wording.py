@@ -1,4 +1,4 @@
-"""What msgspec finds wrong with a message, in words that say what is possible."""
+"""Turns msgspec's validation errors into sentences that say what is valid."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def sentence(error: Exception, kind: Any) -> str:
     if isinstance(error, RecursionError):
         return "it is nested too deeply"
     if isinstance(error, UnicodeError):
-        return "it has a text that is not UTF-8"
+        return "it contains text that is not UTF-8"
     if isinstance(error, DecodeError) and "truncated" in str(error):
         return "it ends too early"
-    return f"it is no valid MessagePack or JSON: {str(error).partition(': ')[2] or error}"
+    return f"it is not valid MessagePack or JSON: {str(error).partition(': ')[2] or error}"
 
 
 def _of_value(text: str, kind: Any) -> str:

@@ -8,6 +8,7 @@ from benchmarks.kb.disk import Disk
 from benchmarks.kb.engine import Engine
 from benchmarks.kb.made import Figures
 from benchmarks.kb.scale import Scale
+from benchmarks.kb.university import University
 from benchmarks.kb.wire import Wire
 from benchmarks.table import Row
 
@@ -45,6 +46,18 @@ def of_owlrl(owlrl: Figures, engine: Engine) -> list[Row]:
         Row(f"owlrl: add and check, {engine.entities}", owlrl["p50_ms"], "ms"),
         Row("core against owlrl", times, "times", 10_000, 50_000, more=True),
     ]
+
+
+def of_university(universities: Sequence[University]) -> list[Row]:
+    """University data, from nothing to all that follows."""
+    rows: list[Row] = []
+    for found in universities:
+        of = f"university data, {found.triples} triples"
+        rows.append(Row(f"{of}: load", found.load_s, "s"))
+        rows.append(Row("of which CPU time", found.load_cpu_s, "s"))
+        rows.append(Row(f"{of}: go through {found.inferred} that follow", found.enumerate_s, "s"))
+        rows.append(Row(f"{of}: memory", found.memory_mb, "MB"))
+    return rows
 
 
 def of_disk(disk: Disk) -> list[Row]:

@@ -21,6 +21,7 @@ from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns
+from nodes.runtime import heap
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.futures import settle, then
@@ -37,6 +38,8 @@ R = TypeVar("R")
 
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
+_LARGE_FILE = 16 << 20
+"""Bytes."""
 
 
 class Coordinator:
@@ -65,7 +68,7 @@ class Coordinator:
             c.Unset.answered_by(self._turns.change),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
-            c.Load.answered_by(self._turns.change),
+            c.Load.answered_by(self._load),
             c.Undo.answered_by(self._turns.change),
             c.List.answered_by(answers.list),
             c.Get.answered_by(answers.get),
@@ -157,6 +160,12 @@ class Coordinator:
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
+    def _load(self, command: c.Load) -> Future[Changed]:
+        made = self._turns.change(command)
+        if len(command.content) > _LARGE_FILE:
+            made.add_done_callback(lambda _: self._node.soon(_tidy))
+        return made
+
     def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
         ask = self._bridge.change_later if len(changes) > 1 else self._bridge.change
         return hold_later(self._door.together(changes), ask)
@@ -217,6 +226,13 @@ class Coordinator:
 
     def _ask_sim(self, call: calls.Call[R]) -> Future[R]:
         return self._node.ask_later(keys.SIM, call, timeout_s=_SIM_TIMEOUT_S)
+
+
+def _tidy() -> None:
+    """Part with a large file: the dialogue over it is a cycle, which would not be found for long."""
+    gc.collect()
+    heap.trim()
+    gc.freeze()
 
 
 def _spoken(state: BodyState) -> str:

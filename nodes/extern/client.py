@@ -155,7 +155,10 @@ def _checked(command: C, signature: dict[str, Any]) -> C:
         fields[moment] = with_offset(fields[moment])
     if reply_type(type(command)) is Changed and not command.id:
         fields["id"] = uuid.uuid4().hex
-    return codec.convert({**signature, **fields}, type(command))
+    try:
+        return codec.convert({**signature, **fields}, type(command))
+    except errors.BadRequest as error:  # a message is not what the caller knows of
+        raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
 
 
 @functools.cache

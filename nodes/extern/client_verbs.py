@@ -25,7 +25,7 @@ from typing import (
 
 from nodes.extern.files import read_file
 from nodes.extern.ontologies import ontology
-from schemas import commands, replies
+from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
 from schemas.entities import Entity, Value
@@ -100,7 +100,7 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
 
 
 def _remove(*names: str, dry_run: bool = False, id: str = "", reason: str = "") -> Command[replies.Changed]:
-    """Take entities out of the map and the scene: all of them, or, if one is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
     return commands.Remove(names=names, dry_run=dry_run, id=id, reason=reason)
 
 
@@ -155,6 +155,8 @@ def _load(
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
     """
+    if imports and not tbox:
+        raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
     content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
     return commands.Load(
         content=content,

@@ -90,7 +90,7 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
         reason = "; ".join(faults)
     else:
         try:
-            Reasoner(triples)
+            Reasoner(triples, scattered=True)
         except Inconsistent as error:
             explanation = error.explanation
         reason = explanation.text if explanation else ""

@@ -1,4 +1,4 @@
-"""Settings of perception."""
+"""Settings of the perception node."""
 
 from __future__ import annotations
 

@@ -167,7 +167,7 @@ class Perception:
             self._told_commit = max(self._told_commit, done.result().commit or 0)
             return
         self._refused[subject_of(command)] = time.monotonic() + _REFUSED_S
-        self._on_complaint(f"the map did not take what was seen: {error}")
+        self._on_complaint(f"the map rejected an observation: {error}")
 
     def _on_map(self, begun: Begun) -> None:
         self._classes = hierarchy_of(begun.classes, self._usual_m)
@@ -183,7 +183,7 @@ def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:
     """One look in words; where the cameras are too far from everything, that too."""
     cameras, seen = wording.counted(len(clouds), "camera"), wording.counted(things, "thing")
     near_m = min(cloud.near_m for cloud in clouds)
-    far = f"; {near_m:.1f} m from all there is, where within 2 m is best" if near_m > _FAR_M else ""
+    far = f"; the nearest surface is {near_m:.1f} m away, use at most 2 m" if near_m > _FAR_M else ""
     return f"{cameras}, {seen} seen, {1000 * took_s:.0f} ms a look{far}"
 
 

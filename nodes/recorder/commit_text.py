@@ -1,4 +1,4 @@
-"""A commit in words: one line for the log, a page for the reader."""
+"""Commits as text: one line for the log, a page of Markdown for the viewer."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from nodes.runtime.loop import Node, open_node
 from nodes.runtime.map_replica import MapReplica
 from schemas import keys, wording
 from schemas.bridge import Recall, StarQuery
-from schemas.commits import Commit, Star
+from schemas.commits import MANY_ENTITIES, Commit, Star
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
 _SCENE_LOST_S = 10.0
@@ -76,7 +76,7 @@ class Recorder:
         self._at(time.time_ns(), self._map.seq)
         if first or begun.seq < begun.before:
             known = wording.entities(len(self._map.entities))
-            self._recording.note(f"{self._map.seq}  the recording goes on from here with {known}")
+            self._recording.note(f"{self._map.seq}  the recording continues from here with {known}")
         self._recall(lost)
         self._related = False
         self._ask_stars()
@@ -84,6 +84,13 @@ class Recorder:
     def _ask_stars(self) -> None:
         """Ask for the relations; commits that come meanwhile may be newer than they."""
         if self._asking_stars:
+            return
+        if len(self._map.entities) > MANY_ENTITIES:  # more stars than a message holds
+            self._related = True
+            self._relations.begin(())
+            self._recording.note(f"of more than {MANY_ENTITIES} entities the relations are not drawn")
+            self._show_all()
+            self._shown()
             return
         self._asking_stars = True
 
@@ -110,7 +117,7 @@ class Recorder:
 
     def _on_recalled(self, future: Future[tuple[Commit, ...]]) -> None:
         if (error := future.exception()) is not None:
-            self._recording.note(f"commits are missing here: {error}", warning=True)
+            self._recording.note(f"some commits could not be recorded: {error}", warning=True)
             return
         for commit in future.result():
             self._at(commit.stamp_ns, commit.seq)
@@ -192,7 +199,7 @@ def run(config: RecorderConfig) -> None:
     serve = config.serve if config.serve is not None and free_to_serve(config.serve) else None
     live = f"live at {serve}" if serve else "no live view"
     if config.serve is not None and serve is None:
-        live = f"no live view: {config.serve} is taken"
+        live = f"no live view: {config.serve} is in use"
     with (
         open_node("recorder", config.network) as node,
         open_recording(config.path, serve) as recording,

@@ -1,4 +1,4 @@
-"""Draws what cameras and perception publish: looks as they come, pictures and clouds seldom."""
+"""Records what cameras and perception publish; images and clouds at a low rate."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class PerceptionRecorder:
             try:
                 drawn, pose = archetypes.picture_of(frame, read()), archetypes.camera_pose(frame)
             except ValueError as error:
-                log.warning("camera %s: its picture cannot be recorded: %s", camera, error)
+                log.warning("camera %s: cannot record its image: %s", camera, error)
                 continue
             self._at(frame.stamp_ns)
             self._recording.show(archetypes.camera_path(camera), *drawn)

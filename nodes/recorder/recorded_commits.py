@@ -1,4 +1,4 @@
-"""A recording after the fact, for programs: its commits."""
+"""Reads the commits of a recording, for programs."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def read_commits(path: Path) -> list[RecordedCommit]:
             if not left_out:
                 raise
             commits = set(_commits(whole, called=path))
-        log.warning("%s ends within a message: its last %d bytes are left out", path, left_out)
+        log.warning("%s ends in the middle of a message; its last %d bytes are ignored", path, left_out)
     return sorted(commits, key=lambda commit: (commit.seq, commit.stamp_ns))
 
 

@@ -1,4 +1,4 @@
-"""The recording: an .rrd file, and the same for viewers that connect while it grows."""
+"""The recording: an .rrd file, streamed to live viewers at the same time."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def create(path: Path) -> Path:
                 break
         candidate.touch(exist_ok=False)
     except OSError as error:
-        raise errors.BadFile(f"cannot record into {path}: {error.strerror}") from None
+        raise errors.BadFile(f"cannot write the recording {path}: {error.strerror}") from None
     return candidate
 
 

@@ -1,4 +1,4 @@
-"""A recording after the fact, in the Rerun viewer."""
+"""Opens a recording in the Rerun viewer."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def replay(path: Path) -> None:
     status = subprocess.run(command, env=viewer_environment()).returncode
     if status not in (0, 130):
         raise errors.Refused(
-            f"the viewer ended with status {status}; it needs a display and a graphics driver "
+            f"the viewer exited with status {status}; it needs a display and a graphics driver "
             f"(in a browser instead: rerun --web-viewer --bind 127.0.0.1 {path})"
         )
 

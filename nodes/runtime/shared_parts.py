@@ -6,7 +6,7 @@ from typing import Final
 
 from msgspec import structs
 
-from schemas.entities import Entity, Provenance
+from schemas.entities import IDENTITY, Entity, Pose, Provenance
 
 _MOST: Final = 10_000
 """Texts, or provenances, remembered; then it begins anew."""
@@ -29,6 +29,7 @@ class SharedParts:
             class_=class_,
             types=types,
             model=model,
+            pose=_upright(entity.pose),
             preferred_reference=self._text(entity.preferred_reference),
             provenance=self._provenance(entity.provenance),
             pose_provenance=self._provenance(entity.pose_provenance),
@@ -48,3 +49,10 @@ class SharedParts:
         if len(self._provenances) > _MOST:
             self._provenances.clear()
         return self._provenances.setdefault(said.commit, said)
+
+
+def _upright(pose: Pose | None) -> Pose | None:
+    """A pose that is not turned shares its orientation with all others that are not."""
+    if pose is None or pose.orientation_wxyz != IDENTITY:
+        return pose
+    return Pose(position_m=pose.position_m)

@@ -45,7 +45,7 @@ def test_what_is_nothing_of_the_kind_is_refused(content):
 
 def test_a_broken_json_file_is_told_as_such():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
-    with pytest.raises(BadFile, match=r"x\.json is no valid JSON"):
+    with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
         kind_of(b"[1, 2", "x.json")
 
 
@@ -83,7 +83,7 @@ def test_a_scene_with_a_fault_names_the_field(change, said):
             {"at": [0, 0, 1], "look_at": [1, 0, 1], "orientation": [1, 0, 0, 0]},
             "either look_at or orientation",
         ),
-        ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is where the camera itself stands"),
+        ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is the camera's own position"),
         ({"at": [0, 0, 1], "orientation": [1, 1, 0, 0]}, "has length 1.414; it must be 1"),
         ({"at": [0, 0, 1], "look_at": [1, 0, 1], "fovy": 58}, "fovy is 58; it is an angle .* radians"),
         ({"at": [0, 0, 1], "look_at": [1, 0, 1], "name": "a/b"}, "name must be a valid name"),
@@ -124,7 +124,7 @@ def test_a_huric_map():
 @pytest.mark.parametrize(
     ("fault", "said"),
     [
-        (HURIC[:200], "no valid XML"),
+        (HURIC[:200], "not valid XML"),
         (b"<huricExample/>", "no semantic map"),
         (HURIC.replace(b'x="11.0"', b'x="NaN"'), "jar_1"),
         (HURIC.replace(b'x="11.0"', b'x="eleven"'), "jar_1"),
@@ -151,7 +151,7 @@ def test_a_byte_order_mark_is_no_part_of_a_scene():
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
 def test_numbers_that_json_does_not_have_are_named(number):
     content = as_bytes(SCENE).replace(b"1.5", number.encode())
-    with pytest.raises(BadFile, match=r"scene.json is no scene: .*; JSON has no NaN and no Infinity"):
+    with pytest.raises(BadFile, match=r"scene.json is not a valid scene: .*; JSON does not allow NaN"):
         scene_files.read(content, "scene.json")
     with pytest.raises(BadFile) as error:
         scene_files.read(as_bytes({"entities": [{"class": number}], "x": 1}), "scene.json")

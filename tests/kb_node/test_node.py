@@ -212,7 +212,7 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
     ("verb", "payload", "error", "text"),
     [
         ("destroy", b"\x80", errors.UnknownVerb, "unknown verb 'destroy'; there are: check, "),
-        ("commit", b"\xc1", errors.BadRequest, "malformed message: it is no valid MessagePack"),
+        ("commit", b"\xc1", errors.BadRequest, "malformed message: it is not valid MessagePack"),
         ("commit", b"\x80", errors.BadRequest, "malformed message: id is missing"),
         (
             "commit",

@@ -201,14 +201,14 @@ def test_what_the_map_refuses_is_told_and_not_said_again_at_once(world):
 
 
 NAN = float("nan")
-NOTHING = "camera left measures no depth from 0.01 to 100 m"
+NOTHING = "camera left has no depth values from 0.01 to 100 m"
 BAD = {
-    "the past": ({"stamp_ns": -5_000_000_000}, "a frame of the past is passed over"),
-    "sizes": ({"rgb": {"width": 32}}, "its picture has 32 x 48 pixels, its depth 64 x 48"),
+    "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is older"),
+    "sizes": ({"rgb": {"width": 32}}, "its colour image has 32 x 48 pixels, its depth 64 x 48"),
     "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics (0.0,"),
-    "pose": ({"map_from_camera": (2.0,) * 16}, "its map_from_camera is no pose"),
-    "bytes": ({"pixels": b"123"}, "3 bytes are no depth32f picture"),
-    "a fault": ({"depth_m": 0.1}, "a look failed: ZeroDivisionError: too near"),
+    "pose": ({"map_from_camera": (2.0,) * 16}, "map_from_camera is not a 4 x 4 pose"),
+    "bytes": ({"pixels": b"123"}, "3 bytes are not a depth32f image"),
+    "a fault": ({"depth_m": 0.1}, "processing a frame failed: ZeroDivisionError: too near"),
     "nothing measured": ({"depth_m": NAN}, NOTHING),
     "millimetres": ({"depth_m": 1500.0}, NOTHING),
     "too large": (
@@ -236,7 +236,7 @@ def test_what_is_no_frame_is_told(world):
     ("depth_m", "said"),
     [
         (1.5, "1 camera, 2 things seen, 80 ms a look"),
-        (8.0, "; 8.0 m from all there is, where within 2 m is best"),
+        (8.0, "; the nearest surface is 8.0 m away, use at most 2 m"),
     ],
 )
 def test_cameras_that_are_far_from_everything_are_told(depth_m, said):

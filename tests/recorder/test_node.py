@@ -147,7 +147,7 @@ def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):
     read = read_commits(path)
     assert [c.seq for c in read] == list(range(1, 61))
     assert [c.inserted for c in read[1:-1]] == [c.inserted for c in made]
-    assert log(path)[0] == "1  the recording goes on from here with 2 entities"
+    assert log(path)[0] == "1  the recording continues from here with 2 entities"
     assert positions(path, "chair1") == [[0.0, 0.0, 0.0]]
     assert positions(path, "cup7") == [[7.0, 0.0, 0.0]]
     assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [False]
@@ -239,7 +239,7 @@ def test_a_stopped_process_leaves_a_complete_file(world, tmp_path):
         try:
             world.await_commit(1)
             wait_for(lambda: seqs(path) == [1])
-            assert f"no live view: {serve} is taken" in world._said
+            assert f"no live view: {serve} is in use" in world._said
             world.publish(commit(2))
             world.await_commit(2)
         finally:

@@ -21,7 +21,7 @@ def test_what_is_whole_of_a_recording_that_is_cut_is_read(tmp_path, caplog):
         cut.write_bytes(content[:size])
         found.append([c.seq for c in read_commits(cut)])
         assert cut.read_bytes() == content[:size]
-    assert "cut.rrd ends within a message: its last " in caplog.text
+    assert "cut.rrd ends in the middle of a message; its last " in caplog.text
     assert found == sorted(found)
     assert {tuple(seqs) for seqs in found} == {(), (1,), (1, 2), (1, 2, 3)}
     cut.write_bytes(content[:20])

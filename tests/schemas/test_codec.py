@@ -43,9 +43,9 @@ def test_what_is_large_is_compressed():
     ("payload", "text"),
     [
         (b"x", "it ends too early"),
-        (b"x\x9cnothing", "it is no valid MessagePack"),
+        (b"x\x9cnothing", "it is not valid MessagePack"),
         (zlib.compress(b"\x80")[:-3], "it ends too early"),
-        (zlib.compress(b"\xc1" * 10_000), "it is no valid MessagePack"),
+        (zlib.compress(b"\xc1" * 10_000), "it is not valid MessagePack"),
     ],
 )
 def test_what_only_looks_compressed_is_malformed(payload, text):
@@ -110,9 +110,9 @@ def test_a_bad_field_is_named_with_what_it_may_be(fields, text):
         (b'{"class": ', "it ends too early"),
         (b"\x80", "class is missing"),
         (b"\x91\x01", "it must be an object with named fields"),
-        (b"\x81\xa5class\xa2\xff\xfe", "it has a text that is not UTF-8"),
-        (b"\xc1", "it is no valid MessagePack or JSON: invalid opcode '\\xc1' (byte 0)"),
-        (b'{"class": nonsense}', "it is no valid MessagePack or JSON: invalid character (byte 14)"),
+        (b"\x81\xa5class\xa2\xff\xfe", "it contains text that is not UTF-8"),
+        (b"\xc1", "it is not valid MessagePack or JSON: invalid opcode '\\xc1' (byte 0)"),
+        (b'{"class": nonsense}', "it is not valid MessagePack or JSON: invalid character (byte 14)"),
         (b'{"class": "Chair", "at": [1e999, 0, 0]}', f"at: the 1st {NUMBER}"),
     ],
 )

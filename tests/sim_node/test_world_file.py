@@ -119,7 +119,7 @@ def test_a_byte_order_mark_is_no_part_of_a_world(tmp_path):
 def test_what_is_no_world_is_told(tmp_path, content):
     path = tmp_path / "world.json"
     path.write_text(content)
-    with pytest.raises(BadFile, match=r"world\.json is no scene: "):
+    with pytest.raises(BadFile, match=r"world\.json is not a valid scene: "):
         open_world(path, Models())
 
 

@@ -31,7 +31,7 @@ def _kind_of_json(content: bytes, filename: str) -> Kind:
     except (ValueError, RecursionError) as error:
         if content.lstrip(_BLANK)[:1] == b"[" and not filename.lower().endswith(_OF_JSON):
             return "abox"  # Turtle may begin with a bracket, too
-        raise BadFile(f"{filename or 'the file'} is no valid JSON: {error}") from None
+        raise BadFile(f"{filename or 'the file'} is not valid JSON: {error}") from None
     if isinstance(document, dict) and "entities" in document:
         return "scene"
     tops = document if isinstance(document, list) else [document]

@@ -19,7 +19,7 @@ def read(content: bytes, filename: str) -> tuple[Described, ...]:
     try:
         root = ET.fromstring(content)
     except ET.ParseError as error:
-        raise BadFile(f"{name} is no valid XML: {error}") from None
+        raise BadFile(f"{name} is not valid XML: {error}") from None
     elements = root.findall("./semanticMap/entities/entity")
     if not elements:
         raise BadFile(f"{name} has no semantic map with entities")

@@ -1,1 +1,1 @@
-"""Documents in and out: RDF in every syntax, ABoxes and TBoxes."""
+"""Documents in and out, in the syntaxes of RDF and OWL: ABoxes, and TBoxes with what they import."""

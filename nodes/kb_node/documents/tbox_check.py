@@ -71,6 +71,7 @@ def _report(
     versions = {s: v.bare(o) for s, p, o in triples if p == VERSION and o.startswith("<")}
     ontologies = [o for o in ontology_files.header(triples).ontologies if o.startswith("<")]
     classes = _classes(triples)
+    kinds = outside_rl(filter(is_schema, triples))
     return TBoxReport(
         files=tuple(map(str, gathered.files)),
         ontologies={v.bare(o): versions.get(o, "") for o in ontologies},
@@ -83,7 +84,7 @@ def _report(
         data_properties=len(_of(triples, v.OWL_DATATYPE_PROPERTY)),
         annotation_properties=len(_of(triples, v.OWL_ANNOTATION_PROPERTY)),
         individuals=len(_individuals(triples)),
-        outside_rl=dict(outside_rl(filter(is_schema, triples)).most_common()),
+        outside_rl=dict(sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))),
         inconsistent=inconsistent,
         unsatisfiable=unsatisfiable,
         untried=untried,

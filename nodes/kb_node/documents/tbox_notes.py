@@ -50,7 +50,7 @@ def beyond(kinds: Counter[str]) -> str:
     """How many axioms say more than the reasoner draws from them, and which kinds."""
     if not kinds:
         return ""
-    most = kinds.most_common(_FEW)
+    most = sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))[:_FEW]
     few = ", ".join(f"{count} {kind}" for kind, count in most)
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"

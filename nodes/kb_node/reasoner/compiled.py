@@ -15,6 +15,7 @@ from nodes.kb_node.reasoner.explain.support import Support
 from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
 from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from nodes.kb_node.reasoner.fastpaths.stars import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -44,8 +45,13 @@ class CompiledEngine:
         Refused: the triples contradict each other.
     """
 
-    def __init__(self, triples: Iterable[Triple], closed: Facts | None = None) -> None:
-        """Start with some triples; `closed` is the closure of those of the schema, if it is known."""
+    def __init__(
+        self, triples: Iterable[Triple], closed: Facts | None = None, *, scattered: bool = False
+    ) -> None:
+        """Start with some triples; `closed` is the closure of those of the schema, if it is known.
+
+        If they are `scattered`, those of one individual are brought together first.
+        """
         triples = list(triples)
         self._prover = Prover(Words.of(triples))
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
@@ -65,7 +71,8 @@ class CompiledEngine:
         self._size = len(self._schema_triples)
         self._abox.run()
         self._abox.settle()
-        self.apply((), [triple for triple in triples if triple not in self._schema_triples])
+        data = [triple for triple in triples if triple not in self._schema_triples]
+        self.apply((), in_stars(data) if scattered else data)
 
     def __len__(self) -> int:
         return self._size

@@ -34,12 +34,15 @@ class Reasoner:
     Terms are strings in N-Triples syntax. A pattern's None is a wildcard. Not thread-safe.
     """
 
-    def __init__(self, tbox: Iterable[Triple] = (), *, closed: Facts | None = None) -> None:
+    def __init__(
+        self, tbox: Iterable[Triple] = (), *, closed: Facts | None = None, scattered: bool = False
+    ) -> None:
         """Start with some triples. Raises Inconsistent when they contradict each other.
 
-        `closed` is what another reasoner's `closed` was that had the same schema.
+        `closed` is what another reasoner's `closed` was that had the same schema. Triples that do not come
+        individual by individual, but as a store gives them, are `scattered`: that is only about speed.
         """
-        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed)
+        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered)
 
     def __len__(self) -> int:
         """How many triples are asserted, the TBox's included."""
@@ -102,7 +105,7 @@ class Reasoner:
         for triple in delete:
             after.pop(triple, None)
         after.update(dict.fromkeys(insert))
-        engine = _engine_for(after)
+        engine = _engine_for(after, scattered=True)
         old, self._engine = self._engine, engine
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
@@ -207,11 +210,13 @@ class Reasoner:
         return self._engine.explain(triple) if self.holds(triple) else None
 
 
-def _engine_for(triples: Iterable[Triple], closed: Facts | None = None) -> CompiledEngine | GeneralEngine:
+def _engine_for(
+    triples: Iterable[Triple], closed: Facts | None = None, scattered: bool = False
+) -> CompiledEngine | GeneralEngine:
     """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
     triples = list(dict.fromkeys(triples))
     try:
-        return CompiledEngine(triples, closed)
+        return CompiledEngine(triples, closed, scattered=scattered)
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None
     except NotCompilable as reason:

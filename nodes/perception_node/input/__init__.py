@@ -1,1 +1,1 @@
-"""What cameras and files give: frames and clouds."""
+"""Input: frames and point clouds from cameras and files."""

@@ -1,4 +1,4 @@
-"""What a depth camera saw, as points."""
+"""A point cloud from one depth camera."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The thread that looks: it takes the newest frames, and never holds up the node or the session."""
+"""The worker thread: it processes the newest frames and never blocks the node or the session."""
 
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ class FrameWorker:
                     found = self._look(clouds)
                     self._on_look(clouds, found, time.perf_counter() - start)
             except Exception as error:
-                log.exception("fault in a look")
-                self._complain(f"a look failed: {type(error).__name__}: {error}")
+                log.exception("processing a frame failed")
+                self._complain(f"processing a frame failed: {type(error).__name__}: {error}")
 
     def _read(self, pair: Pair) -> Cloud | None:
         frame = pair.depth.frame
@@ -73,5 +73,7 @@ class FrameWorker:
             size = f"{frame.width} x {frame.height} pixels"
             self._complain(f"camera {frame.camera}: of {size}, one of {step} x {step} is used")
         if cloud.measured < FEWEST_POINTS:
-            self._complain(f"camera {frame.camera} measures no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
+            self._complain(
+                f"camera {frame.camera} has no depth values from {NEAREST_M:g} to {FARTHEST_M:g} m"
+            )
         return cloud

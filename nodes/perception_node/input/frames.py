@@ -1,4 +1,4 @@
-"""From the planes that cameras publish to clouds: what belongs together, and whether it makes sense."""
+"""From published camera planes to clouds: pairs colour with depth and validates both."""
 
 from __future__ import annotations
 
@@ -70,7 +70,8 @@ class Frames:
             speaking = before is not None and now - before[1] < _SILENT_S
             if before is not None and speaking and frame.stamp_ns <= before[0].frame.stamp_ns:
                 raise BadRequest(
-                    f"camera {frame.camera}: a frame of the past is passed over; stamps must grow"
+                    f"camera {frame.camera}: frame ignored: its stamp is older than the last;"
+                    " stamps must increase"
                 )
             self._planes[key] = Plane(frame, read), now
             self._pair_up(frame)
@@ -137,8 +138,8 @@ def read_cloud(pair: Pair) -> Cloud:
     colour = pair.rgb.frame
     if (frame.width, frame.height) != (colour.width, colour.height):
         raise BadRequest(
-            f"camera {frame.camera}: its picture has {colour.width} x {colour.height} pixels, its depth"
-            f" {frame.width} x {frame.height}; they must be of one size"
+            f"camera {frame.camera}: its colour image has {colour.width} x {colour.height} pixels, its depth"
+            f" {frame.width} x {frame.height}; they must have the same size"
         )
     shape = (frame.height, frame.width)
     intrinsics, pose = _intrinsics(frame), _pose(frame)
@@ -166,7 +167,7 @@ def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
     content, wanted = plane.read(), math.prod(shape) * np.dtype(kind).itemsize
     if len(content) != wanted or not wanted:
         raise BadRequest(
-            f"camera {plane.frame.camera}: {len(content)} bytes are no {plane.frame.encoding} picture of"
+            f"camera {plane.frame.camera}: {len(content)} bytes are not a {plane.frame.encoding} image of"
             f" {plane.frame.width} x {plane.frame.height} pixels, which has {wanted}"
         )
     return np.frombuffer(content, np.dtype(kind).newbyteorder("<")).astype(kind, copy=False).reshape(shape)
@@ -187,5 +188,6 @@ def _pose(frame: CameraFrame) -> Transform:
     if numbers.size == 16 and is_pose(numbers.reshape(4, 4)):
         return numbers.reshape(4, 4)
     raise BadRequest(
-        f"camera {frame.camera}: its map_from_camera is no pose: a rotation, a position, 0 0 0 1"
+        f"camera {frame.camera}: map_from_camera is not a 4 x 4 pose matrix:"
+        " rotation, position, last row 0 0 0 1"
     )

@@ -1,1 +1,1 @@
-"""From looks to the map: which observation is which thing, and what the map is told."""
+"""Tracking: which observation is which thing, and what to tell the map."""

@@ -1,4 +1,4 @@
-"""Which observation is of which thing: optimal assignment, in steps from the surest on."""
+"""Assignment of observations to things: optimal, in steps from the most certain on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was seen, and what the map says: which is which, and what the map is to be told. Pure.
+"""Data association: compares observations with the map and decides what to tell it. Pure.
 
 A look is matched in steps. First things that stand where they stood, or nearly. Then, as segments of one look
 are not always those of the next, what is only a part of a thing that still fills its place, or several such

@@ -1,4 +1,4 @@
-"""Which class is a kind of which, and what is known of each."""
+"""The class hierarchy, and what is known of each class."""
 
 from __future__ import annotations
 

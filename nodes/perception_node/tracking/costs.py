@@ -1,4 +1,4 @@
-"""What it costs to take an observation for a known thing: how unlike they are in place, size and class."""
+"""Association costs: how much an observation differs from a known thing in place, size and class."""
 
 from __future__ import annotations
 

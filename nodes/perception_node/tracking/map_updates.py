@@ -1,4 +1,4 @@
-"""What the map is to be told: what the tracks say, compared with what the map says. Pure."""
+"""Map updates: the commands that bring the map in line with the tracks. Pure."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from schemas.entities import Entity, Size, distance_m, free_name, rounded
 
 AGENT = "perception_node"
 MISSING = "not seen where it should stand"
-DISPLACED = "something else is seen in its place"
+DISPLACED = "something else is in its place"
 """The conflicts of an entity that is gone."""
 
 _SURE, _UNSURE = 0.6, 0.25
@@ -30,7 +30,7 @@ def subject_of(command: Command) -> str:
             return " ".join(command.names)
         case Update():
             return command.name
-    raise TypeError(f"perception does not say {type(command).__name__}")
+    raise TypeError(f"perception does not send {type(command).__name__}")
 
 
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:

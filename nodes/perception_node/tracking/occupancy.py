@@ -1,4 +1,4 @@
-"""What depth pictures say of a box in the map: whether it is free, occupied, or out of their sight.
+"""Occupancy of a box in the map by depth images: free, occupied, or out of sight.
 
 Rays are cast through the box from each pixel that it covers, as in an occupancy grid.
 """

@@ -1,4 +1,4 @@
-"""What is remembered from look to look: where each thing rests, how big it is, what it seems to be."""
+"""Tracks: the pose, size and class of each thing, remembered from frame to frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several looks say of one thing's class together."""
+"""Combines the class votes of several frames."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What one look shows: segments of each view, and the things that the views show together."""
+"""Views: the segments of each camera, and the things that all cameras show together."""

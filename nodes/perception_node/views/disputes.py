@@ -1,4 +1,4 @@
-"""Where one camera sees one thing and another one several: that thing is cut apart."""
+"""Disputes: where one camera sees one thing and another sees several, the segment is split."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which segments of several views show the same thing."""
+"""Fusion: which segments of several views show the same thing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all views together show of one thing."""
+"""One thing, merged from all views."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One cloud, taken apart."""
+"""One cloud, segmented."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What is drawn, in Rerun's terms."""
+"""What is drawn, as Rerun archetypes."""

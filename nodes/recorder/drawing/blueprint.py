@@ -1,4 +1,4 @@
-"""How a viewer shows a recording: the scene, below it the pictures of cameras, beside it what was said."""
+"""The viewer's layout: the scene, camera images below it, commits and graph beside it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What perception saw, in Rerun's terms: boxes, points, and the pictures of the cameras."""
+"""Perception as Rerun archetypes: boxes, points and camera images."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is drawn now. Told what is, it records only what differs from what was."""
+"""The stage: what is currently drawn; only differences are recorded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What bodies look like: asked of the simulator once for each model at each size."""
+"""Body surfaces, requested from the simulator once for each model and size."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a recording has to show: the map and the scene."""
+"""The recorder's state: relations and the scene."""

@@ -108,7 +108,7 @@ def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
 def test_a_frame_of_the_past_is_refused():
     frames = Frames()
     put(frames, "left", 3_000_000_000)
-    with pytest.raises(BadRequest, match="camera left: a frame of the past is passed over"):
+    with pytest.raises(BadRequest, match="camera left: frame ignored: its stamp is older"):
         put(frames, "left", 1_000_000_000)
     put(frames, "right", 1_000_000_000)
 
@@ -138,14 +138,14 @@ def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
     [
         (
             {"rgb": {"width": 32}},
-            r"its picture has 32 x 48 pixels, its depth 64 x 48; they must be of one size",
+            r"its colour image has 32 x 48 pixels, its depth 64 x 48; they must have the same size",
         ),
         ({"intrinsics": (0.0,) * 9}, r"the intrinsics .* do not fit"),
         ({"intrinsics": (NAN,) * 9}, r"the intrinsics .* do not fit"),
         ({"intrinsics": (1.0, 2.0)}, r"the intrinsics .* do not fit"),
         ({"intrinsics": (60.0, 0, 900.0, 0, 60.0, 24.0, 0, 0, 1)}, r"the intrinsics .* do not fit"),
-        ({"map_from_camera": (1.0,) * 16}, r"its map_from_camera is no pose"),
-        ({"map_from_camera": ()}, r"its map_from_camera is no pose"),
+        ({"map_from_camera": (1.0,) * 16}, r"map_from_camera is not a 4 x 4 pose"),
+        ({"map_from_camera": ()}, r"map_from_camera is not a 4 x 4 pose"),
         ({"width": 0}, r"do not fit a picture of 0 x 48 pixels"),
     ],
 )
@@ -157,7 +157,7 @@ def test_a_frame_that_makes_no_sense_is_told_in_one_sentence(changes, reason):
 def test_too_few_bytes_are_no_picture():
     cut = pair()._replace(depth=Plane(DEPTH, lambda: b"1234"))
     with pytest.raises(
-        BadRequest, match="4 bytes are no depth32f picture of 64 x 48 pixels, which has 12288"
+        BadRequest, match="4 bytes are not a depth32f image of 64 x 48 pixels, which has 12288"
     ):
         read_cloud(cut)
 

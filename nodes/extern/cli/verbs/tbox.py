@@ -10,6 +10,7 @@ import click
 from nodes.extern.cli.calling import print_json, print_lines
 from nodes.extern.cli.ontology_options import import_option
 from nodes.extern.cli.output import show_tbox
+from nodes.runtime import extras
 from schemas import errors
 
 
@@ -28,6 +29,7 @@ def check(files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], format
     FILES (or folders) are checked together, with what they import. Exit status 1 says that they contradict
     themselves, or that nothing can be of some class; 2 that a file cannot be read.
     """
+    extras.require("semmap tbox check", "kb")
     from nodes.kb_node.documents.tbox_check import check as check_files
 
     report = check_files(files, dict(imports))

@@ -37,24 +37,26 @@ def read_cloud(path: Path) -> Cloud:
     """The cloud in a PCD or PLY file. Raises BadFile."""
     decode = _DECODERS.get(path.suffix.lower())
     if decode is None:
-        raise BadFile(f"{path} is no cloud: known are {', '.join(_DECODERS)} and pictures as .png")
+        raise BadFile(
+            f"{path} is not a supported cloud; supported are {', '.join(_DECODERS)} and images as .png"
+        )
     try:
         cloud = decode(path.read_bytes())
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
-        raise BadFile(f"{path} is no cloud: {error}") from None
+        raise BadFile(f"{path} is not a valid cloud: {error}") from None
     return checked(cloud, path)
 
 
 def checked(cloud: Cloud, path: Path) -> Cloud:
     """The cloud itself. Raises BadFile for one in which nothing could be found."""
     if cloud.points_camera.size == 0:
-        raise BadFile(f"{path} is empty: it has no points")
+        raise BadFile(f"{path} contains no points")
     if cloud.measured < FEWEST_POINTS:
         raise BadFile(
-            f"{path} has {counted(cloud.measured, 'point')} from {NEAREST_M:g} to {FARTHEST_M:g} m before the"
-            f" camera; at least {FEWEST_POINTS} are needed"
+            f"{path} has {counted(cloud.measured, 'point')} from {NEAREST_M:g} to {FARTHEST_M:g} m in front"
+            f" of the camera; at least {FEWEST_POINTS} are needed"
         )
     return cloud
 
@@ -62,7 +64,7 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
 def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
     """The frame of one depth picture and at most one of colour."""
     if camera_file is None:
-        raise BadRequest(f"{files[0]} is a picture: give the camera's intrinsics too, --intrinsics FILE.json")
+        raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE.json")
     of = camera_file
     try:
         camera = image_files.read_camera(of)
@@ -71,7 +73,9 @@ def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud
             depths.append(image_files.is_depth(of))
         if sum(depths) != 1:
             said = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
-            raise BadFile(f"{' and '.join(map(str, files))}: {said} a depth picture of 16 bits; one must be")
+            raise BadFile(
+                f"{' and '.join(map(str, files))}: {said} a 16-bit depth image; exactly one must be"
+            )
         of = files[depths.index(True)]
         color = files[depths.index(False)] if len(files) > 1 else None
         return of, checked(image_files.read_pictures(of, color, camera), of)

@@ -37,13 +37,15 @@ def read_camera(path: Path) -> PinholeCamera:
     try:
         camera = msgspec.json.decode(path.read_bytes(), type=PinholeCamera)
     except msgspec.DecodeError as error:
-        raise ValueError(f"no intrinsics: {sentence(error, PinholeCamera)}") from None
+        raise ValueError(f"invalid intrinsics: {sentence(error, PinholeCamera)}") from None
     if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):
-        raise ValueError("no intrinsics: fx, fy and depth_scale must be above 0")
+        raise ValueError("invalid intrinsics: fx, fy and depth_scale must be positive")
     if camera.map_from_camera is not None:
         numbers = np.array(camera.map_from_camera)
         if numbers.size != 16 or not is_pose(numbers.reshape(4, 4)):
-            raise ValueError("map_from_camera is no pose of 16 numbers: a rotation, a position, 0 0 0 1")
+            raise ValueError(
+                "map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1"
+            )
     return camera
 
 
@@ -80,9 +82,9 @@ def _opened(path: Path) -> Image.Image:
             raise ValueError(f"a picture of {image.width} x {image.height} pixels is too big")
         image.load()
     except (SyntaxError, Image.DecompressionBombError) as error:
-        raise ValueError(f"no picture: {error}") from None
+        raise ValueError(f"not an image: {error}") from None
     except OSError as error:
         if error.errno is not None:
             raise
-        raise ValueError("no picture, or a truncated one") from None
+        raise ValueError("not an image, or a truncated one") from None
     return image

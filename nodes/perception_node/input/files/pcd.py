@@ -41,7 +41,7 @@ def read_header(data: bytes) -> tuple[Header, int]:
     mark = data.find(b"\nDATA ", 0, _LONGEST_HEADER)
     end = data.find(b"\n", mark + 1)
     if mark < 0 or end < 0:
-        raise ValueError("no line DATA near its beginning")
+        raise ValueError("no DATA line in its header")
     lines = data[:end].decode("ascii", errors="replace").splitlines()
     said = {words[0]: words[1:] for words in map(str.split, lines) if words and not words[0].startswith("#")}
     try:
@@ -53,7 +53,7 @@ def read_header(data: bytes) -> tuple[Header, int]:
     except (KeyError, IndexError, TypeError, ValueError) as error:
         raise ValueError(f"its header is damaged ({error})") from None
     if width < 0 or height < 0 or width * height > MAX_POINTS or any(count < 1 for count in counts):
-        raise ValueError(f"its header speaks of {width} x {height} points")
+        raise ValueError(f"its header declares {width} x {height} points")
     return Header(fields, width, height, said["DATA"][0]), end + 1
 
 

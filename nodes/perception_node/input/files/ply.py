@@ -32,7 +32,7 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
     mark = data.find(b"end_header", 0, _LONGEST_HEADER)
     end = data.find(b"\n", mark)
     if mark < 0 or end < 0:
-        raise ValueError("no line end_header near its beginning")
+        raise ValueError("no end_header line in its header")
     encoding, count, element = "", 0, ""
     properties: list[tuple[str, str]] = []
     for line in data[:mark].decode("ascii", errors="replace").splitlines():
@@ -45,7 +45,7 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
                 element = name
                 count = int(number) if name == "vertex" else count
             case ["property", "list", *_] if element == "vertex":
-                raise ValueError("its vertices hold lists")
+                raise ValueError("its vertices have list properties")
             case ["property", kind, name] if element == "vertex":
                 if kind not in _TYPES:
                     raise ValueError(f"its property {name} is of the unknown type '{kind}'")
@@ -53,7 +53,7 @@ def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:
     if encoding != "ascii" and encoding not in _ORDERS:
         raise ValueError(f"its format is '{encoding}', not ascii, {' or '.join(_ORDERS)}")
     if not 0 <= count <= MAX_POINTS or not properties:
-        raise ValueError(f"its header speaks of {count} points with {len(properties)} properties")
+        raise ValueError(f"its header declares {count} points with {len(properties)} properties")
     return encoding, count, properties, end + 1
 
 

@@ -77,7 +77,7 @@ def test_pictures_need_intrinsics_and_depth(tmp_path):
     rgb, depth, camera = write_pictures(tmp_path)
     with pytest.raises(BadRequest, match="--intrinsics"):
         list(read_frames((rgb, depth)))
-    with pytest.raises(BadFile, match="depth picture"):
+    with pytest.raises(BadFile, match="depth image"):
         list(read_frames((rgb, rgb), camera))
 
 
