@@ -13,8 +13,8 @@ from nodes.kb_node.reasoner.explain.reasons import Clash
 from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.explain.support import Support
 from nodes.kb_node.reasoner.explain.words import Words
-from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
-from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
+from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 from nodes.kb_node.reasoner.fastpaths.stars import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
@@ -46,11 +46,17 @@ class CompiledEngine:
     """
 
     def __init__(
-        self, triples: Iterable[Triple], closed: Facts | None = None, *, scattered: bool = False
+        self,
+        triples: Iterable[Triple],
+        closed: Facts | None = None,
+        *,
+        scattered: bool = False,
+        fast: bool = True,
     ) -> None:
         """Start with some triples; `closed` is the closure of those of the schema, if it is known.
 
-        If they are `scattered`, those of one individual are brought together first.
+        If they are `scattered`, those of one individual are brought together first. Unless `fast`, every
+        change is worked out by the rules, however alike it is to others.
         """
         triples = list(triples)
         self._prover = Prover(Words.of(triples))
@@ -65,7 +71,7 @@ class CompiledEngine:
         self._schema = Schema(closure)
         self._of_the_schema = frozenset(s for s, _, _ in (*closure.facts, *self._inert.facts))
         self._abox = ABox(self._schema)
-        self._shapes = Shapes(self._abox)
+        self._paths = FastPaths(self._abox) if fast else PlainPaths()
         self._view = View(self._abox)
         self._told_by = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
@@ -96,7 +102,7 @@ class CompiledEngine:
         """
         abox = self._abox
         if delete:
-            gone = exchange(abox, delete, insert) if insert else depart(abox, delete)
+            gone = self._paths.change(delete, insert)
             if gone is not None:
                 self._size += len(insert) - len(delete)
                 return Change(frozenset(gone))
@@ -109,16 +115,18 @@ class CompiledEngine:
         retraction = Retraction(abox) if delete else None
         try:
             if retraction is None:
-                self._insert_runs(insert, added, touched, alike)
+                alike = self._paths.insert(insert, lambda some: self._insert(some, added, touched), added)
             else:
                 removed = retraction.delete(delete)
                 touched.update([s for s, _, _ in removed])
                 self._insert(insert, added, touched)
+        except Known as known:
+            raise Refused(known.explanation) from None
         except Clash as clash:
             proof, terms = self._prover.proof(Support(abox, self._told_by).of_clash(clash.claims), None)
             self._undo(retraction, removed, added)
             if not removed:
-                self._shapes.refuse(insert, proof, terms)
+                self._paths.refuse(insert, proof, terms)
             raise Refused(proof.about(terms)) from None
         except NotCompilable:
             self._undo(retraction, removed, added)
@@ -129,35 +137,6 @@ class CompiledEngine:
             retraction.release()
         self._size += len(added) - len(removed)
         return Change(frozenset(touched), alike)
-
-    def _insert_runs(
-        self, triples: Sequence[Triple], added: list[Triple], touched: set[Term], alike: list[Alike]
-    ) -> None:
-        """Insert triples: run by run as far as what follows is known, and the others together."""
-        shapes, at = self._shapes, 0
-        rest: list[Triple] = []
-        while at < len(triples):
-            stars, end = ([], len(triples)) if self._abox.is_mixed else shapes.write_all(triples, at)
-            if stars:
-                added += triples[at:end]
-                alike += stars
-                at = end
-                continue
-            for run in shapes.runs(triples, at, end):
-                at += len(run.triples)
-                known = None if self._abox.is_mixed or run.form is None else shapes.known.get(run.shape, run)
-                if isinstance(known, Written) and shapes.write(known, run):
-                    added += run.triples
-                    alike.append(Alike(known, run))
-                elif known is run:
-                    self._insert(run.triples, added, touched)
-                    shapes.learn(run)
-                elif isinstance(known, Contradiction) and not added:
-                    raise Refused(known.of(run))
-                else:
-                    rest += run.triples
-        if rest:
-            self._insert(rest, added, touched)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""

@@ -35,14 +35,21 @@ class Reasoner:
     """
 
     def __init__(
-        self, tbox: Iterable[Triple] = (), *, closed: Facts | None = None, scattered: bool = False
+        self,
+        tbox: Iterable[Triple] = (),
+        *,
+        closed: Facts | None = None,
+        scattered: bool = False,
+        fast: bool = True,
     ) -> None:
         """Start with some triples. Raises Inconsistent when they contradict each other.
 
         `closed` is what another reasoner's `closed` was that had the same schema. Triples that do not come
-        individual by individual, but as a store gives them, are `scattered`: that is only about speed.
+        individual by individual, but as a store gives them, are `scattered`: that is only about speed. So is
+        `fast`: without it, changes like earlier ones are worked out like any other.
         """
-        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered)
+        self._fast = fast
+        self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered, fast)
 
     def __len__(self) -> int:
         """How many triples are asserted, the TBox's included."""
@@ -105,7 +112,7 @@ class Reasoner:
         for triple in delete:
             after.pop(triple, None)
         after.update(dict.fromkeys(insert))
-        engine = _engine_for(after, scattered=True)
+        engine = _engine_for(after, scattered=True, fast=self._fast)
         old, self._engine = self._engine, engine
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
@@ -140,7 +147,7 @@ class Reasoner:
                 return
         elif not anew:
             raise NotCompilable("the engine works everything out anew")
-        self._engine = _engine_for([*self.asserted(), *new])
+        self._engine = _engine_for([*self.asserted(), *new], fast=self._fast)
         try:
             yield
         finally:
@@ -211,12 +218,12 @@ class Reasoner:
 
 
 def _engine_for(
-    triples: Iterable[Triple], closed: Facts | None = None, scattered: bool = False
+    triples: Iterable[Triple], closed: Facts | None = None, scattered: bool = False, fast: bool = True
 ) -> CompiledEngine | GeneralEngine:
     """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
     triples = list(dict.fromkeys(triples))
     try:
-        return CompiledEngine(triples, closed, scattered=scattered)
+        return CompiledEngine(triples, closed, scattered=scattered, fast=fast)
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None
     except NotCompilable as reason:

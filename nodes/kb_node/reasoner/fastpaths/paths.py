@@ -1,0 +1,92 @@
+"""The fast paths behind one interface, which can be switched off: then the rules work every change out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.explain.proof import Proof
+from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
+from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from schemas.explanations import Explanation, Term, Triple
+
+WorkOut = Callable[[Sequence[Triple]], None]
+"""Inserts triples and draws all conclusions, by the rules."""
+
+
+class Known(Exception):
+    """Triples that contradict each other as others of their shape did."""
+
+    def __init__(self, explanation: Explanation) -> None:
+        super().__init__(explanation.text)
+        self.explanation = explanation
+
+
+class PlainPaths:
+    """No fast paths: every change is worked out."""
+
+    def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+        """Make a change with deletions of which it is plain whom it concerns: who that is.
+
+        None, with nothing done, where it is not plain.
+        """
+        return None
+
+    def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
+        """Insert triples: what is known is written down, `added`, and returned; all else is worked out.
+
+        Raises:
+            Known: they are known to contradict each other; nothing was done.
+        """
+        if triples:
+            work_out(triples)
+        return []
+
+    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """Take note of triples that were refused, by a proof that is about `terms`."""
+
+
+class FastPaths(PlainPaths):
+    """Shapes whose consequences are known, and changes that are plain at sight."""
+
+    def __init__(self, abox: ABox) -> None:
+        self._abox = abox
+        self.shapes = Shapes(abox)
+
+    def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
+        """See `PlainPaths`."""
+        return exchange(self._abox, delete, insert) if insert else depart(self._abox, delete)
+
+    def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
+        """See `PlainPaths`. Run by run as far as what follows is known, and the others together."""
+        shapes, at = self.shapes, 0
+        alike: list[Alike] = []
+        rest: list[Triple] = []
+        while at < len(triples):
+            stars, end = ([], len(triples)) if self._abox.is_mixed else shapes.write_all(triples, at)
+            if stars:
+                added += triples[at:end]
+                alike += stars
+                at = end
+                continue
+            for run in shapes.runs(triples, at, end):
+                at += len(run.triples)
+                is_mixed = self._abox.is_mixed
+                known = None if is_mixed or run.form is None else shapes.known.get(run.shape, run)
+                if isinstance(known, Written) and shapes.write(known, run):
+                    added += run.triples
+                    alike.append(Alike(known, run))
+                elif known is run:
+                    work_out(run.triples)
+                    shapes.learn(run)
+                elif isinstance(known, Contradiction) and not added:
+                    raise Known(known.of(run))
+                else:
+                    rest += run.triples
+        if rest:
+            work_out(rest)
+        return alike
+
+    def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
+        """See `PlainPaths`."""
+        self.shapes.refuse(triples, proof, terms)
