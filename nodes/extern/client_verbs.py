@@ -7,7 +7,7 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType, MethodType
@@ -142,7 +142,11 @@ def _load(
     tbox: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
+<<<<<<< HEAD
     dry_run: bool = False,
+=======
+    spatial_root: Sequence[str] = (),
+>>>>>>> moves
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -154,6 +158,7 @@ def _load(
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
+    `spatial_root` are classes, by IRI or name, whose instances are things in space.
     """
     if imports and not tbox:
         raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
@@ -165,6 +170,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        spatial_root=tuple(spatial_root),
         parts=parts,
         dry_run=dry_run,
         id=id,
