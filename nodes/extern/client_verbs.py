@@ -142,11 +142,8 @@ def _load(
     tbox: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
-<<<<<<< HEAD
-    dry_run: bool = False,
-=======
     spatial_root: Sequence[str] = (),
->>>>>>> moves
+    dry_run: bool = False,
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:

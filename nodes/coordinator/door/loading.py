@@ -134,11 +134,8 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         reason=command.reason or f"load the TBox {command.filename}",
         content=command.content,
         filename=command.filename,
-<<<<<<< HEAD
-        dry_run=command.dry_run,
-=======
         spatial_root=command.spatial_root,
->>>>>>> moves
+        dry_run=command.dry_run,
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:

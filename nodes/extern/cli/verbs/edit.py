@@ -138,11 +138,8 @@ def clear(client: Client, dry_run: bool) -> None:
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
 @click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
 @import_option
-<<<<<<< HEAD
-@_dry_run
-=======
 @spatial_root_option
->>>>>>> moves
+@_dry_run
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
