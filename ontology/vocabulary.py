@@ -186,6 +186,8 @@ CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
 
 SPATIAL: Final = dm("spatial")
 """Annotation of a class: true for a root of the classes of things in space."""
+SET_ASIDE: Final = dm("setAside")
+"""Annotation of a term of the TBox: a statement about it that does not count, and why."""
 MODEL: Final = dm("model")
 """Annotation of a class: the name or file of its body model."""
 FIXED: Final = dm("fixed")

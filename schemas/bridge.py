@@ -108,7 +108,10 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+    """Let the TBox of a document, in any RDF syntax, take the place of the present one.
+
+    `spatial_root` are the classes of things in space, by IRI or name, where that is not known by itself.
+    """
 
     VERB: ClassVar[str] = "load-tbox"
 
@@ -118,6 +121,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     reason: str = ""
     content: bytes
     filename: str
+    spatial_root: tuple[str, ...] = ()
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -7,7 +7,7 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType, MethodType
@@ -113,6 +113,7 @@ def _load(
     tbox: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -124,6 +125,7 @@ def _load(
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
+    `spatial_root` are classes, by IRI or name, whose instances are things in space.
     """
     if imports and not tbox:
         raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
@@ -135,6 +137,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        spatial_root=tuple(spatial_root),
         parts=parts,
         id=id,
         reason=reason,

@@ -341,7 +341,7 @@ class KnowledgeBase:
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
-        read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = document_change.tbox_of(self.map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:

@@ -41,6 +41,8 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
         raise errors.BadRequest("what replaces something is one commit; load it without --parts")
     if command.tbox:
         return (yield from _load_tbox(view, command))
+    if command.spatial_root:
+        raise errors.BadRequest("--spatial-root is for a TBox: add --tbox")
     if command.replace:
         require_authority(command, view.entities.values())
     kind = kind_of(command.content, command.filename)
@@ -129,6 +131,7 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         reason=command.reason or f"load the TBox {command.filename}",
         content=command.content,
         filename=command.filename,
+        spatial_root=command.spatial_root,
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:

@@ -21,6 +21,7 @@ from schemas.explanations import Term
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
 _TRUE = frozenset(v.literal(text, v.XSD_BOOLEAN) for text in ("true", "1"))
+_NUMBERS = (v.XSD_FLOAT, v.iri(v.XSD + "double"))
 _LABELS = (v.RDFS_LABEL, v.SKOS_PREF_LABEL, v.SKOS_ALT_LABEL)
 
 
@@ -77,6 +78,25 @@ class ClassTable:
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
+
+    @cached_property
+    def number_kinds(self) -> dict[Term, Term]:
+        """The kind of number that properties ask for: a star's, and with alignments all of the TBox."""
+        known = dict.fromkeys((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ), v.XSD_FLOAT)
+        if self.alignments:
+            for p in self.properties:
+                if (kind := self._number_kind(p, frozenset())) is not None:
+                    known.setdefault(p, kind)
+        return known
+
+    def _number_kind(self, p: Term, seen: frozenset[Term]) -> Term | None:
+        """The number that is the range of a property, or of one above it."""
+        kinds = {o for _, _, o in self._reasoner.asserted(p, v.RDFS_RANGE, None)}.intersection(_NUMBERS)
+        if kinds:
+            return min(kinds)
+        above = {o for _, _, o in self._reasoner.asserted(p, v.RDFS_SUB_PROPERTY_OF, None)} - seen - {p}
+        found = (self._number_kind(q, seen | {p}) for q in sorted(above))
+        return next(filter(None, found), None)
 
     @property
     def ambiguous(self) -> dict[str, tuple[str, ...]]:

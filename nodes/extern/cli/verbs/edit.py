@@ -11,7 +11,7 @@ import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
-from nodes.extern.cli.ontology_options import import_option
+from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
@@ -86,6 +86,7 @@ def clear(client: Client) -> None:
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
 @click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
 @import_option
+@spatial_root_option
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
