@@ -17,6 +17,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Properties,
     Relations,
     Renew,
     Sparql,
@@ -105,6 +106,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     skip_unknown: bool
     strict: bool = False
     parts: bool = False
+    dry_run: bool = False
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -122,6 +124,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     content: bytes
     filename: str
     spatial_root: tuple[str, ...] = ()
+    dry_run: bool = False
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -136,7 +139,7 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     where: Where | None = None
 
 
-class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"
@@ -145,6 +148,7 @@ class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=T
     agent: str = ""
     reason: str = ""
     commit: int | None = None
+    dry_run: bool = False
 
 
 BRIDGE: dict[str, type[Call]] = {
@@ -152,7 +156,7 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
         *(Sparql, Watch, Renew),
     )
 }

@@ -28,7 +28,7 @@ from nodes.extern.ontologies import ontology
 from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
-from schemas.entities import Entity
+from schemas.entities import Entity, Value
 from schemas.moments import When
 from schemas.scenes import Picture
 
@@ -99,9 +99,38 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
     }
 
 
-def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
+def _remove(*names: str, dry_run: bool = False, id: str = "", reason: str = "") -> Command[replies.Changed]:
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
-    return commands.Remove(names=names, id=id, reason=reason)
+    return commands.Remove(names=names, dry_run=dry_run, id=id, reason=reason)
+
+
+def _set(
+    name: str,
+    property: str,
+    *values: Value,
+    if_is: Value | None = None,
+    if_unset: bool = False,
+    confidence: float | None = None,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """State a data or object property of an entity: `client.set("door1", "isOpen", True)`.
+
+    The value of a functional property replaces the one before; other properties get more values. With `if_is`
+    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none.
+    """
+    return commands.Set(
+        name=name,
+        property=property,
+        values=values,
+        if_is=if_is,
+        if_unset=if_unset,
+        confidence=confidence,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
 
 
 def _load(
@@ -114,6 +143,7 @@ def _load(
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    dry_run: bool = False,
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -139,6 +169,7 @@ def _load(
         tbox=tbox,
         spatial_root=tuple(spatial_root),
         parts=parts,
+        dry_run=dry_run,
         id=id,
         reason=reason,
     )
@@ -199,6 +230,8 @@ class Verbs:
     # To change
     add = Verb(commands.Add)
     update = Verb(commands.Update)
+    set = Verb(_set)
+    unset = Verb(commands.Unset)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)
     load = Verb(_load)
@@ -215,6 +248,7 @@ class Verbs:
     relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
+    properties = Verb(commands.Properties)
     status = Verb(commands.Status)
     history = Verb(commands.History)
     last_seen = Verb(commands.LastSeen)

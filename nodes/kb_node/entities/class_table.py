@@ -10,6 +10,7 @@ from msgspec import structs
 
 from nodes.kb_node.entities import alignments
 from nodes.kb_node.entities.alignments import Alignment
+from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import prefixes, stars
 from ontology import vocabulary as v
@@ -70,6 +71,7 @@ class ClassTable:
         self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
         self.places: frozenset[Term] = places - self._solid
+        self.stated = PropertyTable(reasoner, self.prefixes, self.edges | self.first_words)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
