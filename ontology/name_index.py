@@ -54,7 +54,7 @@ class NameIndex:
             for label in {fold(label) for label in item.labels} - {""}:
                 self._labelled.setdefault(label, []).append(name)
             for label in item.labels:
-                self._hints.setdefault(label, f"{name} ('{label}')")
+                self._hints.setdefault(label, f"{name} ('{label}')" if fold(label) != fold(name) else name)
             self._hints[name] = name
 
     def find(self, word: str) -> str | None:

@@ -186,6 +186,8 @@ CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
 
 SPATIAL: Final = dm("spatial")
 """Annotation of a class: true for a root of the classes of things in space."""
+SET_ASIDE: Final = dm("setAside")
+"""Annotation of a term of the TBox: a statement about it that does not count, and why."""
 MODEL: Final = dm("model")
 """Annotation of a class: the name or file of its body model."""
 FIXED: Final = dm("fixed")
@@ -218,6 +220,7 @@ OWL_ONTOLOGY: Final = iri(f"{OWL}Ontology")
 OWL_IMPORTS: Final = iri(f"{OWL}imports")
 OWL_OBJECT_PROPERTY: Final = iri(f"{OWL}ObjectProperty")
 OWL_DATATYPE_PROPERTY: Final = iri(f"{OWL}DatatypeProperty")
+OWL_FUNCTIONAL_PROPERTY: Final = iri(f"{OWL}FunctionalProperty")
 OWL_ANNOTATION_PROPERTY: Final = iri(f"{OWL}AnnotationProperty")
 PROPERTY_KINDS: Final = (
     OWL_OBJECT_PROPERTY,

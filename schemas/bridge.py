@@ -17,6 +17,7 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Properties,
     Relations,
     Renew,
     Sparql,
@@ -105,10 +106,14 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     skip_unknown: bool
     strict: bool = False
     parts: bool = False
+    dry_run: bool = False
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Let the TBox of a document, in any RDF syntax, take the place of the present one."""
+    """Let the TBox of a document, in any RDF syntax, take the place of the present one.
+
+    `spatial_root` are the classes of things in space, by IRI or name, where that is not known by itself.
+    """
 
     VERB: ClassVar[str] = "load-tbox"
 
@@ -118,6 +123,8 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     reason: str = ""
     content: bytes
     filename: str
+    spatial_root: tuple[str, ...] = ()
+    dry_run: bool = False
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -132,7 +139,7 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     where: Where | None = None
 
 
-class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=True):
+class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"
@@ -141,6 +148,7 @@ class TakeBack(Call[Effects], frozen=True, kw_only=True, forbid_unknown_fields=T
     agent: str = ""
     reason: str = ""
     commit: int | None = None
+    dry_run: bool = False
 
 
 BRIDGE: dict[str, type[Call]] = {
@@ -148,7 +156,7 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
         *(Sparql, Watch, Renew),
     )
 }

@@ -18,11 +18,13 @@ from schemas.entities import (
     Entity,
     Name,
     Probability,
+    PropertyInfo,
     Quaternion,
     Remark,
     Size,
     Source,
     Text,
+    Value,
     Vector,
     composed,
 )
@@ -76,8 +78,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
     """Add an entity to the map.
 
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
-    pose; with `default` it also gets the class's label as reference. `wait` delays the reply until
-    its body stands in the scene.
+    pose; with `default` it also gets the class's label as reference. `set` are properties, each written
+    `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene.
     """
 
     class_: ClassName = field(name="class")
@@ -91,12 +93,16 @@ class Add(Command[Changed], frozen=True, tag="add"):
     confidence: Probability | None = None
     default: bool = False
     wait: bool = False
+    set: tuple[Text, ...] = ()
+    dry_run: bool = False
 
 
 class Update(Command[Changed], frozen=True, tag="update"):
     """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
+    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
+    that would make an object a place, or a place an object, is refused without `force`.
     """
 
     name: str
@@ -110,12 +116,45 @@ class Update(Command[Changed], frozen=True, tag="update"):
     conflict: Remark | None = None
     confidence: Probability | None = None
     wait: bool = False
+    set: tuple[Text, ...] = ()
+    unset: tuple[Text, ...] = ()
+    force: bool = False
+    dry_run: bool = False
+
+
+class Set(Command[Changed], frozen=True, tag="set"):
+    """State a data or object property of an entity, by its name or label, e.g. `set door1 isOpen false`.
+
+    Values are typed by the property's range: true or false, numbers, texts (`rosso@it` has a language),
+    individuals by name. The value of a functional property replaces the one before; other properties get
+    more values. With `if_is` it is refused with PreconditionFailed unless that is a value now, with
+    `if_unset` unless there is none.
+    """
+
+    name: str
+    property: Text
+    values: tuple[Value, ...]
+    if_is: Value | None = None
+    if_unset: bool = False
+    confidence: Probability | None = None
+    dry_run: bool = False
+
+
+class Unset(Command[Changed], frozen=True, tag="unset"):
+    """Take back one value of an entity's property, or all of them; `if_is` as for `set`."""
+
+    name: str
+    property: Text
+    value: Value | None = None
+    if_is: Value | None = None
+    dry_run: bool = False
 
 
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 
     names: tuple[str, ...]
+    dry_run: bool = False
 
     def __post_init__(self) -> None:
         """As for `name`."""
@@ -125,6 +164,8 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 class Clear(Command[Changed], frozen=True, tag="clear"):
     """Remove all entities from the map and the scene. The TBox stays."""
 
+    dry_run: bool = False
+
 
 class Load(Command[Changed], frozen=True, tag="load"):
     """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
@@ -132,7 +173,8 @@ class Load(Command[Changed], frozen=True, tag="load"):
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
     class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
     that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
-    file is a TBox that takes the place of the present one, unless the map does not fit it.
+    file is a TBox that takes the place of the present one, unless the map does not fit it; `spatial_root` are
+    classes of it whose instances are things in space, where that is not known by itself.
 
     A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
     when one part is refused, those before it stay, and the error says so.
@@ -144,7 +186,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     skip_unknown: bool = False
     strict: bool = False
     tbox: bool = False
+    spatial_root: tuple[ClassName, ...] = ()
     parts: bool = False
+    dry_run: bool = False
 
 
 # To ask
@@ -246,6 +290,10 @@ class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
     """The classes of the TBox, with the number of entities of each."""
 
 
+class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties"):
+    """The data and object properties of the TBox that may be `set`: what they take, and their labels."""
+
+
 class Status(Command[SystemStatus], frozen=True, tag="status"):
     """The state of the nodes, the map and the scene, and any problems."""
 
@@ -275,6 +323,7 @@ class Undo(Command[Changed], frozen=True, tag="undo"):
     """
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
+    dry_run: bool = False
 
 
 # To query

@@ -25,6 +25,13 @@ from schemas.entities import (
 from schemas.explanations import Term, Triple
 
 
+class Statement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """A property, by name or label, and values of it as they are written; none stands for all."""
+
+    property: str
+    values: tuple[str, ...] = ()
+
+
 class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
 
@@ -36,12 +43,16 @@ class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     alt: tuple[Text, ...] = ()
     affordances: tuple[str, ...] = ()
     """Individuals of the TBox, by their local names."""
+    set: tuple[Statement, ...] = ()
 
 
 class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """What an entity is to be from now on; omitted fields keep their values.
 
-    `alt` replaces all alternative references. An empty `conflict` takes the present one back.
+    `alt` replaces all alternative references. An empty `conflict` takes the present one back. `unset` goes
+    before `set`, which replaces the value of a functional property and adds those of another. All of it is
+    refused with `PreconditionFailed` unless the properties of `only_if` have one of these values now (no
+    value, where none is given).
     """
 
     name: str
@@ -53,6 +64,9 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
     ref: Text | None = None
     alt: tuple[Text, ...] | None = None
     conflict: Remark | None = None
+    only_if: tuple[Statement, ...] = ()
+    unset: tuple[Statement, ...] = ()
+    set: tuple[Statement, ...] = ()
 
     @property
     def places(self) -> bool:
@@ -128,6 +142,20 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
+class Trial(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a dry run would commit: how many triples, and what would follow and no longer follow.
+
+    The latter in words, of the first entities that it touches.
+    """
+
+    inserted: int
+    retracted: int
+    changed: tuple[str, ...]
+    """The names of the entities that it would change, all of them."""
+    gained: tuple[str, ...]
+    lost: tuple[str, ...]
+
+
 class Effects(Struct, frozen=True, kw_only=True):
     """What became of the entities: all that a follower of the map needs of a commit.
 
@@ -142,6 +170,8 @@ class Effects(Struct, frozen=True, kw_only=True):
     abridged: Extent | None = None
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+    trial: Trial | None = None
+    """Of a dry run: nothing was done."""
 
     @classmethod
     def of(cls, commit: Commit) -> Effects:
@@ -195,6 +225,8 @@ class Transaction(
     require: tuple[Triple, ...] = ()
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
+    dry_run: bool = False
+    """Answered with what it would do, and not done."""
 
 
 MANY_ENTITIES = 10_000

@@ -123,6 +123,12 @@ class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     confidence: Probability | None = None
 
 
+Value = bool | int | float | str
+"""A property's value: a boolean, a number, a text (with @ and its language), or an individual's name."""
+Stated = Value | tuple[Value, ...]
+"""What is stated by a property: one value if it is functional, else all of them."""
+
+
 class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What the simulator makes of an entity.
 
@@ -147,7 +153,7 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
     states, or None; replies fill in what its body measures, or what its model does.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
-    `reference_provenance` what it is called.
+    `reference_provenance` what it is called. `properties` are the data and object properties asserted of it.
     """
 
     name: str
@@ -160,6 +166,8 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     alternative_references: tuple[str, ...] = ()
     conflict: str = ""
     """What perception sees against this, kept beside it because an operator said it; empty for nothing."""
+    properties: dict[str, Stated] = {}
+    """Other asserted properties, by name: `{"isOpen": true, "hasColor": ["color_red"]}`."""
     place: bool = False
     fixed: bool = False
     model: str = ""
@@ -196,3 +204,21 @@ class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How many entities say they are of this class."""
     inferred: int = 0
     """How many are, by inference."""
+
+
+class PropertyInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One data or object property of the TBox that may be stated of an entity, as commands need it."""
+
+    name: str
+    iri: str
+    kind: Literal["data", "object"]
+    functional: bool
+    """It has one value at most: a new one takes the place of the one before."""
+    domain: tuple[str, ...]
+    range: tuple[str, ...]
+    """Datatypes or classes; empty for anything."""
+    labels: dict[str, str]
+    """Language tag (or "") to text."""
+    comment: str = ""
+    values: dict[str, str]
+    """The individuals of the TBox that it may point to, by name, with their labels."""

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from msgspec import Struct
 
+from schemas.changes import Change
 from schemas.entities import Pose, Probability, Provenance, Source
 from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation, Triple
@@ -20,7 +21,12 @@ class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     skipped: tuple[str, ...] = ()
     """What was left out, and why."""
     notes: tuple[str, ...] = ()
-    """How the request was understood, where it was not taken literally."""
+    """How the request was understood, where it was not taken literally; and what may be a mistake."""
+    dry_run: bool = False
+    """Nothing was done: this is what would have been."""
+    follows: tuple[str, ...] = ()
+    """Of a dry run: what would follow about the entities that it touches, and does not now."""
+    no_longer_follows: tuple[str, ...] = ()
 
 
 class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -107,6 +113,8 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """How many went."""
     changed: tuple[str, ...]
     removed: tuple[str, ...]
+    changes: tuple[Change, ...] = ()
+    """What was and what is, of the first entities that it touched."""
 
 
 class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

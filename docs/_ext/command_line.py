@@ -18,7 +18,7 @@ Written from `semmap --help`. Every verb takes `-h`; options may be given in any
 
 def page() -> str:
     """The page as it should be."""
-    return HEAD + "".join(_sections(app, click.Context(app, info_name="semmap")))
+    return HEAD + "".join(_sections(app, click.Context(app, info_name="semmap", **app.context_settings)))
 
 
 def _sections(command: click.Command, context: click.Context) -> Iterator[str]:
@@ -31,7 +31,9 @@ def _sections(command: click.Command, context: click.Context) -> Iterator[str]:
             child = command.get_command(context, name)
             assert child is not None
             if not child.hidden:
-                yield from _sections(child, click.Context(child, parent=context, info_name=name))
+                yield from _sections(
+                    child, click.Context(child, parent=context, info_name=name, **child.context_settings)
+                )
 
 
 if __name__ == "__main__":

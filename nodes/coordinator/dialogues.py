@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, Transactions
@@ -48,20 +49,29 @@ def hold(talk: Talk[T], ask: Ask) -> T:
 
 def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
     """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
-    future: Future[T] = Future()
+    held = _Held(talk, ask_later, Future())
+    held.go_on(None)
+    return held.future
 
-    def go_on(answer: Answer) -> None:
+
+@dataclass(frozen=True)
+class _Held(Generic[T]):
+    """A talk under way. It refers to itself nowhere, so that what it is about goes when it ends."""
+
+    talk: Talk[T]
+    ask_later: AskLater
+    future: Future[T]
+
+    def go_on(self, answer: Answer) -> None:
+        """Give it the answer, and ask what it asks next."""
         try:
-            call = _go_on(talk, answer)
+            call = _go_on(self.talk, answer)
         except StopIteration as end:
-            future.set_result(end.value)
+            self.future.set_result(end.value)
         except Exception as error:
-            future.set_exception(error)
+            self.future.set_exception(error)
         else:
-            ask_later(call).add_done_callback(lambda done: go_on(_answer_of(done.result)))
-
-    go_on(None)
-    return future
+            self.ask_later(call).add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
 
 
 def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:

@@ -64,6 +64,8 @@ class Coordinator:
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
             c.Update.answered_by(self._with_body),
+            c.Set.answered_by(self._turns.change),
+            c.Unset.answered_by(self._turns.change),
             c.Remove.answered_by(self._noted),
             c.Clear.answered_by(self._noted),
             c.Load.answered_by(self._load),
@@ -84,6 +86,7 @@ class Coordinator:
             c.Relations.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
+            c.Properties.answered_by(relay),
             c.Sparql.answered_by(relay),
             c.Watch.answered_by(relay),
             c.Renew.answered_by(relay),
@@ -151,7 +154,7 @@ class Coordinator:
     def _with_body(self, command: c.Add | c.Update) -> Future[Changed]:
         """The reply waits for the body if that is wanted."""
         made = self._noted(command)
-        if not command.wait:
+        if not command.wait or command.dry_run:
             return made
         future: Future[Changed] = Future()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from schemas.commands import Add, Command, Update
-from schemas.commits import Edit, NewEntity, Transaction
-from schemas.entities import ClassInfo, Pose
+from schemas import errors
+from schemas.commands import Add, Command, Set, Unset, Update
+from schemas.commits import Edit, NewEntity, Statement, Transaction
+from schemas.entities import ClassInfo, Pose, Value
 from schemas.scene_files import Described, pose_of
 
 
@@ -29,12 +30,21 @@ def transaction(
         remove=tuple(remove),
         edit=tuple(edit),
         add=tuple(add),
+        dry_run=getattr(command, "dry_run", False),
     )
 
 
 def add(command: Add, name: str, found: ClassInfo, pose: Pose, ref: str | None) -> Transaction:
     """A new entity; its name must be free."""
-    new = NewEntity(name=name, class_iri=found.iri, pose=pose, size=command.size, ref=ref, alt=command.alt)
+    new = NewEntity(
+        name=name,
+        class_iri=found.iri,
+        pose=pose,
+        size=command.size,
+        ref=ref,
+        alt=command.alt,
+        set=tuple(map(_assignment, command.set)),
+    )
     return transaction(command, f"add {found.name} {name}", add=[new])
 
 
@@ -50,8 +60,40 @@ def update(command: Update, found: ClassInfo | None = None) -> Transaction:
         ref=command.ref,
         alt=command.alt,
         conflict=command.conflict,
+        unset=tuple(map(_unassignment, command.unset)),
+        set=tuple(map(_assignment, command.set)),
     )
     return transaction(command, f"update {command.name}", edit=[edit])
+
+
+def state(command: Set) -> Transaction:
+    """A property gets values. Raises BadRequest without any."""
+    if not command.values:
+        raise errors.BadRequest(f"give a value of {command.property}; to have none: semmap unset")
+    if command.if_unset and command.if_is is not None:
+        raise errors.BadRequest("give either --if-is or --if-unset")
+    condition = Statement(property=command.property) if command.if_unset else None
+    if command.if_is is not None:
+        condition = _statement(command.property, command.if_is)
+    edit = Edit(
+        name=command.name,
+        only_if=() if condition is None else (condition,),
+        set=(_statement(command.property, *command.values),),
+    )
+    said = " ".join(map(_text, command.values))
+    return transaction(command, f"set {command.name} {command.property} {said}", edit=[edit])
+
+
+def unstate(command: Unset) -> Transaction:
+    """A property loses a value, or all of them."""
+    value = () if command.value is None else (command.value,)
+    edit = Edit(
+        name=command.name,
+        only_if=() if command.if_is is None else (_statement(command.property, command.if_is),),
+        unset=(_statement(command.property, *value),),
+    )
+    said = "".join(f" {_text(v)}" for v in value)
+    return transaction(command, f"unset {command.name} {command.property}{said}", edit=[edit])
 
 
 def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:
@@ -70,3 +112,26 @@ def described(name: str, found: ClassInfo, said: Described) -> NewEntity:
         alt=said.alt,
         affordances=said.affords,
     )
+
+
+def _statement(property_: str, *values: Value) -> Statement:
+    return Statement(property=property_, values=tuple(map(_text, values)))
+
+
+def _text(value: Value) -> str:
+    """A value as people write it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _assignment(words: str) -> Statement:
+    """`PROPERTY=VALUE`. Raises BadRequest."""
+    name, equals, value = words.partition("=")
+    if not (name and equals):
+        raise errors.BadRequest(f"'{words}' is not of the form PROPERTY=VALUE")
+    return Statement(property=name.strip(), values=(value,))
+
+
+def _unassignment(words: str) -> Statement:
+    """`PROPERTY` or `PROPERTY=VALUE`."""
+    name, equals, value = words.partition("=")
+    return Statement(property=name.strip(), values=(value,) if equals else ())

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from nodes.runtime.futures import settle
 from schemas import errors
-from schemas.commands import Add, Clear, Load, Remove, Undo, Update
+from schemas.commands import Add, Clear, Load, Remove, Set, Undo, Unset, Update
 from schemas.replies import Changed
 
 GROUP = 16
@@ -24,7 +24,7 @@ GROUP = 16
 AT_ONCE = 2
 """How many groups may be under way: one that the knowledge base works on, and one that waits there."""
 
-Change = Add | Update | Remove | Clear | Load | Undo
+Change = Add | Update | Set | Unset | Remove | Clear | Load | Undo
 Results = list[Changed | errors.SemmapError]
 
 
@@ -112,10 +112,12 @@ class Turns:
 
 
 def _entity(change: Change) -> str | None:
-    """The one that it is about; None when it depends on others."""
+    """The one that it is about; None when it depends on others, or is to go alone."""
+    if change.dry_run:
+        return None
     if isinstance(change, Add):
         return change.name if change.at is not None else None
-    return change.name if isinstance(change, Update) else None
+    return change.name if isinstance(change, (Update, Set, Unset)) else None
 
 
 def _result(result: Changed | errors.SemmapError) -> Changed:

@@ -7,7 +7,7 @@ the parameters of the command's constructor; so do `help(client.add)` and `inspe
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType, MethodType
@@ -28,7 +28,7 @@ from nodes.extern.ontologies import ontology
 from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command
-from schemas.entities import Entity
+from schemas.entities import Entity, Value
 from schemas.moments import When
 from schemas.scenes import Picture
 
@@ -99,9 +99,38 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
     }
 
 
-def _remove(*names: str, id: str = "", reason: str = "") -> Command[replies.Changed]:
+def _remove(*names: str, dry_run: bool = False, id: str = "", reason: str = "") -> Command[replies.Changed]:
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
-    return commands.Remove(names=names, id=id, reason=reason)
+    return commands.Remove(names=names, dry_run=dry_run, id=id, reason=reason)
+
+
+def _set(
+    name: str,
+    property: str,
+    *values: Value,
+    if_is: Value | None = None,
+    if_unset: bool = False,
+    confidence: float | None = None,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """State a data or object property of an entity: `client.set("door1", "isOpen", True)`.
+
+    The value of a functional property replaces the one before; other properties get more values. With `if_is`
+    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none.
+    """
+    return commands.Set(
+        name=name,
+        property=property,
+        values=values,
+        if_is=if_is,
+        if_unset=if_unset,
+        confidence=confidence,
+        dry_run=dry_run,
+        id=id,
+        reason=reason,
+    )
 
 
 def _load(
@@ -113,6 +142,8 @@ def _load(
     tbox: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
+    dry_run: bool = False,
     id: str = "",
     reason: str = "",
 ) -> Command[replies.Changed]:
@@ -124,6 +155,7 @@ def _load(
 
     With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
+    `spatial_root` are classes, by IRI or name, whose instances are things in space.
     """
     if imports and not tbox:
         raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
@@ -135,7 +167,9 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        spatial_root=tuple(spatial_root),
         parts=parts,
+        dry_run=dry_run,
         id=id,
         reason=reason,
     )
@@ -196,6 +230,8 @@ class Verbs:
     # To change
     add = Verb(commands.Add)
     update = Verb(commands.Update)
+    set = Verb(_set)
+    unset = Verb(commands.Unset)
     remove = Verb(_remove)
     clear = Verb(commands.Clear)
     load = Verb(_load)
@@ -212,6 +248,7 @@ class Verbs:
     relations = Verb(commands.Relations)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
+    properties = Verb(commands.Properties)
     status = Verb(commands.Status)
     history = Verb(commands.History)
     last_seen = Verb(commands.LastSeen)

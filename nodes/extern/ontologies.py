@@ -7,6 +7,7 @@ from pathlib import Path
 
 from nodes.extern.files import read_file
 from nodes.runtime import extras
+from ontology.prefixes import declarations
 
 
 def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
@@ -27,4 +28,5 @@ def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]
         return read_file(gathered.files[0]), path.name
     more = "1 more file" if further == 1 else f"{further} more files"
     name = path.resolve().name
-    return rdf.serialise(gathered.triples, "ntriples"), f"{name} and {more}"
+    triples = [*gathered.triples, *declarations(gathered.prefixes, gathered.triples)]
+    return rdf.serialise(triples, "ntriples"), f"{name} and {more}"

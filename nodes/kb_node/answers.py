@@ -29,11 +29,12 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
     """What follows that was not said, without what is true of everything or of nameless classes."""
-    triples = tuple(_worth_saying(semantic_map.inferred(name)))
+    triples = tuple(worth_saying(semantic_map.inferred(name)))
     return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
 
 
-def _worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
+def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """Without what is true of everything or of nameless classes."""
     return (
         (s, p, o)
         for s, p, o in triples
@@ -60,7 +61,7 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
     if inferred:
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
-            following += _worth_saying(semantic_map.reasoner.inferred(individual, None, None))
+            following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
     written = abox + following
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
     return Picture([*semantic_map.tbox, *abox], written, semantic_map.seq, used)

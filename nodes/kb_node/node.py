@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, questions, undo
+from nodes.kb_node import answers, gc_pause, questions, trials, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import (
@@ -66,13 +66,14 @@ from schemas.commands import (
     History,
     Infer,
     LastSeen,
+    Properties,
     Relations,
     Renew,
     Sparql,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
-from schemas.entities import ClassInfo, Entity
+from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.health import LOADING
 from schemas.relations import Relation
@@ -122,6 +123,7 @@ class KnowledgeBase:
             StarQuery.answered_by(self.on_star),
             MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
+            Properties.answered_by(self.on_properties),
             Entities.answered_by(self.on_list),
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
@@ -143,10 +145,14 @@ class KnowledgeBase:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
         if len(transaction.add) <= _FEW:
-            return _effects(self._commit(transaction))
+            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
         with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
             tell(f"{len(transaction.add):,} entities to check and write")
-            return _effects(self._commit(transaction))
+            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+
+    def _changed(self, change: Callable[[], Commit | None], dry_run: bool) -> Effects | None:
+        """What `change` commits, and publishes; or would commit, in a dry run."""
+        return trials.of(self.map, change) if dry_run else _effects(self._published_if_new(change))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
@@ -183,6 +189,8 @@ class KnowledgeBase:
         """
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)
+            if transaction.dry_run:
+                raise errors.BadRequest("a dry run goes alone")
         before = self.map.seq
         results = self.map.commit_together(several.transactions)
         for error in results:
@@ -205,6 +213,14 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
+            if load.dry_run:
+                names, effects = self._tried_load(transaction)
+                return Loaded(
+                    commit=effects,
+                    names=names,
+                    skipped=tuple(sorted_out.skipped),
+                    notes=tuple(sorted_out.notes),
+                )
             del triples
             parts = load_parts.in_parts(transaction) if load.parts else [transaction]
             commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
@@ -215,6 +231,11 @@ class KnowledgeBase:
                 skipped=tuple(sorted_out.skipped),
                 notes=tuple(sorted_out.notes),
             )
+
+    def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
+        """The names of all entities that a load would change, and what it would commit."""
+        tried = trials.of(self.map, lambda: self.map.commit(transaction))
+        return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     @contextmanager
     def _telling_of(self, filename: str) -> Iterator[Callable[[str], None]]:
@@ -250,6 +271,10 @@ class KnowledgeBase:
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
         return tuple(self.map.class_table())
+
+    def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
+        """The property table."""
+        return tuple(self.map.classes.stated.rows())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then; with `where` those that are there."""
@@ -335,21 +360,21 @@ class KnowledgeBase:
             return history.sighting(entity, None)
         return self._aside.submit(self._past.last_seen, query.name)
 
-    def on_undo(self, command: TakeBack) -> Effects:
+    def on_undo(self, command: TakeBack) -> Effects | None:
         """A commit that takes back another one."""
-        return Effects.of(self._published_if_new(lambda: undo.undo(self.map, self._journal, command)))
+        return self._changed(lambda: undo.undo(self.map, self._journal, command), command.dry_run)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
-        read = rdf.parse(load.content, load.filename, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = document_change.tbox_of(self.map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=_effects(commit), skipped=(), notes=self._notes())
         try:
-            commit = self._published_if_new(lambda: self.map.replace_tbox(transaction, tbox))
-            return Loaded(commit=Effects.of(commit), skipped=(), notes=self._notes())
+            effects = self._changed(lambda: self.map.replace_tbox(transaction, tbox), load.dry_run)
+            return Loaded(commit=effects, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from msgspec import structs
 
@@ -33,6 +33,14 @@ PART = 250_000
 """Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
 
 T = TypeVar("T")
+
+
+class _Tried(Exception):
+    """A change was tried, up to where it would be durable. `seen` is what there was to see."""
+
+    def __init__(self, seen: Any) -> None:
+        super().__init__()
+        self.seen = seen
 
 
 class _Memento(NamedTuple):
@@ -66,6 +74,8 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
+        self._look: Callable[[Commit], Any] | None = None
+        """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
@@ -176,8 +186,31 @@ class SemanticMap:
                 )
         with gc_pause.uncollected():
             commit = self._signed(transaction, retracted, inserted)
-            begun = commit_encoding.early(commit)
-            return self._apply(commit, lambda whole: self._journal.append(whole, begun=begun))
+            begun = commit_encoding.early(commit) if self._look is None else None
+            return self._apply(commit, lambda whole: self._write(whole, begun=begun))
+
+    def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
+        """What `look(commit)` sees once `change` would be durable; then all is taken back.
+
+        None if it changes nothing, or was done before. Raises what `change` raises.
+        """
+        self._look = look
+        try:
+            change()
+        except _Tried as tried:
+            seen: T = tried.seen
+            return seen
+        finally:
+            self._look = None
+        return None
+
+    def _write(
+        self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
+    ) -> None:
+        """Make a commit durable. Raises NotWritten, and _Tried instead if it is only tried."""
+        if self._look is not None:
+            raise _Tried(self._look(commit))
+        self._journal.append(commit, tbox, begun=begun)
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -195,7 +228,7 @@ class SemanticMap:
 
         def make_durable(commit: Commit) -> None:
             tbox_validation.require_fit(self.abox(), before, self.classes)
-            self._journal.append(commit, rdf.serialise(new, "ntriples"))
+            self._write(commit, rdf.serialise(new, "ntriples"))
 
         return self._switch(commit, new, make_durable)
 
@@ -274,15 +307,12 @@ class SemanticMap:
         remove, edit, add = transaction.remove, transaction.edit, transaction.add
         if not (remove or edit or add):
             return transaction
-        draft = entity_writing.draft(
-            self.reasoner,
-            self.classes,
-            self.tbox,
-            self.entity,
-            remove=self.steadily(remove),
-            edit=self.steadily(edit),
-            add=self.steadily(add),
-        )
+        draft = entity_writing.Draft(self.reasoner, self.classes, self.tbox, self._entities)
+        draft.remove([self.entity(name) for name in self.steadily(remove)])
+        for one in self.steadily(edit):
+            draft.edit(self.entity(one.name), one)
+        for new in self.steadily(add):
+            draft.add(new)
         return structs.replace(
             transaction,
             retract=(*transaction.retract, *draft.retract),

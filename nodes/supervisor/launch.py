@@ -40,7 +40,15 @@ def seed(settings: Settings) -> None:
         load = f"semmap load {shlex.quote(str(abox))}"
         raise errors.BadFile(f"{abox.name} is not an ABox; start with --abox none, then: {load}")
     imports = {iri: Path(file) for iri, file in settings.imports.items()}
-    print(seed_journal(Path(settings.data), settings.tboxes, abox, imports=imports, fresh=settings.fresh))
+    told = seed_journal(
+        Path(settings.data),
+        settings.tboxes,
+        abox,
+        imports=imports,
+        spatial_root=settings.spatial_root,
+        fresh=settings.fresh,
+    )
+    print(told)
 
 
 def _kb_node(settings: Settings) -> None:

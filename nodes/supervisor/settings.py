@@ -31,6 +31,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The TBox's file, or its files and folders."""
     imports: dict[str, str] = {}
     """In which file an ontology is that the TBox imports, where it is not found by itself."""
+    spatial_root: tuple[str, ...] = ()
+    """Classes of the TBox whose instances are things in space, where that is not known by itself."""
     abox: str | None
     """None is an empty map."""
     world: str

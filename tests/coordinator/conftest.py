@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from nodes.coordinator.door import Door
+from nodes.kb_node import trials
 from nodes.kb_node.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
@@ -32,6 +33,8 @@ TBOX = b"""
 :Coordinates a owl:Class ; rdfs:subClassOf :Property .
 :hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
   rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
+:isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
+:note a owl:DatatypeProperty .
 :float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
 """
 
@@ -46,7 +49,9 @@ def semantic_map(tmp_path: Path):
 @pytest.fixture
 def door(semantic_map):
     answers = {
-        "commit": lambda transaction: _effects(semantic_map.commit(transaction)),
+        "commit": lambda transaction: _changed(
+            semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
+        ),
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))
@@ -55,7 +60,9 @@ def door(semantic_map):
             for result in semantic_map.commit_together(several.transactions)
         ),
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
-        "undo": lambda command: Effects.of(undo(semantic_map, semantic_map._journal, command)),
+        "undo": lambda command: _changed(
+            semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run
+        ),
     }
     door = Door(lambda call: answers[call.VERB](call))
     door.map.classes = ClassNames(semantic_map.class_table())
@@ -65,3 +72,7 @@ def door(semantic_map):
 
 def _effects(commit):
     return None if commit is None else Effects.of(commit)
+
+
+def _changed(semantic_map, change, dry_run):
+    return trials.of(semantic_map, change) if dry_run else _effects(change())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from concurrent.futures import Future
 
 import pytest
@@ -131,3 +133,27 @@ def test_a_fault_in_a_talk_that_is_held_later_is_its_result():
     done: Future = Future()
     done.set_result(())
     assert isinstance(hold_later(broken(), lambda *_: done).exception(), ZeroDivisionError)
+
+
+def test_what_a_dialogue_is_about_goes_when_it_ends():
+    class File:
+        """Large."""
+
+    def talk(file):
+        yield transaction("a")
+        return "done"
+
+    def ask_later(call):
+        answer = Future()
+        answer.set_result(None)
+        return answer
+
+    file = File()
+    seen = weakref.ref(file)
+    gc.disable()
+    try:
+        result = hold_later(talk(file), ask_later).result()
+        del file
+        assert (result, seen()) == ("done", None)
+    finally:
+        gc.enable()

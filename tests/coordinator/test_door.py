@@ -5,6 +5,7 @@ from __future__ import annotations
 from concurrent.futures import Future
 
 import pytest
+from msgspec import structs
 
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
@@ -387,3 +388,95 @@ def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
 def test_what_takes_the_place_of_something_else_is_one_commit(door):
     with pytest.raises(errors.BadRequest, match="without --parts"):
         door.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
+
+
+def test_a_property_is_set_and_unset(door):
+    add(door, name="chair1", set=("isOpen=no",))
+    assert door.map.entity("chair1").properties == {"isOpen": False}
+    reply = door.change(c.Set(name="chair1", property="isOpen", values=(True,)))
+    assert (reply.text, reply.commit) == ("chair1: isOpen: false → true", 2)
+    again = door.change(c.Set(name="chair1", property="isOpen", values=("yes",)))
+    assert (again.text, again.commit) == ("chair1: unchanged: already up to date", None)
+    with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
+        door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
+    with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):
+        door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_unset=True))
+    door.change(c.Unset(name="chair1", property="isOpen", value=True, if_is=True))
+    assert door.map.entity("chair1").properties == {}
+    door.change(c.Set(name="chair1", property="isOpen", values=(False,), if_unset=True))
+    door.change(c.Undo())
+    assert door.map.entity("chair1").properties == {}
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (c.Set(name="chair1", property="isOpen", values=()), "give a value of isOpen"),
+        (c.Set(name="chair1", property="isOpen", values=(1,), if_is=1, if_unset=True), "either"),
+        (c.Update(name="chair1", set=("isOpen",)), "'isOpen' is not of the form PROPERTY=VALUE"),
+        (c.Update(name="chair1", unset=("isOpne",)), "did you mean isOpen"),
+    ],
+)
+def test_a_statement_that_makes_no_sense_is_refused(door, command, said):
+    add(door, name="chair1")
+    with pytest.raises(errors.BadRequest, match=said):
+        door.change(command)
+    assert door.map.seq == 1
+
+
+def test_an_update_changes_properties_with_the_rest_and_says_so(door):
+    add(door, name="chair1", at=(1.0, 0.0, 0.0), set=("note=a", "note=b"))
+    reply = door.change(c.Update(name="chair1", at=(2.0, 0.0, 0.0), unset=("note=a",), set=("isOpen=true",)))
+    assert reply.text == (
+        "updated chair1: moved from (1, 0, 0) to (2, 0, 0); isOpen: not set → true; note: - a"
+    )
+    assert reply.commit == 2
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.Add(class_="Chair", name="chair2", at=(1.0, 0.0, 0.0), wait=True, dry_run=True),
+        c.Update(name="chair1", ref="stool", dry_run=True),
+        c.Set(name="chair1", property="isOpen", values=(True,), dry_run=True),
+        c.Unset(name="chair1", property="note", dry_run=True),
+        c.Remove(names=("chair1",), dry_run=True),
+        c.Clear(dry_run=True),
+        c.Load(content=b'{"entities": [{"class": "Chair"}]}', filename="scene.json", dry_run=True),
+        c.Undo(dry_run=True),
+    ],
+    ids=lambda command: command.VERB,
+)
+def test_a_dry_run_says_what_would_be_and_does_nothing(door, semantic_map, command):
+    add(door, name="chair1", ref="seat", set=("note=a",))
+    before = everything(semantic_map), dict(door.map.entities), door.map.seq, semantic_map.seq
+    (reply,) = in_their_turn(door, [command])
+    assert reply.dry_run
+    assert reply.commit is None
+    assert reply.text.startswith("dry run, nothing changed: ")
+    assert (everything(semantic_map), dict(door.map.entities), door.map.seq, semantic_map.seq) == before
+    done = door.change(structs.replace(command, dry_run=False))
+    assert done.commit == 2
+    assert not done.dry_run
+    assert reply.text.endswith(done.text)
+
+
+def test_what_a_dry_run_would_bring(door):
+    add(door, name="chair1")
+    reply = add(door, name="chair2", dry_run=True)
+    assert "chair2 type Furniture" in reply.follows
+    assert "chair1 type Furniture" in door.change(c.Clear(dry_run=True)).no_longer_follows
+    with pytest.raises(errors.NameTaken):
+        add(door, name="chair1", dry_run=True)
+
+
+def test_doubtful_values_are_noted_and_a_chair_is_no_kitchen(door):
+    add(door, "Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(4.0, 4.0, 2.0))
+    assert add(door, name="near", at=(1.0, 1.0, 0.0)).notes == ()
+    (note,) = add(door, name="far", at=(90.0, 1.0, 0.0)).notes
+    assert note == "far at (90, 1) is outside every place of the map"
+    assert door.change(c.Update(name="near", at=(-90.0, 0.0, 0.0))).notes[0].startswith("near at (-90, 0)")
+    with pytest.raises(errors.Refused, match="--force"):
+        door.change(c.Update(name="near", class_="Kitchen"))
+    door.change(c.Update(name="near", class_="Kitchen", force=True))
+    assert door.map.entity("near").place

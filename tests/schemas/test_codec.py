@@ -175,7 +175,7 @@ def test_selector_parameters_are_the_same_fields_as_text(parameters, message):
         (
             {"xyzzy": "1"},
             Remove,
-            "there is no field 'xyzzy'; there are: names, id, source, agent, reason",
+            "there is no field 'xyzzy'; there are: names, dry_run, id, source, agent, reason",
         ),
     ],
 )

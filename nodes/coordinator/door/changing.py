@@ -7,16 +7,19 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk
-from nodes.coordinator.door.committing import commit, new_id, once, seq
+from nodes.coordinator.door.committing import changed, commit, new_id, once
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
+from nodes.coordinator.plausibility import doubts, require_same_nature
 from nodes.coordinator.scene.hands import Hand
-from schemas import errors
-from schemas.commands import Add, Clear, Command, Remove, Update
-from schemas.commits import Effects
+from schemas import changes, errors
+from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
+from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
+
+UNCHANGED = "unchanged: already up to date"
 
 
 @once
@@ -29,13 +32,15 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
     at = command.at or free_position(view.entities.values(), command.size)
     pose = pose_of(at, command.yaw, command.orientation)
     ref = command.ref or (_label(found) if command.default else None)
-
     made = yield from commit(view, transactions.add(command, name, found, pose, ref))
-    return Changed(
-        commit=seq(made),
-        text=f"added {found.name} {name} at {_metres(pose)}",
+    return changed(
+        made,
+        f"added {found.name} {name} at {_metres(pose)}",
         names=(name,),
-        notes=view.classes.note(command.class_, found),
+        notes=(
+            *view.classes.note(command.class_, found),
+            *doubts(name, found, pose if command.at else None, command.size, view.places),
+        ),
     )
 
 
@@ -44,17 +49,59 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
-    changes = (found, command.ref, command.alt, command.size)
-    if any(change is not None for change in changes):
+    shape = (found, command.ref, command.alt, command.size)
+    if any(value is not None for value in shape):
         require_authority(command, [entity])
-
+    require_same_nature(entity, found, force=command.force)
     made = yield from commit(view, transactions.update(command, found))
-    return Changed(
-        commit=seq(made),
-        text=f"updated {entity.name}" if made else f"{entity.name} unchanged: already up to date",
+    now = _after(made, entity.name) or entity
+    return changed(
+        made,
+        f"updated {_said(entity, made)}" if made else _said(entity, made),
         names=(entity.name,),
-        notes=view.classes.note(command.class_ or "", found) if found else (),
+        notes=(
+            *(view.classes.note(command.class_ or "", found) if found else ()),
+            *doubts(
+                entity.name,
+                found or view.classes.by_name.get(entity.class_),
+                now.pose if command.at else None,
+                command.size,
+                view.places,
+            ),
+        ),
     )
+
+
+@once
+def set_(view: KnownMap, command: Set) -> Talk[Changed]:
+    """State a property of an entity."""
+    return (yield from _stated(view, command, transactions.state(command)))
+
+
+@once
+def unset(view: KnownMap, command: Unset) -> Talk[Changed]:
+    """Take back what is stated by a property of an entity."""
+    return (yield from _stated(view, command, transactions.unstate(command)))
+
+
+def _stated(view: KnownMap, command: Set | Unset, transaction: Transaction) -> Talk[Changed]:
+    entity = view.entity(command.name)
+    made = yield from commit(view, transaction)
+    return changed(made, _said(entity, made), names=(entity.name,))
+
+
+def _said(was: Entity, made: Effects | None) -> str:
+    """What a commit has changed of an entity, in words."""
+    now = _after(made, was.name)
+    if made is None:
+        return f"{was.name}: {UNCHANGED}"
+    said = changes.in_words(changes.between(was, now)) if now is not None else ""
+    return f"{was.name}: {said}" if said else was.name
+
+
+def _after(made: Effects | None, name: str) -> Entity | None:
+    """The entity as a commit leaves it, if it changes it."""
+    return next((e for e in made.changed if e.name == name), None) if made is not None else None
 
 
 @once
@@ -92,9 +139,8 @@ def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entit
     names = tuple(entity.name for entity in leaving)
     if not names:
         return Changed(commit=None, text="the map is already empty")
-
     made = yield from commit(view, transactions.remove(command, reason, names))
-    return Changed(commit=seq(made), text=f"removed {len(names)}: {_few(names)}", names=names)
+    return changed(made, f"removed {len(names)}: {_few(names)}", names=names)
 
 
 def _label(found: ClassInfo) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import uuid
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from msgspec import structs
 
@@ -33,6 +33,9 @@ def once(change: Change[C]) -> Change[C]:
 
     @functools.wraps(change)
     def execute(view: KnownMap, command: C) -> Talk[Changed]:
+        if getattr(command, "dry_run", False):
+            tried = yield from change(view, structs.replace(command, id=new_id()))
+            return structs.replace(tried, dry_run=True, text=f"dry run, nothing changed: {tried.text}")
         if not command.id:
             return (yield from change(view, structs.replace(command, id=new_id())))
         known_seq = view.seq
@@ -65,7 +68,9 @@ def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:
 
 def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
-    if commit is not None and not view.take(commit) and commit.abridged is not None:
+    if commit is None or commit.trial is not None:
+        return commit
+    if not view.take(commit) and commit.abridged is not None:
         yield from taken_anew(view)
     return commit
 
@@ -82,7 +87,7 @@ def taken_anew(view: KnownMap) -> Talk[None]:
 def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:
     """Like `taken`, for a commit that may have replaced the TBox."""
     yield from taken(view, commit)
-    if commit.tbox:
+    if commit.tbox and commit.trial is None:
         view.classes = ClassNames((yield from ask(Classes())))
 
 
@@ -91,6 +96,10 @@ def new_id() -> str:
     return uuid.uuid4().hex
 
 
-def seq(commit: Effects | None) -> int | None:
-    """Its number."""
-    return None if commit is None else commit.seq
+def changed(commit: Effects | None, text: str, **fields: Any) -> Changed:
+    """The reply to a command that has made `commit`, or would have; `fields` are those of `Changed`."""
+    if commit is None:
+        return Changed(commit=None, text=text, **fields)
+    if (trial := commit.trial) is None:
+        return Changed(commit=commit.seq, text=text, **fields)
+    return Changed(commit=None, text=text, follows=trial.gained, no_longer_follows=trial.lost, **fields)

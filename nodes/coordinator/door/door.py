@@ -11,13 +11,15 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hands
 from nodes.coordinator.turns import Change
 from schemas import errors
-from schemas.commands import Add, Clear, Command, Load, Remove, Undo, Update
+from schemas.commands import Add, Clear, Command, Load, Remove, Set, Undo, Unset, Update
 from schemas.entities import Pose
 from schemas.replies import Changed
 
 _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
     Add: changing.add,
     Update: changing.update,
+    Set: changing.set_,
+    Unset: changing.unset,
     Remove: changing.remove,
     Clear: changing.clear,
     Load: loading.load,

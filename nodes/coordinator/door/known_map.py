@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from operator import attrgetter
 
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
-from schemas.commits import Effects
+from schemas.commits import Effects, Snapshot
 from schemas.entities import Entity
 
 
@@ -17,6 +18,14 @@ class KnownMap(map_replica.MapReplica[Effects]):
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
+        self._places: dict[str, Entity] | None = None
+
+    @property
+    def places(self) -> Collection[Entity]:
+        """The entities that are places, in no order."""
+        if self._places is None:
+            self._places = {name: entity for name, entity in self.entities.items() if entity.place}
+        return self._places.values()
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -29,3 +38,20 @@ class KnownMap(map_replica.MapReplica[Effects]):
         there = self.entities.values()
         found = list(there) if class_name is None else [e for e in there if class_name in e.types]
         return tuple(sorted(found, key=attrgetter("name")))
+
+    def begin(self, snapshot: Snapshot) -> bool:
+        """See `MapReplica.begin`."""
+        self._places = None
+        return super().begin(snapshot)
+
+    def take(self, commit: Effects) -> bool:
+        """See `MapReplica.take`."""
+        taken = super().take(commit)
+        if self._places is not None:
+            for name in commit.names:
+                entity = self.entities.get(name)
+                if entity is not None and entity.place:
+                    self._places[name] = entity
+                else:
+                    self._places.pop(name, None)
+        return taken

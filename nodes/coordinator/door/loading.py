@@ -10,7 +10,7 @@ from msgspec import structs
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority, require_operator
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import commit, once, seq, taken, taken_anew, taken_with_classes
+from nodes.coordinator.door.committing import changed, commit, once, taken, taken_anew, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
@@ -39,8 +39,12 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
         command = structs.replace(command, source="file")
     if command.parts and (command.replace or command.tbox):
         raise errors.BadRequest("what replaces something is one commit; load it without --parts")
+    if command.parts and command.dry_run:
+        raise errors.BadRequest("a dry run is of one commit; try it without --parts")
     if command.tbox:
         return (yield from _load_tbox(view, command))
+    if command.spatial_root:
+        raise errors.BadRequest("--spatial-root is for a TBox: add --tbox")
     if command.replace:
         require_authority(command, view.entities.values())
     kind = kind_of(command.content, command.filename)
@@ -106,6 +110,7 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         skip_unknown=command.skip_unknown,
         strict=command.strict,
         parts=command.parts,
+        dry_run=command.dry_run,
     )
     loaded = yield from ask(document)
     if loaded.parts == 1:
@@ -129,6 +134,8 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         reason=command.reason or f"load the TBox {command.filename}",
         content=command.content,
         filename=command.filename,
+        spatial_root=command.spatial_root,
+        dry_run=command.dry_run,
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:
@@ -136,7 +143,9 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
         return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
-    return Changed(commit=commit.seq, text=text, names=commit.names, notes=loaded.notes)
+    if commit.trial is not None:
+        text = f"the TBox of {command.filename or 'the file'} takes the place of the present one"
+    return changed(commit, text, names=commit.names, notes=loaded.notes)
 
 
 def _sort_out(
@@ -174,4 +183,4 @@ def _loaded(
         text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
     if skipped:
         text += f", left out {len(skipped)}"
-    return Changed(commit=seq(commit), text=text, names=names, skipped=skipped, notes=notes)
+    return changed(commit, text, names=names, skipped=skipped, notes=notes)

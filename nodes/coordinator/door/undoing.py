@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import once, taken_with_classes
+from nodes.coordinator.door.committing import changed, once, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
 from schemas.bridge import TakeBack
 from schemas.commands import Undo
@@ -20,9 +20,12 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
             agent=command.agent,
             reason=command.reason,
             commit=command.commit,
+            dry_run=command.dry_run,
         )
     )
+    if commit is None:  # a dry run of what was done before
+        return Changed(commit=None, text="nothing is left to take back")
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
     text = f"took back commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")
-    return Changed(commit=commit.seq, text=text, names=commit.names)
+    return changed(commit, text, names=commit.names)

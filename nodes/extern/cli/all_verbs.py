@@ -8,7 +8,7 @@ from nodes.extern.cli.verbs import ask, completion, edit, lifecycle, past, perce
 from schemas import errors
 
 _VERBS = (
-    *(edit.add, edit.update, edit.remove, edit.clear, edit.load, past.undo, run.run),
+    *(edit.add, edit.update, edit.set_, edit.unset, edit.remove, edit.clear, edit.load, past.undo, run.run),
     *(
         ask.list_,
         ask.get,
@@ -19,6 +19,7 @@ _VERBS = (
         ask.relations,
         ask.export,
         ask.classes,
+        ask.properties,
         ask.status,
     ),
     *(ask.sparql, ask.watch, past.history, past.last_seen),

@@ -29,6 +29,17 @@ class _Import(click.ParamType[tuple[str, Path]]):
         return self.fail(f"there is no file {value.partition('=')[2]}")
 
 
+def spatial_root_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`--spatial-root CLASS`, which may be repeated: the function gets the words as `spatial_root`."""
+    return click.option(
+        "--spatial-root",
+        "spatial_root",
+        multiple=True,
+        metavar="CLASS",
+        help="A class (IRI or name) whose instances are things in space; may be repeated.",
+    )(function)
+
+
 def import_option(function: Callable[..., Any]) -> Callable[..., Any]:
     """`--import IRI=FILE`, which may be repeated: the function gets the pairs as `imports`."""
     return click.option(

@@ -23,7 +23,7 @@ _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
 _BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
 _MASKS = tuple(sum(_BITS[p] for p in whole) for whole in _WHOLES)
-_OTHER_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double"))
+_NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
 class SortedOut(NamedTuple):
@@ -41,7 +41,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
     Raises BadFile for a TBox.
     """
-    triples = _with_floats(list(triples))
+    triples = _with_numbers(list(triples), classes.number_kinds)
     types_said = [t for t in triples if t[1] == v.RDF_TYPE]
     declared = {s for s, _, o in types_said if o in (v.OWL_CLASS, v.RDFS_CLASS)}
     known = declared.union(classes.names, _OF_STARS)
@@ -103,18 +103,18 @@ def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]
     return found
 
 
-def _with_floats(triples: list[Triple]) -> list[Triple]:
-    """`0` and `0.5` in Turtle are an integer and a decimal; a star's numbers are floats all the same."""
-    if not any(t[2].endswith(_OTHER_NUMBERS) for t in triples if t[1] in _FLOATS):
+def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Triple]:
+    """`triples` where each number is of the kind that its property asks for.
+
+    `0` and `0.5` in Turtle are an integer and a decimal, and many a map says double where its ontology wants
+    a float; they mean the number all the same.
+    """
+    if not any(t[2].endswith(_NUMBERS) and not t[2].endswith(kinds[t[1]]) for t in triples if t[1] in kinds):
         return triples
-    return list(map(_with_float, triples))
-
-
-def _with_float(triple: Triple) -> Triple:
-    s, p, o = triple
-    if p in _FLOATS and o.endswith(_OTHER_NUMBERS):
-        return (s, p, v.literal(v.lexical(o), v.XSD_FLOAT))
-    return triple
+    return [
+        (s, p, v.literal(v.lexical(o), kinds[p])) if p in kinds and o.endswith(_NUMBERS) else (s, p, o)
+        for s, p, o in triples
+    ]
 
 
 def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.documents import abox_document, tbox_validation
+from nodes.kb_node.documents import abox_document, rdf, tbox_declarations, tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
 from schemas.bridge import LoadDocument, LoadTBox
@@ -38,6 +38,20 @@ def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]
     """Those that the TBox does not say."""
     said = tbox.intersection(triples)
     return (t for t in triples if t not in said) if said else triples
+
+
+def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
+    """The triples of a TBox, with its prefixes and what is in space.
+
+    The present TBox's declared spatial roots stay until others are declared.
+    Raises BadFile, UnknownClass.
+    """
+    triples = tbox_declarations.declared(
+        rdf.parse(load.content, load.filename, label_prefix=label_prefix),
+        of_file=rdf.prefixes(load.content),
+        spatial_root=load.spatial_root,
+    )
+    return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)
 
 
 def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:

@@ -7,12 +7,15 @@ ontologies that were found for them, so that the graph itself tells which are mi
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from nodes.kb_node.documents import catalogue, rdf
 from ontology import vocabulary as v
+from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.explanations import Term, Triple
 
@@ -30,6 +33,8 @@ class Gathered(NamedTuple):
     """Import to file."""
     missing: tuple[str, ...]
     """The imports for which there is no file."""
+    prefixes: Prefixes = MappingProxyType({})
+    """What the files declare; where they differ, what the first says."""
 
 
 class Header(NamedTuple):
@@ -104,7 +109,15 @@ class _Gathering:
             tuple(self._read),
             {v.bare(term): path for term, path in self._stands_for.items()},
             missing_imports(triples),
+            self._prefixes(),
         )
+
+    def _prefixes(self) -> dict[str, str]:
+        declared: dict[str, str] = {}
+        for path in self._read:
+            with suppress(OSError):
+                declared = {**rdf.prefixes(path.read_bytes()), **declared}
+        return declared
 
     def _name_of(self, path: Path, wanted: Term) -> Term:
         """The ontology of a file that was found for an import: that one, where there are several."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from types import MappingProxyType
 from xml.parsers import expat
 
@@ -161,11 +162,14 @@ def _require_within(name: str, _: bool, text: str | None, *where: str | None) ->
 
 
 def prefixes(content: bytes) -> dict[str, str]:
-    """Prefix to namespace, as a document that `parse` reads declares them."""
+    """Prefix to namespace, as a document that `parse` reads declares them before its first triple."""
     content = content.removeprefix(_BOM)
-    quads = pyoxigraph.parse(content, _SYNTAX[syntax_of(content)], base_iri=v.ABOX, without_named_graphs=True)
-    for _ in quads:
-        break  # they come before the first triple
+    syntax = syntax_of(content)
+    if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
+        return owl_syntaxes.prefixes(content.decode(), syntax)
+    quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
+    with suppress(SyntaxError, ValueError):
+        next(quads, None)
     return dict(quads.prefixes)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from nodes.kb_node.documents import ontology_files
+from nodes.kb_node.documents import ontology_files, tbox_declarations
 from nodes.kb_node.documents.abox_document import is_built_in
 from nodes.kb_node.documents.ontology_files import VERSION, Gathered
 from nodes.kb_node.entities.class_table import ClassTable
@@ -32,12 +32,16 @@ _ADDING_S = 4.0
 """How long individuals are added at most."""
 
 
-def check(named: Sequence[Path], imports: Mapping[str, Path]) -> TBoxReport:
-    """The report on ontologies in files, with what they import. Raises BadFile for what cannot be read."""
+def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequence[str] = ()) -> TBoxReport:
+    """The report on ontologies in files, with what they import.
+
+    `spatial_root` are classes of things in space. Raises BadFile for what cannot be read, UnknownClass.
+    """
     gathered = ontology_files.gather(named, imports)
+    tbox = tbox_declarations.declared(gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root)
     began_s = time.perf_counter()
     try:
-        reasoner = Reasoner(gathered.triples)
+        reasoner = Reasoner(tbox)
     except Inconsistent as error:
         return _report(gathered, inconsistent=error.explanation.text)
     load_s = time.perf_counter() - began_s

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 
+from nodes.kb_node.entities import alignments
 from nodes.kb_node.entities.class_table import ClassTable
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -23,25 +24,40 @@ def declared(
     tbox: Iterable[Triple],
     *,
     of_file: Prefixes = MappingProxyType({}),
-    spatial_roots: Sequence[str] = (),
+    spatial_root: Sequence[str] = (),
 ) -> list[Triple]:
     """`tbox` with the prefixes of its file, and with the classes that are roots of what is in space.
 
-    A root is an IRI or a class's name. Raises UnknownClass.
+    What its alignments set aside is left out, and that is said of whatever it was about.
+
+    Each word of `spatial_root` is an IRI or a class's name. Raises UnknownClass.
     """
-    triples = list(tbox)
+    triples = _without_what_is_set_aside(list(tbox))
     triples += prefixes.declarations(of_file, triples)
-    if spatial_roots:
+    if spatial_root:
         find = _ClassFinder(triples)
-        triples += [(find(word), v.SPATIAL, _TRUE) for word in spatial_roots]
+        triples += [(find(word), v.SPATIAL, _TRUE) for word in spatial_root]
     return list(dict.fromkeys(triples))
 
 
-def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
-    """A TBox that does not say what is in space, with the roots that somebody declared for the one before.
+def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
+    there = set(triples)
+    namespaces = {prefixes.split(c)[0] for c in _classes(triples)}
+    for aside in (aside for known in alignments.of_namespaces(namespaces) for aside in known.set_aside):
+        if aside.triple in there:
+            there.remove(aside.triple)
+            subject, predicate, _ = aside.triple
+            text = f"{v.local_name(predicate)} {v.local_name(aside.triple[2])}: {aside.why}"
+            triples = [t for t in triples if t != aside.triple]
+            triples.append((subject, v.SET_ASIDE, v.literal(text)))
+            triples += [aside.instead] if aside.instead is not None else []
+    return triples
 
-    As far as it has these classes.
-    """
+
+def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
+    """A TBox that declares no spatial roots itself, with those of the one before, as far as it has these."""
+    if any(p == v.SPATIAL for _, p, _ in tbox):
+        return list(tbox)
     classes = _classes(tbox)
     kept = [(c, v.SPATIAL, _TRUE) for c in before.declared_roots if c in classes]
     return [*tbox, *kept]

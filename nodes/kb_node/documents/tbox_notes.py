@@ -25,6 +25,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
     said = (
         missing(ontology_files.missing_imports(tbox)),
         not_in_space(classes),
+        set_aside(tbox),
         beyond(outside_rl(filter(is_schema, tbox))),
         slow(reasoner),
     )
@@ -43,7 +44,20 @@ def not_in_space(classes: ClassTable) -> str:
     """What it means that no class is known to be spatial."""
     if classes.spatial:
         return ""
-    return "no class is known to be of things in space, so nothing of it is an entity with a position"
+    return (
+        "the TBox does not say which of its classes are of things in space, so nothing can be placed;"
+        " load it again with --spatial-root CLASS"
+    )
+
+
+def set_aside(tbox: Iterable[Triple]) -> str:
+    """What of the TBox does not count, and why."""
+    reasons: dict[str, list[str]] = {}
+    for s, text in sorted((v.local_name(s), v.lexical(o)) for s, p, o in tbox if p == v.SET_ASIDE):
+        what, _, why = text.partition(": ")
+        reasons.setdefault(why, []).append(f"{s} {what}")
+    said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
+    return said and f"set aside, because no map could be kept with it: {said}"
 
 
 def beyond(kinds: Counter[str]) -> str:

@@ -19,7 +19,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.explanations import Term
 
-_PLAIN = frozenset({"title", "prefixes", "order", "origin"})
+_PLAIN = frozenset({"title", "prefixes", "order", "origin", "why"})
 
 Path = Annotated[tuple[Term, ...], Meta(max_length=8)]
 """Properties to follow from an entity to the individual that says it; of several objects the least counts."""
@@ -49,6 +49,15 @@ class SizeWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     z: Term
 
 
+class SetAside(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A statement of the ontology that does not count, because no map could be kept with it."""
+
+    triple: tuple[Term, Term, Term]
+    why: str
+    instead: tuple[Term, Term, Term] | None = None
+    """What counts in its place."""
+
+
 class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One vocabulary. Terms are IRI terms; in a file they are written with its prefixes, or in `<>`."""
 
@@ -68,6 +77,7 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Properties of what people call a thing, the best first."""
     pose: tuple[PoseWords, ...] = ()
     size: tuple[SizeWords, ...] = ()
+    set_aside: tuple[SetAside, ...] = ()
     relations: dict[str, Term] = {}
     """Relation of the household's vocabulary (`isOn`) to this one's property for it."""
 

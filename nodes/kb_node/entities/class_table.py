@@ -10,6 +10,7 @@ from msgspec import structs
 
 from nodes.kb_node.entities import alignments
 from nodes.kb_node.entities.alignments import Alignment
+from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import prefixes, stars
 from ontology import vocabulary as v
@@ -21,6 +22,7 @@ from schemas.explanations import Term
 _BUILT_IN = frozenset((v.OWL_THING, v.OWL_NOTHING))
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
 _TRUE = frozenset(v.literal(text, v.XSD_BOOLEAN) for text in ("true", "1"))
+_NUMBERS = (v.XSD_FLOAT, v.iri(v.XSD + "double"))
 _LABELS = (v.RDFS_LABEL, v.SKOS_PREF_LABEL, v.SKOS_ALT_LABEL)
 
 
@@ -69,6 +71,7 @@ class ClassTable:
         self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
         self.places: frozenset[Term] = places - self._solid
+        self.stated = PropertyTable(reasoner, self.prefixes, self.edges | self.first_words)
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
@@ -77,6 +80,25 @@ class ClassTable:
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
+
+    @cached_property
+    def number_kinds(self) -> dict[Term, Term]:
+        """The kind of number that properties ask for: a star's, and with alignments all of the TBox."""
+        known = dict.fromkeys((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ), v.XSD_FLOAT)
+        if self.alignments:
+            for p in self.properties:
+                if (kind := self._number_kind(p, frozenset())) is not None:
+                    known.setdefault(p, kind)
+        return known
+
+    def _number_kind(self, p: Term, seen: frozenset[Term]) -> Term | None:
+        """The number that is the range of a property, or of one above it."""
+        kinds = {o for _, _, o in self._reasoner.asserted(p, v.RDFS_RANGE, None)}.intersection(_NUMBERS)
+        if kinds:
+            return min(kinds)
+        above = {o for _, _, o in self._reasoner.asserted(p, v.RDFS_SUB_PROPERTY_OF, None)} - seen - {p}
+        found = (self._number_kind(q, seen | {p}) for q in sorted(above))
+        return next(filter(None, found), None)
 
     @property
     def ambiguous(self) -> dict[str, tuple[str, ...]]:

@@ -118,7 +118,7 @@ def _read_at_sight(
             entity: Entity | None = None
             if change.others.isdisjoint(individuals):
                 pattern = pattern or reading.patterns.of(star, reading.reasoner, reading.classes)
-                entity = read_at_sight(pattern, star.run, provenance) if pattern else None
+                entity = read_at_sight(pattern, star.run, provenance, reading.classes) if pattern else None
             if entity is None:
                 unseen.update(star.touched)
             else:

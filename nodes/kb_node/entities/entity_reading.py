@@ -16,7 +16,7 @@ from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Star
-from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size
+from schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated
 from schemas.explanations import Term, Triple
 
 _NAME = re.compile(NAME_PATTERN)
@@ -81,6 +81,7 @@ def read_entity(
         preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        properties=classes.stated.stated(said),
     )
 
 
@@ -94,6 +95,7 @@ def entity_of(
     preferred: Iterable[str],
     alternatives: Iterable[str],
     conflict: str = "",
+    properties: dict[str, Stated] | None = None,
 ) -> Entity:
     """The entity of a kind whose star says this, all of it by `provenance`.
 
@@ -110,6 +112,7 @@ def entity_of(
         preferred_reference=min(preferred, default=None),
         alternative_references=tuple(alternatives),
         conflict=conflict,
+        properties=properties or {},
         place=kind.place,
         fixed=kind.fixed,
         model=kind.model,

@@ -9,15 +9,18 @@ export as before. What nobody has said yet is said in semmap's own words.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from nodes.kb_node.entities import aligned, entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.entities.entity_reading import Objects
+from nodes.kb_node.entities.property_table import Property
+from nodes.kb_node.entities.property_values import same, spoken
 from nodes.kb_node.reasoner import Reasoner
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commits import Edit, NewEntity
+from schemas.commits import Edit, NewEntity, Statement
 from schemas.entities import Entity, Pose, Size
 from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
@@ -26,12 +29,20 @@ from schemas.scene_files import pose_of
 class Draft:
     """A change of triples in the making. What it takes away counts as gone for what it adds later."""
 
-    def __init__(self, reasoner: Reasoner, classes: ClassTable, tbox: frozenset[Triple]) -> None:
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        classes: ClassTable,
+        tbox: frozenset[Triple],
+        entities: Mapping[str, Entity],
+    ) -> None:
+        """`entities` are those of the map by name."""
         self.retract: dict[Triple, None] = {}
         self.insert: dict[Triple, None] = {}
         self._reasoner = reasoner
         self._classes = classes
         self._tbox = tbox
+        self._entities = entities
         self._new: set[Term] = set()
 
     def remove(self, leaving: Iterable[Entity]) -> None:
@@ -71,18 +82,24 @@ class Draft:
             suffix = f"_{number}"
         self._new |= subjects
         self.insert.update(dict.fromkeys(triples))
+        for prop, terms in self._typed(new.set, new.name):
+            self._come((iri, prop.iri, term) for term in terms)
         for word in new.affordances:
             self.insert[(iri, v.HAS_AFFORDANCE, v.dm(word))] = None
 
     def edit(self, entity: Entity, edit: Edit) -> None:
         """What is given of an entity changes, in the individuals of its star unless others use them, too.
 
-        Raises BadRequest for a pose that is none, UnknownClass, Refused for an entity of the TBox.
+        Raises BadRequest for a pose that is none, and for a property or value that is none; UnknownClass;
+        UnknownName for an individual that does not exist; PreconditionFailed; Refused for an entity of the
+        TBox.
         """
         iri = v.iri(entity.iri)
         said = self._reasoner.about(iri)
         if not self._tbox.isdisjoint((iri, p, o) for p, objects in said.items() for o in objects):
             raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
+        self._require(entity.name, said, edit.only_if)
+        self._state(entity, said, edit)
         if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
             self._place(entity, said.get(v.HAS_POSITION, ()), _pose(entity, edit), edit.size or entity.size_m)
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
@@ -106,6 +123,47 @@ class Draft:
             self._go((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
             if edit.conflict:
                 self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
+
+    def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
+        """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
+        for prop, terms in self._typed(only_if, name):
+            known = said.get(prop.iri, ())
+            if not any(same(one, other) for one in known for other in terms) and (known or terms):
+                now = " and ".join(spoken(term) for term in sorted(known)) or "not set"
+                wanted = " or ".join(map(spoken, terms)) or "unset"
+                raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
+
+    def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
+        """Properties lose values and get others."""
+        iri = v.iri(entity.iri)
+        for prop, terms in self._typed(edit.unset, entity.name):
+            known = said.get(prop.iri, ())
+            gone = [k for k in known if not terms or any(same(k, term) for term in terms)]
+            self._go((iri, prop.iri, term) for term in gone)
+        for prop, terms in self._typed(edit.set, entity.name):
+            if prop.functional and len(terms) > 1:
+                raise errors.BadRequest(f"{prop.name} has one value at most; give one")
+            known = said.get(prop.iri, ())
+            new = [term for term in terms if not any(same(k, term) for k in known)]
+            if prop.functional and new:
+                self._go((iri, prop.iri, term) for term in known)
+            self._come((iri, prop.iri, term) for term in new)
+
+    def _typed(self, statements: Sequence[Statement], name: str) -> Iterator[tuple[Property, list[Term]]]:
+        """The properties and values that are meant. Raises BadRequest, UnknownName."""
+        table = self._classes.stated
+        for statement in statements:
+            prop = table.find(statement.property, name)
+            yield (
+                prop,
+                [table.term(prop, text, self._individual, self._entities) for text in statement.values],
+            )
+
+    def _individual(self, name: str) -> Term | None:
+        """The individual of the map with this name, if there is one."""
+        entity = self._entities.get(name)
+        iri = v.iri(entity.iri) if entity is not None else v.entity_iri(name)
+        return iri if iri in self._new or self._is_described(iri) else None
 
     def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
         about = self._reasoner.about
@@ -224,27 +282,3 @@ def _pose(entity: Entity, edit: Edit) -> Pose:
     if at is None:
         raise errors.BadRequest(f"{entity.name} has no position yet; give one with --at")
     return pose_of(at, edit.yaw, edit.orientation, before)
-
-
-Find = Callable[[str], Entity]
-"""The entity of a name. Raises UnknownName."""
-
-
-def draft(
-    reasoner: Reasoner,
-    classes: ClassTable,
-    tbox: frozenset[Triple],
-    find: Find,
-    *,
-    remove: Iterable[str],
-    edit: Iterable[Edit],
-    add: Iterable[NewEntity],
-) -> Draft:
-    """The triples of some intents. Raises UnknownName and whatever `Draft` raises."""
-    made = Draft(reasoner, classes, tbox)
-    made.remove([find(name) for name in remove])
-    for one in edit:
-        made.edit(find(one.name), one)
-    for new in add:
-        made.add(new)
-    return made

@@ -29,6 +29,14 @@ class _Text(NamedTuple):
     place: int
 
 
+class _Stated(NamedTuple):
+    """A property: the individuals and which of the other objects are its values."""
+
+    property: Term
+    nodes: tuple[int, ...]
+    places: Places
+
+
 class Pattern(NamedTuple):
     """Where the parts of an entity are in each run of a shape."""
 
@@ -38,6 +46,7 @@ class Pattern(NamedTuple):
     size: Places | None
     preferred: tuple[_Text, ...]
     alternatives: tuple[_Text, ...]
+    stated: tuple[_Stated, ...]
 
 
 class _Irregular(Exception):
@@ -59,7 +68,7 @@ class Patterns:
             return found
 
 
-def read_at_sight(pattern: Pattern, run: Run, provenance: Provenance) -> Entity | None:
+def read_at_sight(pattern: Pattern, run: Run, provenance: Provenance, classes: ClassTable) -> Entity | None:
     """The entity that a run is the star of; None if it is not to be told at sight.
 
     Raises BadRequest for one that cannot be named.
@@ -86,6 +95,14 @@ def read_at_sight(pattern: Pattern, run: Run, provenance: Provenance) -> Entity 
         size_m=size,  # type: ignore[arg-type]
         preferred=_texts(pattern.preferred, names, others),
         alternatives=_texts(pattern.alternatives, names, others),
+        properties=classes.stated.stated(
+            {
+                said.property: [names[i] for i in said.nodes] + [others[i] for i in said.places]
+                for said in pattern.stated
+            }
+        )
+        if pattern.stated
+        else None,
     )
 
 
@@ -126,6 +143,7 @@ def _pattern(run: Run, reasoner: Reasoner, classes: ClassTable) -> Pattern | Non
             size=said.numbers(size, v.SIZE_XYZ),
             preferred=tuple(said.texts(v.HAS_PREFERRED_REFERENCE)),
             alternatives=tuple(said.texts(v.HAS_ALTERNATIVE_REFERENCE)),
+            stated=tuple(said.stated(classes)),
         )
     except _Irregular:
         return None
@@ -190,6 +208,13 @@ class _Said:
             place = self._literal(node, v.LEXICAL_REFERENCE)
             if place is not None:
                 yield _Text(node, place)
+
+    def stated(self, classes: ClassTable) -> Iterator[_Stated]:
+        """The other properties of the entity."""
+        for predicate in classes.stated.by_iri:
+            nodes, places = (by.get((0, predicate), []) for by in (self._nodes, self._places))
+            if nodes or places:
+                yield _Stated(predicate, tuple(nodes), tuple(places))
 
     def _literal(self, node: int, predicate: Term) -> int | None:
         """Where the only value of a node is; None if it has none."""

@@ -7,7 +7,7 @@ holds digests of rules, layouts and examples beside it.
 
 from __future__ import annotations
 
-FORMAT = 1
+FORMAT = 2
 
 
 def mark() -> bytes:

@@ -14,8 +14,10 @@ from nodes.kb_node.documents import rdf, tbox_validation
 from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.storage.changelog import Changelog
 from nodes.kb_node.storage.journal import Journal
 from schemas import errors
+from schemas.changes import Change
 from schemas.commands import History
 from schemas.commits import Commit
 from schemas.entities import Entity, Provenance
@@ -39,7 +41,9 @@ class Past:
         else:
             self._require_known(query.name)
             seqs = self._journal.touching(query.name, after=first - 1, until=last)[-query.limit :]
-        return tuple(_logged(self._journal.commit(seq)) for seq in seqs)
+        changes = Changelog(self._journal, self._said_by_the_first_tbox)
+        commits = map(self._journal.commit, seqs)
+        return tuple(_logged(commit, changes.of(commit, query.name)) for commit in commits)
 
     def commits(self, seqs: Iterable[int]) -> tuple[Commit, ...]:
         """These commits, whole; without those that there never were."""
@@ -159,7 +163,7 @@ def sighting(entity: Entity, removed: Provenance | None) -> Sighting:
     return Sighting(name=entity.name, pose=entity.pose, provenance=entity.pose_provenance, removed=removed)
 
 
-def _logged(commit: Commit) -> LoggedCommit:
+def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
     return LoggedCommit(
         seq=commit.seq,
         stamp_ns=commit.stamp_ns,
@@ -174,4 +178,5 @@ def _logged(commit: Commit) -> LoggedCommit:
         retracted=len(commit.retracted),
         changed=tuple(entity.name for entity in commit.changed),
         removed=tuple(gone.name for gone in commit.removed),
+        changes=changes,
     )

@@ -9,7 +9,13 @@ from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
-from nodes.kb_node.documents import abox_document, ontology_files, rdf, tbox_validation
+from nodes.kb_node.documents import (
+    abox_document,
+    ontology_files,
+    rdf,
+    tbox_declarations,
+    tbox_validation,
+)
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
@@ -31,13 +37,15 @@ def seed(
     abox: Path | None,
     *,
     imports: Mapping[str, Path] = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
     fresh: bool = False,
 ) -> str:
     """Make the journal of folder `data` from a TBox and an ABox file; say what was done.
 
-    The TBox may be in several files and folders; `imports` says in which file an imported ontology is.
+    The TBox may be in several files and folders; `imports` says in which file an imported ontology is,
+    `spatial_root` which of its classes are of things in space, where that is not known by itself.
     A journal that is there already wins and stays as it is, unless `fresh`: then it is moved to
-    `data/kept/<time>/`. Raises BadFile or Inconsistent with existing data untouched.
+    `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent with existing data untouched.
     """
     path = data / FILENAME
     if path.exists() and not fresh:
@@ -45,7 +53,10 @@ def seed(
         return f"going on with the map in {data} (--fresh begins anew and keeps this one aside)"
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
-    tbox_triples = ontology_files.gather(tboxes, imports).triples
+    gathered = ontology_files.gather(tboxes, imports)
+    tbox_triples = tbox_declarations.declared(
+        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
+    )
     reasoner = tbox_validation.compiled(tbox_triples, name)
     closed = reasoner.closed  # as it is before the ABox may add to the schema
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]

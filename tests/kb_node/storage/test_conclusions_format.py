@@ -19,11 +19,11 @@ from schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "866c583d92a0dbe7",
-    "layouts": "eeaffade57cce016",
+    "layouts": "00c5073b4adfc5ad",
     "closure": "543217405dc297c7",
-    "entities": "46cbbd310de766fb",
+    "entities": "38af6f13abe38494",
 }
-"""Those of format 1. When one of them is another: add 1 to FORMAT, and write down the new ones."""
+"""Those of format 2. When one of them is another: add 1 to FORMAT, and write down the new ones."""
 
 PREFIXES = """
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#> .
@@ -74,7 +74,7 @@ def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
         "closure": digest(closed),
         "entities": digest(entities),
     }
-    assert (FORMAT, found) == (1, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (2, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def digest(lines):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -21,7 +21,7 @@ from nodes.extern.cli.output.tables import (
 )
 from schemas import wording
 from schemas.commits import Commit
-from schemas.entities import ClassInfo, Entity
+from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
 from schemas.explanations import Explanation
 from schemas.replies import Changed, Inferred, SystemStatus
 
@@ -56,8 +56,8 @@ def entity_line(entities: Sequence[Entity]) -> str:
     return wording.entities(len(entities)) + why
 
 
-def entity_card(e: Entity) -> Table:
-    """All about one entity."""
+def entity_card(e: Entity, properties: Iterable[PropertyInfo] = ()) -> Table:
+    """All about one entity; labels are those of `properties`."""
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
     own_size = " (the model's own)" if e.body is not None and e.body.own_size else ""
     rows = {
@@ -69,6 +69,7 @@ def entity_card(e: Entity) -> Table:
         "size": (_size(e) or "unknown") + own_size,
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
+        **_stated(e, {p.name: p for p in properties}),
         "body": body,
         **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
@@ -78,6 +79,42 @@ def entity_card(e: Entity) -> Table:
         "called so": provenance_text(e.reference_provenance),
     }
     return card(rows)
+
+
+def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]:
+    """The properties with their labels: `isOpen (is open)`, `color_red (red)`."""
+    rows = {}
+    for name, stated in e.properties.items():
+        known = properties.get(name)
+        values = stated if isinstance(stated, tuple) else (stated,)
+        label = _english(known.labels) if known else ""
+        rows[_labelled(name, label)] = ", ".join(
+            _labelled(str(value).lower() if isinstance(value, bool) else str(value), _label(known, value))
+            for value in values
+        )
+    return rows
+
+
+def _label(known: PropertyInfo | None, value: Value) -> str:
+    return known.values.get(str(value), "") if known is not None else ""
+
+
+def _labelled(name: str, label: str) -> str:
+    return f"{name} ({label})" if label and label != name else name
+
+
+def _english(labels: Mapping[str, str]) -> str:
+    return labels.get("en") or labels.get("") or next(iter(labels.values()), "")
+
+
+def property_table(properties: Iterable[PropertyInfo]) -> Table:
+    """One row a property."""
+    rows = table("property", "label", "of", "takes", "values", fold=("label", "of", "takes"))
+    for p in properties:
+        takes = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
+        often = "one" if p.functional else "any number"
+        rows.add(p.name, _english(p.labels), ", ".join(p.domain), takes, often)
+    return rows
 
 
 def class_tree(classes: Iterable[ClassInfo]) -> Tree:
@@ -140,6 +177,8 @@ def changed(reply: Changed) -> Iterable[str]:
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  left out: {skipped}" for skipped in reply.skipped)
     yield from (f"  note: {note}" for note in reply.notes)
+    yield from (f"  would follow: {text}" for text in reply.follows)
+    yield from (f"  would no longer follow: {text}" for text in reply.no_longer_follows)
 
 
 def inferred(reply: Inferred) -> Iterable[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from rich.table import Table
 
 from nodes.extern.cli.output.tables import author, card, moment, pose_text, provenance_text, table
+from schemas import wording
 from schemas.replies import LoggedCommit, Sighting
 
 _FEW = 6
@@ -14,22 +15,33 @@ _FEW = 6
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:
     """One row a commit."""
-    columns = ("commit", "time", "by", "why", "sure", "triples", "entities")
-    rows = table(*columns, fold=("by", "why", "triples", "entities"))
+    columns = ("commit", "time", "by", "why", "sure", "what")
+    rows = table(*columns, fold=("by", "why", "what"))
     rows.columns[0].justify = "right"
     for c in commits:
-        names = [*c.changed, *(f"-{name}" for name in c.removed)]
-        more = f" and {len(names) - _FEW} more" if len(names) > _FEW else ""
         rows.add(
             str(c.seq),
             moment(c.stamp_ns),
             author(c),
             c.reason,
             "" if c.confidence is None else f"{c.confidence:.2f}",
-            f"+{c.inserted} -{c.retracted}" + (" TBox" if c.tbox else ""),
-            " ".join(names[:_FEW]) + more,
+            _what(c),
         )
     return rows
+
+
+def _what(commit: LoggedCommit) -> str:
+    """What was and what is, of a few entities; of the others their number."""
+    about: dict[str, list[str]] = {}
+    for change in commit.changes:
+        about.setdefault(change.name, []).append(change.text)
+    said = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW]]
+    touched = len({*commit.changed, *commit.removed})
+    if touched > len(said):
+        said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
+    if commit.tbox:
+        said.append("another TBox")
+    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def sighting_card(s: Sighting) -> Table:

@@ -78,7 +78,8 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
     if format == "json":
         print_json(entity)
     else:
-        show.console().print(show.entity_card(entity))
+        labels = client.properties() if entity.properties else ()
+        show.console().print(show.entity_card(entity, labels))
 
 
 @click.command()
@@ -181,6 +182,18 @@ def classes(client: Client, format: str) -> None:
         print_json(client.classes())
     else:
         show.console().print(show.class_tree(client.classes()))
+
+
+@click.command()
+@_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@talks
+def properties(client: Client, format: str) -> None:
+    """The properties that `set` may state of an entity, with what they take."""
+    found = client.properties()
+    if format == "json":
+        print_json(found)
+    else:
+        show.console().print(show.property_table(found))
 
 
 @click.command()

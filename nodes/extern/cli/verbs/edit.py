@@ -1,4 +1,4 @@
-"""The verbs that change the map: `add`, `update`, `remove`, `clear`, `load`."""
+"""The verbs that change the map: `add`, `update`, `set`, `unset`, `remove`, `clear`, `load`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
-from nodes.extern.cli.ontology_options import import_option
+from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
 from nodes.extern.client import Client
@@ -22,6 +22,19 @@ def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda function: functools.reduce(lambda f, decorate: decorate(f), reversed(decorators), function)
 
 
+def _stated(fields: dict[str, Any]) -> dict[str, Any]:
+    """The options that were given; a value may be an empty text."""
+    return {name: value for name, value in fields.items() if value not in (None, False)}
+
+
+_id = click.option(
+    "--id", "id", metavar="ID", help="Command id; a command sent twice with one id is executed once."
+)
+_dry_run = click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
+_set = click.option(
+    "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="State a property; may be repeated."
+)
+_if_is = click.option("--if-is", metavar="VALUE", help="Only if this is a value now (compare and set).")
 _describing = _options(
     vector_option("--at", metavar="X Y Z", help="Position of the bottom centre in the map frame [m]."),
     click.option("--yaw", type=float, metavar="RAD", help="Rotation about the z axis [rad]."),
@@ -31,9 +44,7 @@ _describing = _options(
     click.option("--alt", multiple=True, metavar="TEXT", help="Alternative reference; may be repeated."),
     click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
     click.option("--wait", is_flag=True, help="Wait until its body stands in the scene."),
-    click.option(
-        "--id", "id", metavar="ID", help="Command id; a command sent twice with one id is executed once."
-    ),
+    _id,
 )
 
 
@@ -41,7 +52,9 @@ _describing = _options(
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.argument("name", required=False)
 @_describing
+@_set
 @click.option("--default", is_flag=True, help="Use the next free place and the class's label as reference.")
+@_dry_run
 @talks
 def add(client: Client, **fields: Any) -> None:
     """Add an entity to the map."""
@@ -57,25 +70,64 @@ def add(client: Client, **fields: Any) -> None:
     metavar="TEXT",
     help="Record an observation that contradicts the map; an empty text clears it.",
 )
+@_set
+@click.option(
+    "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Take a property back; may be repeated."
+)
+@click.option("--force", is_flag=True, help="Also where an object becomes a place, or a place an object.")
+@_dry_run
 @talks
 def update(client: Client, **fields: Any) -> None:
     """Change an entity; omitted fields keep their values."""
     print_lines(show.changed(client.update(**given(fields))))
 
 
+@click.command("set")
+@click.argument("name", shell_complete=entity_names)
+@click.argument("property", metavar="PROPERTY")
+@click.argument("values", metavar="VALUE...", nargs=-1, required=True)
+@_if_is
+@click.option("--if-unset", is_flag=True, help="Only if the property has no value now.")
+@click.option("--confidence", type=float, metavar="P", help="How sure that is, 0 to 1.")
+@_id
+@_dry_run
+@talks
+def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
+    """State a property of an entity, such as `door1 isOpen false`.
+
+    The value of a functional property replaces the one before; other properties get more values.
+    """
+    print_lines(show.changed(client.set(name, property, *values, **_stated(fields))))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("property", metavar="PROPERTY")
+@click.argument("value", required=False)
+@_if_is
+@_id
+@_dry_run
+@talks
+def unset(client: Client, **fields: Any) -> None:
+    """Take back one value of an entity's property, or all of them."""
+    print_lines(show.changed(client.unset(**_stated(fields))))
+
+
 @click.command()
 @click.argument("names", nargs=-1, required=True, shell_complete=entity_names)
+@_dry_run
 @talks
-def remove(client: Client, names: tuple[str, ...]) -> None:
+def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
     """Remove entities from the map and the scene."""
-    print_lines(show.changed(client.remove(*names)))
+    print_lines(show.changed(client.remove(*names, dry_run=dry_run)))
 
 
 @click.command()
+@_dry_run
 @talks
-def clear(client: Client) -> None:
+def clear(client: Client, dry_run: bool) -> None:
     """Remove all entities from the map and the scene; the TBox stays."""
-    print_lines(show.changed(client.clear()))
+    print_lines(show.changed(client.clear(dry_run=dry_run)))
 
 
 @click.command()
@@ -86,6 +138,8 @@ def clear(client: Client) -> None:
 @click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
 @click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
 @import_option
+@spatial_root_option
+@_dry_run
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""

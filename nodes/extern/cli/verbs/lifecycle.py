@@ -13,7 +13,7 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.extern.cli.calling import complain
-from nodes.extern.cli.ontology_options import import_option
+from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
@@ -37,6 +37,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
     )
     @import_option
+    @spatial_root_option
     @click.option(
         "--abox",
         help="ABox file, or none for an empty map. Default: the flat; none if perceived or with --tbox.",
@@ -167,8 +168,8 @@ def node(name: str, settings: Settings) -> None:
 
 
 def _settings(
-    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], abox: str | None,
-    world: str | None, data: Path | None, fresh: bool, truth: str | None,
+    *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...],
+    abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
@@ -178,6 +179,11 @@ def _settings(
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
         complain(f"--abox is ignored: there is a map in {folder}; --fresh starts a new one")
+    if spatial_root and (folder / JOURNAL).exists() and not fresh:
+        complain(
+            f"--spatial-root is ignored: there is a map in {folder}; for its TBox use:"
+            " semmap load --tbox FILE --spatial-root CLASS"
+        )
     of_the_flat = abox is None and not tbox
     if world is None:
         world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
@@ -190,6 +196,7 @@ def _settings(
         "data": str(folder),
         "tbox": tuple(_existing(path, or_folder=True) for path in tbox or (HOUSEHOLD_TTL,)),
         "imports": {iri: str(file) for iri, file in imports},
+        "spatial_root": spatial_root,
         "abox": None if abox == "none" else _existing(Path(abox)),
         "world": _existing(Path(world)),
         "truth": truth,

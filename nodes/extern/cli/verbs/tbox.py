@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from nodes.extern.cli.calling import print_json, print_lines
-from nodes.extern.cli.ontology_options import import_option
+from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import show_tbox
 from nodes.runtime import extras
 from schemas import errors
@@ -22,8 +22,11 @@ def tbox() -> None:
 @tbox.command()
 @click.argument("files", type=click.Path(path_type=Path), nargs=-1, required=True)
 @import_option
+@spatial_root_option
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def check(files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], format: str) -> None:
+def check(
+    files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...], format: str
+) -> None:
     """What is in ontologies, what of it is inert or wrong, and how quick changes will be.
 
     FILES (or folders) are checked together, with what they import. Exit status 1 says that they contradict
@@ -32,7 +35,7 @@ def check(files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], format
     extras.require("semmap tbox check", "kb")
     from nodes.kb_node.documents.tbox_check import check as check_files
 
-    report = check_files(files, dict(imports))
+    report = check_files(files, dict(imports), spatial_root)
     if format == "json":
         print_json(report)
     else:

@@ -33,6 +33,11 @@ _DECLARED: dict[OwlSyntax, str] = {
     "manchester": r"Prefix:\s+{}:\s",
 }
 _DECLARE: dict[OwlSyntax, str] = {"functional": "Prefix({}:=<{}>) ", "manchester": "Prefix: {}: <{}> "}
+_PREFIXES: dict[OwlSyntax, re.Pattern[str]] = {
+    "functional": re.compile(r"^\s*Prefix\s*\(\s*([\w.-]*):\s*=\s*<([^>\s]*)>", re.MULTILINE),
+    "manchester": re.compile(r"^\s*Prefix:\s+([\w.-]*):\s+<([^>\s]*)>", re.MULTILINE),
+    "owlxml": re.compile(r"""<Prefix\s+name=["']([\w.-]*)["']\s+IRI=["']([^"'\s]*)["']"""),
+}
 _LINE = re.compile(r"line_col: \w+\(\((\d+), (\d+)\)")
 _BYTE = re.compile(r"Byte(?:Position|Span)\((\d+)")
 _EXPECTED = re.compile(r"positives: \[([^\]]*)\]")
@@ -41,6 +46,11 @@ _THAT = re.compile(r'("(?:\\.|[^"\\])*"|<[^>\s]*>|(?:^|(?<=\s))#[^\n]*)|(?<=\s)t
 _REFERENCE = re.compile(r"&(\w[\w.-]*);")
 _OF_XML = frozenset({"lt", "gt", "amp", "apos", "quot"})
 _DOCTYPE = re.compile(r"<!DOCTYPE[^\[>]*(\[.*?\]\s*)?>", re.DOTALL)
+
+
+def prefixes(text: str, syntax: OwlSyntax) -> dict[str, str]:
+    """Prefix to namespace, as a document declares them."""
+    return {match[1]: match[2] for match in _PREFIXES[syntax].finditer(text)}
 
 
 def owl_syntax_of(content: bytes) -> OwlSyntax | None:

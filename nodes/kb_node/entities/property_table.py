@@ -1,0 +1,227 @@
+"""The property table: what may be stated of an entity by name, worked out once when a TBox is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from functools import cached_property
+from types import MappingProxyType
+from typing import NamedTuple
+
+from nodes.kb_node.entities import property_values
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.sparql.queries.text import query_prefixes
+from ontology import prefixes
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.entities import PropertyInfo
+from schemas.explanations import Term
+
+_FEW = 12
+STRUCTURAL: Mapping[Term, str] = {
+    v.HAS_POSITION: "update {name} --at X Y Z",
+    v.HAS_SIZE: "update {name} --size X Y Z",
+    v.HAS_PREFERRED_REFERENCE: "update {name} --ref TEXT",
+    v.HAS_ALTERNATIVE_REFERENCE: "update {name} --alt TEXT",
+    v.CONFLICTING_OBSERVATION: "update {name} --conflict TEXT",
+    v.RDF_TYPE: "update {name} --class CLASS",
+}
+"""What makes up an entity's star has options of its own."""
+_OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
+
+
+class Property(NamedTuple):
+    """A data or object property. `ranges` are its own and those of the properties above it."""
+
+    iri: Term
+    name: str
+    is_data: bool
+    functional: bool
+    ranges: frozenset[Term]
+
+
+class PropertyTable:
+    """The data and object properties of a TBox, by IRI, local name and label; and its individuals."""
+
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        known_prefixes: Mapping[str, str] = MappingProxyType({}),
+        edges: Set[Term] = frozenset(),
+    ) -> None:
+        """`edges` are more properties that make up an entity's star."""
+        self._reasoner = reasoner
+        self._prefixes = query_prefixes(known_prefixes)
+        typed = [(s, o) for s, _, o in reasoner.asserted(None, v.RDF_TYPE) if s.startswith("<")]
+        classes = {s for s, o in typed if o == v.OWL_CLASS}
+        self._of_the_tbox = {s for s, o in typed if o == v.OWL_NAMED_INDIVIDUAL or o in classes}
+        declared = {
+            p: kind == v.OWL_DATATYPE_PROPERTY
+            for kind in (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY)
+            for p, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
+            if p.startswith("<") and p not in _OF_A_STAR
+        }
+        names = prefixes.names(declared.keys(), known_prefixes)
+        self.by_iri: dict[Term, Property] = {}
+        for p, is_data in sorted(declared.items()):
+            if p in STRUCTURAL or p in edges:
+                continue
+            above = self._above(p)
+            self.by_iri[p] = Property(
+                iri=p,
+                name=names[p],
+                is_data=is_data,
+                functional=any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
+                ranges=frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
+            )
+
+    def stated(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
+        """The properties of an individual of which this is asserted, by name: functional ones as scalars."""
+        known = said.keys() & self.by_iri.keys()
+        if not known:
+            return {}
+        return dict(sorted(_shown(self.by_iri[p], said[p]) for p in known))
+
+    def find(self, word: str, name: str = "NAME") -> Property:
+        """The property that `word` means: a name, an IRI in <>, a prefixed name or a label.
+
+        Raises BadRequest with the nearest names; for what makes up the star of entity `name`, with the
+        option that changes it.
+        """
+        term = self._term(word)
+        found = {term} if term is not None else set(self._words.get(_fold(word), ()))
+        if len(found) > 1:
+            exact = {p for p in found if v.local_name(p) == word}
+            found = exact if len(exact) == 1 else found
+        if len(found) > 1:
+            names = " or ".join(sorted(self._name(p) for p in found))
+            raise errors.BadRequest(f"'{word}' is ambiguous; did you mean {names}?")
+        for p in found:
+            if p in STRUCTURAL:
+                how = STRUCTURAL[p].format(name=name)
+                raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
+            if p in self.by_iri:
+                return self.by_iri[p]
+        known = [p.name for p in self.by_iri.values()]
+        hint = errors.did_you_mean(word, known) or "; see: semmap properties"
+        raise errors.BadRequest(f"unknown property '{word}'{hint}")
+
+    def term(
+        self, prop: Property, text: str, named: Callable[[str], Term | None], names: Collection[str]
+    ) -> Term:
+        """The value that `text` denotes for a property; `named` finds the map's individuals, among `names`.
+
+        Raises BadRequest for a literal outside the range, UnknownName for an individual that does not exist.
+        """
+        if prop.is_data:
+            return property_values.literal(prop.name, prop.ranges, text)
+        term = self._term(text)
+        if term is not None:
+            if any(self._reasoner.asserted(term)):
+                return term
+        elif (found := named(text) or self._individual(prop, text)) is not None:
+            return found
+        allowed = sorted(v.local_name(i) for i in self._allowed(prop))
+        hint = errors.did_you_mean(text, (*allowed, *names))
+        if not hint and 0 < len(allowed) <= _FEW:
+            hint = f"; {prop.name} takes {', '.join(allowed)}"
+        raise errors.UnknownName(f"no individual is named '{text}'{hint}")
+
+    def rows(self) -> Iterator[PropertyInfo]:
+        """One row a property, by name."""
+        for prop in sorted(self.by_iri.values(), key=lambda p: p.name):
+            domains = {
+                o for q in self._above(prop.iri) for _, _, o in self._reasoner.asserted(q, v.RDFS_DOMAIN)
+            }
+            comments = sorted(o for _, _, o in self._reasoner.asserted(prop.iri, v.RDFS_COMMENT))
+            yield PropertyInfo(
+                name=prop.name,
+                iri=v.bare(prop.iri),
+                kind="data" if prop.is_data else "object",
+                functional=prop.functional,
+                domain=_names(domains),
+                range=_names(prop.ranges),
+                labels=self._labels(prop.iri),
+                comment=v.lexical(comments[0]) if comments else "",
+                values={v.local_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},
+            )
+
+    def _individual(self, prop: Property, word: str) -> Term | None:
+        """The TBox's individual of this name or label; of several that one which the range has."""
+        found = self._individuals.get(_fold(word), set())
+        if len(found) > 1:
+            found = found & self._allowed(prop) or found
+        return min(found, default=None)
+
+    def _allowed(self, prop: Property) -> set[Term]:
+        """The TBox's individuals that are of all classes of the range; none without a range."""
+        if prop.is_data or not prop.ranges:
+            return set()
+        return self._of_the_tbox.intersection(*(self._reasoner.instances(c) for c in prop.ranges))
+
+    @cached_property
+    def _words(self) -> dict[str, set[Term]]:
+        """Names and labels of the properties, the structural ones too."""
+        words: dict[str, set[Term]] = {}
+        for p in (*self.by_iri, *STRUCTURAL):
+            self._note(words, p)
+        words.setdefault("type", set()).add(v.RDF_TYPE)
+        words.setdefault("class", set()).add(v.RDF_TYPE)
+        return words
+
+    @cached_property
+    def _individuals(self) -> dict[str, set[Term]]:
+        """Names and labels of the individuals that the TBox declares."""
+        words: dict[str, set[Term]] = {}
+        for i in self._of_the_tbox:
+            self._note(words, i)
+        return words
+
+    def _term(self, word: str) -> Term | None:
+        """A term as it is written, or a name with a prefix that queries know; None for another word."""
+        prefix, colon, name = word.partition(":")
+        if word.startswith("<") and word.endswith(">"):
+            return word
+        return v.iri(self._prefixes[prefix] + name) if colon and prefix in self._prefixes else None
+
+    def _note(self, words: dict[str, set[Term]], term: Term) -> None:
+        for word in (v.local_name(term), *self._labels(term).values()):
+            words.setdefault(_fold(word), set()).add(term)
+
+    def _labels(self, term: Term) -> dict[str, str]:
+        said = sorted(o for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
+        return {v.language_of(o) or "": v.lexical(o) for o in said}
+
+    def _name(self, p: Term) -> str:
+        return self.by_iri[p].name if p in self.by_iri else v.local_name(p)
+
+    def _is(self, p: Term, kind: Term) -> bool:
+        return any(self._reasoner.asserted(p, v.RDF_TYPE, kind))
+
+    def _above(self, p: Term) -> set[Term]:
+        """The property and those that it is a subproperty of."""
+        found, level = {p}, [p]
+        while level:
+            level = [
+                o
+                for q in level
+                for _, _, o in self._reasoner.asserted(q, v.RDFS_SUB_PROPERTY_OF)
+                if o not in found and not found.add(o)  # type: ignore[func-returns-value]
+            ]
+        return found
+
+
+def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
+    values = tuple(sorted(map(property_values.plain, terms), key=str))
+    return prop.name, values[0] if prop.functional and len(values) == 1 else values
+
+
+def _names(terms: Iterable[Term]) -> tuple[str, ...]:
+    return tuple(sorted(v.local_name(t) for t in terms if t.startswith("<")))
+
+
+def _label(labels: Mapping[str, str]) -> str:
+    return labels.get("en") or labels.get("") or next(iter(labels.values()), "")
+
+
+def _fold(word: str) -> str:
+    return "".join(word.split()).replace("_", "").casefold()

@@ -1,0 +1,125 @@
+"""Values of properties: literals as people and JSON write them, typed by a property's range."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Set
+
+from nodes.kb_node.reasoner import datatypes
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.entities import Stated as Stated
+from schemas.entities import Value
+from schemas.explanations import Term
+
+_TAGGED = re.compile(r"(.*)@([a-z]{2,3}(?:-[A-Za-z0-9]{1,8})*)", re.DOTALL)
+_LITERAL = re.compile(r'".*"(?:@[A-Za-z0-9-]+|\^\^<[^<>\s]+>)?', re.DOTALL)
+_BOOLEANS = {"true": "true", "yes": "true", "1": "true", "false": "false", "no": "false", "0": "false"}
+_FLOATS = frozenset((v.XSD_FLOAT, v.iri(f"{v.XSD}double")))
+_DECIMAL = v.iri(f"{v.XSD}decimal")
+_INTEGER = v.iri(f"{v.XSD}integer")
+_TEXTS = frozenset((v.RDF_LANG_STRING, v.iri(f"{v.RDF}PlainLiteral"), datatypes.LITERAL))
+_LARGEST = 1 << 63
+_OF_INTEGERS = frozenset(
+    v.iri(v.XSD + name)
+    for name in (
+        *("integer", "long", "int", "short", "byte", "nonNegativeInteger", "positiveInteger"),
+        *("nonPositiveInteger", "negativeInteger"),
+        *("unsignedLong", "unsignedInt", "unsignedShort", "unsignedByte"),
+    )
+)
+_SAID = {v.XSD_BOOLEAN: "true or false", v.XSD_FLOAT: "a number", _DECIMAL: "a decimal number"}
+
+
+def literal(name: str, ranges: Set[Term], text: str) -> Term:
+    """The literal that `text` denotes for property `name` with these ranges.
+
+    `text` is a literal as N-Triples writes it, or its lexical form; of a text the language may follow after
+    an @. Without a range true and false are booleans, and numbers are numbers. Raises BadRequest.
+    """
+    if _LITERAL.fullmatch(text):
+        return _checked(name, ranges, text, text)
+    known = sorted(r for r in ranges if datatypes.is_datatype(r) and r not in _TEXTS)
+    if not known:
+        return _text(text) if ranges & _TEXTS or ranges == {v.XSD_STRING} else _guessed(text)
+    (datatype, *_) = known
+    if datatype == v.XSD_STRING:
+        return v.literal(text)
+    written = text.strip()
+    if datatype == v.XSD_BOOLEAN:
+        written = _BOOLEANS.get(written.casefold(), written)
+    elif datatype in _FLOATS:
+        written = _float(written)
+    return _checked(name, ranges, text, v.literal(written, datatype))
+
+
+def same(one: Term, other: Term) -> bool:
+    """Do two terms denote the same value, or individual by the same name?"""
+    if one == other:
+        return True
+    value = datatypes.value(one) if one.startswith('"') else None
+    return value is not None and other.startswith('"') and value == datatypes.value(other)
+
+
+def plain(term: Term) -> Value:
+    """A term as JSON has it: booleans, numbers, text (with @ and its language), individuals by name."""
+    if not term.startswith('"'):
+        return v.local_name(term)
+    text, datatype, language = v.lexical(term), v.datatype_of(term), v.language_of(term)
+    if language is not None:
+        return f"{text}@{language}"
+    if datatypes.is_ill_typed(term):
+        return text
+    if datatype == v.XSD_BOOLEAN:
+        return text.strip() in ("true", "1")
+    if datatype in _OF_INTEGERS:
+        return int(text) if -_LARGEST <= int(text) < _LARGEST else text
+    if datatype in _FLOATS or datatype == _DECIMAL:
+        number = float(text)
+        return number if math.isfinite(number) else text
+    return text
+
+
+def spoken(term: Term) -> str:
+    """A term as people write it."""
+    value = plain(term)
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
+    """Raises BadRequest for a literal that is known not to be in the range."""
+    if datatypes.is_ill_typed(term):
+        raise _refusal(name, text, v.datatype_of(term))
+    for datatype in sorted(r for r in ranges if datatypes.is_datatype(r)):
+        if datatypes.excludes(datatype, term):
+            raise _refusal(name, text, datatype)
+    return term
+
+
+def _refusal(name: str, text: str, datatype: Term) -> errors.BadRequest:
+    said = _SAID.get(datatype) or f"xsd:{v.local_name(datatype)}"
+    return errors.BadRequest(f"{name} takes {said}, not '{text}'")
+
+
+def _text(text: str) -> Term:
+    tagged = _TAGGED.fullmatch(text)
+    return v.literal(tagged[1], lang=tagged[2]) if tagged else v.literal(text)
+
+
+def _guessed(text: str) -> Term:
+    if text in ("true", "false"):
+        return v.literal(text, v.XSD_BOOLEAN)
+    for datatype in (_INTEGER, _DECIMAL):
+        term = v.literal(text.strip(), datatype)
+        if text.strip() and not datatypes.is_ill_typed(term):
+            return term
+    return _text(text)
+
+
+def _float(text: str) -> str:
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return repr(number) if math.isfinite(number) else text

@@ -1,0 +1,103 @@
+"""What commits changed, from what was to what is: read off the commits, those of older versions too."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Iterable, Mapping
+
+from msgspec import structs
+
+from nodes.kb_node.entities.property_table import STRUCTURAL
+from nodes.kb_node.entities.property_values import plain
+from nodes.kb_node.storage.journal import Journal
+from ontology import vocabulary as v
+from schemas.changes import Change, between, of_properties, removed
+from schemas.commits import Commit
+from schemas.entities import Entity, Stated
+from schemas.explanations import Term
+
+FEW = 20
+"""Entities of a commit that are looked at."""
+_KEPT = 4
+
+
+class Changelog:
+    """Reads the changes of commits that come in order; it remembers the entities that it has met."""
+
+    def __init__(self, journal: Journal, first: Callable[[], Mapping[str, Entity]]) -> None:
+        """`first()` gives the entities before commit 1."""
+        self._journal = journal
+        self._first = first
+        self._met: dict[str, Entity | None] = {}
+        self._commits: OrderedDict[int, dict[str, Entity]] = OrderedDict()
+
+    def of(self, commit: Commit, only: str | None = None) -> tuple[Change, ...]:
+        """What was and what is, of the first entities that `commit` touched or of one of them."""
+        changes: list[Change] = []
+        stated = _stated(commit)
+        changed = [entity for entity in commit.changed if only in (None, entity.name)][:FEW]
+        for entity in changed:
+            was = self._before(entity.name, commit.seq)
+            if was is None:
+                changes += between(None, entity)
+            else:
+                changes += between(_bare(was), _bare(entity))
+                said = stated.get(v.iri(entity.iri), ())
+                changes += of_properties(entity.name, (_in_full(*one, was, entity) for one in said))
+            self._met[entity.name] = entity
+        for gone in commit.removed:
+            self._met[gone.name] = None
+            if only in (None, gone.name) and len(changes) < FEW:
+                changes.append(removed(gone.name, gone.types[0] if gone.types else ""))
+        return tuple(changes)
+
+    def _before(self, name: str, seq: int) -> Entity | None:
+        """The entity as it was before commit `seq`."""
+        if name in self._met:
+            return self._met[name]
+        touching = self._journal.touching(name, until=seq - 1)
+        return self._after(touching[-1]).get(name) if touching else self._first().get(name)
+
+    def _after(self, seq: int) -> dict[str, Entity]:
+        """The entities that a commit changed; those of a few commits are kept, because a load has many."""
+        if seq not in self._commits:
+            self._commits[seq] = {entity.name: entity for entity in self._journal.commit(seq).changed}
+            if len(self._commits) > _KEPT:
+                self._commits.popitem(last=False)
+        self._commits.move_to_end(seq)
+        return self._commits[seq]
+
+
+def _bare(entity: Entity) -> Entity:
+    """Without its properties, which commits of older versions do not have: the triples tell of them."""
+    return structs.replace(entity, properties={})
+
+
+def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
+    """Of each individual: its properties, with the values that went and those that came."""
+    if len(commit.retracted) + len(commit.inserted) > FEW * 50:
+        return {}
+    found: dict[tuple[Term, Term], tuple[list[Term], list[Term]]] = {}
+    for i, triples in enumerate((commit.retracted, commit.inserted)):
+        for s, p, o in triples:
+            if p not in STRUCTURAL:
+                found.setdefault((s, p), ([], []))[i].append(o)
+    said: dict[Term, list[tuple[str, Stated | None, Stated | None]]] = {}
+    for (s, p), (gone, come) in sorted(found.items()):
+        said.setdefault(s, []).append((v.local_name(p), _values(gone), _values(come)))
+    return said
+
+
+def _in_full(
+    name: str, gone: Stated | None, come: Stated | None, was: Entity, now: Entity
+) -> tuple[str, Stated | None, Stated | None]:
+    """What a property was and is: all its values where both are known, else those that went and came."""
+    before, after = was.properties.get(name), now.properties.get(name)
+    if isinstance(before, tuple) or isinstance(after, tuple):
+        return name, before, after
+    return name, gone, come
+
+
+def _values(terms: Iterable[Term]) -> Stated | None:
+    values = tuple(map(plain, sorted(terms)))
+    return values[0] if len(values) == 1 else values or None

@@ -1,0 +1,64 @@
+"""A change that is tried and taken back: what it would commit, and what would follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import islice
+
+from msgspec import structs
+
+from nodes.kb_node.answers import worth_saying
+from nodes.kb_node.semantic_map import SemanticMap
+from ontology import vocabulary as v
+from schemas.commits import Commit, Effects, Trial
+from schemas.explanations import Term, Triple
+
+_FEW = 50
+"""Entities of which it is said what follows."""
+
+
+def of(semantic_map: SemanticMap, change: Callable[[], Commit | None]) -> Effects | None:
+    """The effects of what `change` would commit, with nothing done; None if it changes nothing.
+
+    Raises what `change` raises.
+    """
+    seen = semantic_map.try_out(change, lambda commit: _After(semantic_map, commit))
+    if seen is None:
+        return None
+    held = _asserted(semantic_map, seen.concerned)
+    followed = _inferred(semantic_map, seen.concerned)
+    commit = seen.commit
+    return structs.replace(
+        Effects.of(commit),
+        trial=Trial(
+            inserted=len(commit.inserted),
+            retracted=len(commit.retracted),
+            changed=tuple(entity.name for entity in commit.changed),
+            gained=_spoken(seen.followed - followed - held),
+            lost=_spoken(followed - seen.followed - seen.held),
+        ),
+    )
+
+
+class _After:
+    """What holds of the entities that a commit touches, after it."""
+
+    def __init__(self, semantic_map: SemanticMap, commit: Commit) -> None:
+        self.commit = commit
+        gone = filter(None, (semantic_map.find(departed.name) for departed in commit.removed))
+        self.concerned = [v.iri(entity.iri) for entity in islice((*commit.changed, *gone), _FEW)]
+        self.held = _asserted(semantic_map, self.concerned)
+        self.followed = _inferred(semantic_map, self.concerned)
+
+
+def _asserted(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
+    return {t for iri in iris for t in semantic_map.reasoner.asserted(iri)}
+
+
+def _inferred(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
+    reasoner = semantic_map.reasoner
+    return {t for iri in iris for t in worth_saying(reasoner.inferred(iri, None, None))}
+
+
+def _spoken(triples: Iterable[Triple]) -> tuple[str, ...]:
+    return tuple(map(v.spoken, sorted(triples)))

@@ -1,0 +1,172 @@
+"""What is otherwise about an entity: from what it was to what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Literal
+
+from msgspec import Struct, field
+
+from schemas.entities import Entity, Pose, Stated, Value, distance_m
+
+_STILL_M = 5e-4
+Kind = Literal[
+    "added", "removed", "pose", "size", "class", "reference", "alternatives", "conflict", "property"
+]
+
+
+class Change(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """One thing that is otherwise about the entity `name`; None for what was not, or is no more.
+
+    `added` and `removed` are the entity itself, by its class; `property` is named by `property`. Positions
+    and sizes are metres.
+    """
+
+    name: str
+    kind: Kind
+    property_: str = field(name="property", default="")
+    was: Pose | Stated | None = None
+    now: Pose | Stated | None = None
+
+    @property
+    def text(self) -> str:
+        """It in words, without the entity's name: `moved from (8, 2.3, 0.76) to (9, 2.3, 0.76)`."""
+        return _WORDS[self.kind](self)
+
+
+def between(was: Entity | None, now: Entity) -> list[Change]:
+    """All that is otherwise about an entity than it was, or that it was added."""
+    name = now.name
+    if was is None:
+        return [Change(name=name, kind="added", now=now.class_)]
+    compared: tuple[tuple[Kind, Pose | Stated | None, Pose | Stated | None], ...] = (
+        ("class", was.class_, now.class_),
+        ("pose", was.pose, now.pose),
+        ("size", was.size_m, now.size_m),
+        ("reference", was.preferred_reference, now.preferred_reference),
+        ("alternatives", was.alternative_references, now.alternative_references),
+        ("conflict", was.conflict or None, now.conflict or None),
+    )
+    found = [Change(name=name, kind=kind, was=w, now=n) for kind, w, n in compared if w != n]
+    if was.properties != now.properties:
+        names = sorted(was.properties.keys() | now.properties.keys())
+        found += of_properties(name, ((p, was.properties.get(p), now.properties.get(p)) for p in names))
+    return found
+
+
+def of_properties(name: str, stated: Iterable[tuple[str, Stated | None, Stated | None]]) -> Iterator[Change]:
+    """Those properties of an entity, with what they were and are, that are otherwise."""
+    return (
+        Change(name=name, kind="property", property_=p, was=was, now=now)
+        for p, was, now in stated
+        if was != now
+    )
+
+
+def removed(name: str, class_name: str) -> Change:
+    """The entity is gone."""
+    return Change(name=name, kind="removed", was=class_name)
+
+
+def in_words(changes: Iterable[Change]) -> str:
+    """Changes of one entity in one line."""
+    return "; ".join(change.text for change in changes)
+
+
+def _pose(change: Change) -> str:
+    was, now = change.was, change.now
+    if not isinstance(now, Pose):
+        return "no longer has a position"
+    if not isinstance(was, Pose):
+        return f"placed at {_position(now)}"
+    moved = f"moved from {_position(was)} to {_position(now)}" if distance_m(was, now) > _STILL_M else ""
+    if was.orientation_wxyz == now.orientation_wxyz:
+        return moved or f"moved by less than a millimetre, at {_position(now)}"
+    turned = f"turned from {_degrees(was)} to {_degrees(now)}"
+    if _degrees(was) == _degrees(now):
+        turned = "tilted" if not moved else ""
+    return " and ".join(filter(None, (moved, turned)))
+
+
+def _position(pose: Pose) -> str:
+    return "({:g}, {:g}, {:g})".format(*(round(value, 3) + 0.0 for value in pose.position_m))
+
+
+def _degrees(pose: Pose) -> str:
+    return f"{round(pose.yaw_rad * 57.29577951308232) + 0}°"
+
+
+def _size(change: Change) -> str:
+    return f"size: {_extent(change.was)} → {_extent(change.now)}"
+
+
+def _extent(size: Pose | Stated | None) -> str:
+    return " x ".join(f"{value:g}" for value in size) if isinstance(size, tuple) else "unknown"
+
+
+def _reference(change: Change) -> str:
+    if change.was is None:
+        return f"called '{change.now}'"
+    return f"renamed '{change.was}' → '{change.now}'" if change.now else f"no longer called '{change.was}'"
+
+
+def _alternatives(change: Change) -> str:
+    came, gone = _differences(change)
+    return (
+        "; ".join(
+            filter(
+                None,
+                (
+                    f"reference added: {_quoted(came)}" if came else "",
+                    f"reference removed: {_quoted(gone)}" if gone else "",
+                ),
+            )
+        )
+        or "references in another order"
+    )
+
+
+def _conflict(change: Change) -> str:
+    return f"conflict: {change.now}" if change.now else "conflict resolved"
+
+
+def _property(change: Change) -> str:
+    if not any(isinstance(value, tuple) for value in (change.was, change.now)):
+        was, now = _shown(_values(change.was)), _shown(_values(change.now))
+        return f"{change.property_}: {was or 'not set'} → {now or 'not set'}"
+    came, gone = _differences(change)
+    signed = [f"+ {_shown(came)}"] * bool(came) + [f"- {_shown(gone)}"] * bool(gone)
+    return f"{change.property_}: {', '.join(signed)}"
+
+
+def _differences(change: Change) -> tuple[list[Value], list[Value]]:
+    """The values that came, and those that are gone."""
+    was, now = _values(change.was), _values(change.now)
+    return [value for value in now if value not in was], [value for value in was if value not in now]
+
+
+def _values(stated: Pose | Stated | None) -> tuple[Value, ...]:
+    if stated is None or isinstance(stated, Pose):
+        return ()
+    return stated if isinstance(stated, tuple) else (stated,)
+
+
+def _shown(values: Iterable[Value]) -> str:
+    return ", ".join(str(value).lower() if isinstance(value, bool) else str(value) for value in values)
+
+
+def _quoted(values: Iterable[Value]) -> str:
+    return ", ".join(f"'{value}'" for value in values)
+
+
+_WORDS = {
+    "added": lambda c: f"added as {c.now}",
+    "removed": lambda c: "removed",
+    "pose": _pose,
+    "size": _size,
+    "class": lambda c: f"class {c.was} → {c.now}",
+    "reference": _reference,
+    "alternatives": _alternatives,
+    "conflict": _conflict,
+    "property": _property,
+}

@@ -1,0 +1,174 @@
+"""Properties that may be stated: what they are called, what they take, and how they are said."""
+
+import pytest
+
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.entities import PropertyInfo
+from tests.kb_node import home
+from tests.kb_node.home import transaction, turtle
+from tests.kb_node.stating import (
+    adding,
+    edited,
+    properties,
+    stated,
+    statement,
+    unstated,
+)
+
+CHAIR = v.entity_iri("chair1")
+
+
+@pytest.mark.parametrize("word", ["isOpen", "is open", "IS_OPEN", "isopen", "dm:isOpen", v.dm("isOpen")])
+def test_a_property_is_found_by_its_names(stateful_map, word):
+    stated(stateful_map, word, "yes")
+    assert properties(stateful_map) == {"isOpen": True}
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("isOpne", "unknown property 'isOpne'; did you mean isOpen"),
+        ("xyzzy", "unknown property 'xyzzy'; see: semmap properties"),
+        ("hasPosition", "hasPosition is changed with: semmap update chair1 --at X Y Z"),
+        ("hasSize", "--size X Y Z"),
+        ("hasPreferredReference", "--ref TEXT"),
+        ("hasAlternativeReference", "--alt TEXT"),
+        ("type", "--class CLASS"),
+        ("lexicalReference", "unknown property"),
+    ],
+)
+def test_what_is_no_property_says_what_is(stateful_map, word, said):
+    with pytest.raises(errors.BadRequest) as caught:
+        stated(stateful_map, word, "x")
+    assert said in caught.value.text
+    assert stateful_map.seq == 1
+
+
+@pytest.mark.parametrize("word", ["color_red", "red", "Rosso", "dm:color_red", v.dm("color_red")])
+def test_an_individual_of_the_tbox_is_found_by_its_names(stateful_map, word):
+    stated(stateful_map, "hasColor", word)
+    assert properties(stateful_map) == {"hasColor": ("color_red",)}
+
+
+def test_of_several_individuals_with_a_label_the_range_has_one(stateful_map):
+    stated(stateful_map, "ha colore", "blue")
+    assert properties(stateful_map) == {"hasColor": ("color_blue",)}
+
+
+def test_an_individual_that_does_not_exist_is_refused_with_those_that_do(stateful_map):
+    with pytest.raises(errors.UnknownName, match="hasColor takes color_blue, color_red"):
+        stated(stateful_map, "hasColor", "xyzzy")
+    with pytest.raises(errors.UnknownName, match="did you mean color_red"):
+        stated(stateful_map, "hasColor", "color_rde")
+    with pytest.raises(errors.UnknownName, match="named 'kitchen2'; did you mean kitchen1"):
+        stated(stateful_map, "isLocatedIn", "kitchen2")
+    with pytest.raises(errors.UnknownName, match="urn:nobody"):
+        stated(stateful_map, "isLocatedIn", "<urn:nobody>")
+    stated(stateful_map, "isLocatedIn", "kitchen1")
+    assert properties(stateful_map) == {"isLocatedIn": ("kitchen1",)}
+
+
+def test_a_functional_property_is_replaced_and_others_get_more(stateful_map):
+    first = stated(stateful_map, "isOpen", "true")
+    second = stated(stateful_map, "isOpen", "false")
+    assert (second.retracted, second.seq) == (first.inserted, first.seq + 1)
+    stated(stateful_map, "hasColor", "red")
+    stated(stateful_map, "hasColor", "blue", "red")
+    assert properties(stateful_map) == {"hasColor": ("color_blue", "color_red"), "isOpen": False}
+    with pytest.raises(errors.BadRequest, match="one value at most"):
+        stated(stateful_map, "isOpen", "true", "false")
+
+
+def test_what_is_below_a_functional_property_is_functional_with_its_range(stateful_map):
+    stated(stateful_map, "hasOnlyColor", "red")
+    stated(stateful_map, "hasOnlyColor", "blue")
+    assert properties(stateful_map) == {"hasOnlyColor": "color_blue"}
+    with pytest.raises(errors.UnknownName, match="hasOnlyColor takes color_blue, color_red"):
+        stated(stateful_map, "hasOnlyColor", "xyzzy")
+
+
+def test_the_same_value_in_another_spelling_is_no_change(stateful_map):
+    stateful_map.commit(transaction("spelt", turtle(':chair1 dm:seats "02"^^xsd:nonNegativeInteger .')))
+    assert properties(stateful_map) == {"seats": 2}
+    assert stated(stateful_map, "seats", "2") is None
+    assert unstated(stateful_map, "seats", "2").inserted == ()
+    assert properties(stateful_map) == {}
+
+
+def test_unset_takes_one_value_or_all(stateful_map):
+    stated(stateful_map, "note", "a", "b@it", "c")
+    assert properties(stateful_map) == {"note": ("a", "b@it", "c")}
+    unstated(stateful_map, "note", "b@it")
+    assert properties(stateful_map) == {"note": ("a", "c")}
+    assert unstated(stateful_map, "note", "z") is None
+    unstated(stateful_map, "note")
+    assert properties(stateful_map) == {}
+
+
+def test_a_condition_holds_or_nothing_is_done(stateful_map):
+    with pytest.raises(errors.PreconditionFailed, match="chair1: isOpen is not set, not false"):
+        stated(stateful_map, "isOpen", "true", only_if=(statement("isOpen", "no"),))
+    stated(stateful_map, "isOpen", "false", only_if=(statement("isOpen"),))
+    stated(stateful_map, "isOpen", "true", only_if=(statement("isOpen", "false"),))
+    assert properties(stateful_map) == {"isOpen": True}
+    with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):
+        stated(stateful_map, "isOpen", "false", only_if=(statement("isOpen"),))
+    assert properties(stateful_map) == {"isOpen": True}
+
+
+def test_what_contradicts_the_tbox_is_refused_with_an_explanation(stateful_map):
+    before = home.state(stateful_map)
+    with pytest.raises(errors.Inconsistent) as caught:
+        stated(stateful_map, "isLocatedIn", "chair1")
+    assert caught.value.explanation is not None
+    with pytest.raises(errors.Inconsistent):
+        edited(stateful_map, name="kitchen1", set=(statement("isOpen", "true"),))
+    assert home.state(stateful_map) == before
+
+
+def test_a_new_entity_may_come_with_properties_and_takes_them_along(stateful_map):
+    stateful_map.commit(adding("stool1", set=(statement("isOpen", "no"), statement("isOn", "chair1"))))
+    assert properties(stateful_map, "stool1") == {"isOn": ("chair1",), "isOpen": False}
+    again = home.reopened(stateful_map)
+    assert properties(again, "stool1") == {"isOn": ("chair1",), "isOpen": False}
+    again.commit(transaction("gone", remove=["chair1"]))
+    assert properties(again, "stool1") == {"isOpen": False}
+    again.commit(transaction("gone too", remove=["stool1", "kitchen1"]))
+    assert again.abox() == []
+    again._journal.close()
+
+
+def test_a_set_is_undone_by_its_triples(stateful_map):
+    made = stated(stateful_map, "isOpen", "true")
+    stateful_map.commit(transaction("back", made.retracted, made.inserted, require=made.inserted))
+    assert properties(stateful_map) == {}
+
+
+def test_the_rows_say_what_a_property_takes(stateful_map):
+    rows = {row.name: row for row in stateful_map.classes.stated.rows()}
+    assert rows["isOpen"] == PropertyInfo(
+        name="isOpen",
+        iri=v.bare(v.dm("isOpen")),
+        kind="data",
+        functional=True,
+        domain=("Object",),
+        range=("boolean",),
+        labels={"en": "is open"},
+        comment="Whether it stands open.",
+        values={},
+    )
+    assert rows["hasMainColor"].values == {"color_blue": "blue", "color_red": "red"}
+    assert not {"hasPosition", "lexicalReference", "float_coordinates_x"} & rows.keys()
+
+
+def test_entities_of_one_shape_have_properties_of_their_own(stateful_map):
+    stars = [
+        turtle(f":s{i} a dm:Chair ; dm:isOpen {word} ; dm:hasColor dm:color_{color} ; dm:isOn :chair1 .")
+        for i, (word, color) in enumerate([("true", "red"), ("false", "blue"), ("true", "blue")])
+    ]
+    stateful_map.commit(transaction("many", [t for star in stars for t in star]))
+    assert [properties(stateful_map, f"s{i}") for i in range(3)] == [
+        {"hasColor": (f"color_{color}",), "isOn": ("chair1",), "isOpen": is_open}
+        for is_open, color in [(True, "red"), (False, "blue"), (True, "blue")]
+    ]

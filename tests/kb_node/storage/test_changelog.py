@@ -1,0 +1,82 @@
+"""What commits changed, read off a journal."""
+
+from msgspec import structs
+
+from nodes.kb_node.storage import changelog, history
+from nodes.kb_node.storage.changelog import Changelog
+from nodes.kb_node.storage.journal import Journal
+from schemas.commands import History
+from tests.kb_node.home import transaction
+from tests.kb_node.stating import adding, edited, stated, statement, unstated
+
+
+def told(journal, only=None, since=1):
+    """The changes of the commits in words."""
+    query = History(name=only, since=since)
+    return [
+        [f"{change.name} {change.text}" for change in commit.changes]
+        for commit in history.Past(journal).history(query)
+    ]
+
+
+def test_history_says_what_was_and_what_is(stateful_map):
+    edited(stateful_map, at=(3.0, 2.0, 0.0))
+    edited(stateful_map, ref="seat")
+    stated(stateful_map, "isOpen", "false")
+    stated(stateful_map, "isOpen", "true")
+    stated(stateful_map, "hasColor", "red", "blue")
+    unstated(stateful_map, "hasColor", "red")
+    edited(stateful_map, set=(statement("note", "x"),), alt=("stool",))
+    stateful_map.commit(transaction("go", remove=["chair1"]))
+    assert told(stateful_map._journal) == [
+        ["chair1 added as Chair", "kitchen1 added as Kitchen"],
+        ["chair1 moved from (1, 2, 0) to (3, 2, 0)"],
+        ["chair1 called 'seat'"],
+        ["chair1 isOpen: not set → false"],
+        ["chair1 isOpen: false → true"],
+        ["chair1 hasColor: + color_blue, color_red"],
+        ["chair1 hasColor: - color_red"],
+        ["chair1 reference added: 'stool'", "chair1 note: + x"],
+        ["chair1 removed"],
+    ]
+
+
+def test_the_history_of_one_entity_is_about_it(stateful_map):
+    stateful_map.commit(transaction("go", remove=["kitchen1"]))
+    stateful_map.commit(adding("stool1"))
+    assert told(stateful_map._journal, "kitchen1") == [["kitchen1 added as Kitchen"], ["kitchen1 removed"]]
+
+
+def test_a_part_of_the_history_knows_what_was_before(stateful_map):
+    edited(stateful_map, at=(3.0, 2.0, 0.0))
+    stateful_map.commit(transaction("go", remove=["chair1"]))
+    stateful_map.commit(adding("chair1"))
+    edited(stateful_map, at=(5.0, 2.0, 0.0))
+    assert told(stateful_map._journal, since=2)[0] == ["chair1 moved from (1, 2, 0) to (3, 2, 0)"]
+    assert told(stateful_map._journal, since=4) == [["chair1 added as Chair"], ["chair1 placed at (5, 2, 0)"]]
+
+
+def test_journals_without_properties_tell_of_them_by_their_triples(stateful_map, monkeypatch):
+    stated(stateful_map, "isOpen", "false")
+    stated(stateful_map, "isOpen", "true")
+    commit_ = Journal.commit
+
+    def older(journal, seq):
+        commit = commit_(journal, seq)
+        changed = tuple(structs.replace(entity, properties={}) for entity in commit.changed)
+        return structs.replace(commit, changed=changed)
+
+    monkeypatch.setattr(Journal, "commit", older)
+    assert told(stateful_map._journal, since=2) == [
+        ["chair1 isOpen: not set → false"],
+        ["chair1 isOpen: false → true"],
+    ]
+
+
+def test_of_a_large_commit_some_are_told(stateful_map):
+    new = tuple(adding(f"stool{i}").add[0] for i in range(100))
+    made = stateful_map.commit(transaction("many", add=new))
+    changes = Changelog(stateful_map._journal, dict).of(made)
+    assert len(changes) == changelog.FEW
+    gone = stateful_map.commit(transaction("none", remove=[n.name for n in new]))
+    assert len(Changelog(stateful_map._journal, dict).of(gone)) == changelog.FEW
