@@ -58,7 +58,9 @@ def local_name(term: Term) -> str:
 def entity_name(term: Term) -> str:
     """The name of an individual with this IRI: its local name, composed (NFC) and without percent escapes."""
     name = local_name(term)
-    return composed(unquote(name) if "%" in name else name)
+    if "%" not in name and name.isascii():
+        return name  # as most are
+    return composed(unquote(name))
 
 
 _ESCAPES: Final = {"\t": "\\t", "\b": "\\b", "\n": "\\n", "\r": "\\r", "\f": "\\f", '"': '\\"', "\\": "\\\\"}

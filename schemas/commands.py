@@ -30,7 +30,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.moments import When
-from schemas.relations import Relation, ViewPoint, Where
+from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
     Checked,
@@ -235,11 +235,16 @@ class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
     as_of: When | None = None
 
 
-class Get(Command[Entity], frozen=True, tag="get"):
-    """One entity; with `as_of` as it was then."""
+class Get(Command[Described], frozen=True, tag="get"):
+    """One entity; with `as_of` as it was then.
+
+    With `where` also what it is on, inside and in, and what was said of that but does not hold (of the map as
+    it is now only).
+    """
 
     name: str
     as_of: When | None = None
+    where: bool = False
 
 
 class Check(Command[Checked], frozen=True, tag="check"):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-from schemas.entities import Metres, Text
+from schemas.entities import Entity, Metres, Text
 
 RelationName = Literal[
     "isOn", "isInside", "isLocatedIn", "isUnder", "isAbove", "isNear",
@@ -32,6 +32,25 @@ class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     gap_m: float = 0.0
     share: float = 1.0
     text: str = ""
+
+
+class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An entity with, if that was asked for, where it is.
+
+    `whereabouts`: what it is inside, on and in, as measured. `denied`: what somebody said of that and is not
+    so, as things stand.
+    """
+
+    whereabouts: tuple[Relation, ...] = ()
+    denied: tuple[Relation, ...] = ()
+
+    @classmethod
+    def of(
+        cls, entity: Entity, whereabouts: tuple[Relation, ...] = (), denied: tuple[Relation, ...] = ()
+    ) -> Described:
+        """An entity with these relations."""
+        fields = {name: getattr(entity, name) for name in Entity.__struct_fields__}
+        return cls(**fields, whereabouts=whereabouts, denied=denied)
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

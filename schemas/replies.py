@@ -10,6 +10,7 @@ from schemas.changes import Change
 from schemas.entities import Pose, Probability, Provenance, Source
 from schemas.errors import ErrorMessage
 from schemas.explanations import Explanation, Triple
+from schemas.relations import Relation
 
 
 class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -38,6 +39,8 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     elapsed_s: float
     text: str
     explanation: Explanation | None = None
+    denied: tuple[Relation, ...] = ()
+    """What somebody said of where things are, and is not so as they stand; it contradicts nothing."""
 
 
 class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, TypeVar
 
 from msgspec import structs
 
@@ -22,9 +22,11 @@ from schemas import bridge, errors
 from schemas import commands as c
 from schemas.entities import Entity, Size
 from schemas.moments import When
+from schemas.relations import Described
 from schemas.replies import SystemStatus
 
 _DIGITS = 4
+E = TypeVar("E", bound=Entity)
 
 Listed = tuple[Entity, ...] | dict[str, Any]
 """The entities, or the document of another format."""
@@ -55,11 +57,13 @@ class Answers:
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
 
-    def get(self, query: c.Get) -> Entity | Future[Entity]:
+    def get(self, query: c.Get) -> Described | Future[Described]:
         """One entity, with what has become of its body."""
         if query.as_of is not None:
             return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), with_size)
-        return self._with_body(self._door.map.entity(query.name))
+        if query.where:
+            return then(self._bridge.ask_later(query, patience_s=bus.RESTART_S), self._with_body)
+        return Described.of(self._with_body(self._door.map.entity(query.name)))
 
     def status(self, _: c.Status) -> SystemStatus:
         """The nodes, the map, the scene."""
@@ -92,7 +96,7 @@ class Answers:
                 raise
             return word
 
-    def _with_body(self, entity: Entity) -> Entity:
+    def _with_body(self, entity: E) -> E:
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":
             return structs.replace(entity, body=state)
@@ -100,7 +104,7 @@ class Answers:
         return structs.replace(sized, body=structs.replace(state, own_size=sized.size_m is not None))
 
 
-def with_size(entity: Entity) -> Entity:
+def with_size(entity: E) -> E:
     """The entity with the size of its model, if the map states none and it is no place."""
     if entity.size_m is not None or entity.place:
         return entity

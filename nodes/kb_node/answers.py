@@ -11,6 +11,7 @@ from nodes.kb_node import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.relations import said
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -43,6 +44,17 @@ def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
         and (p, s) != (v.OWL_SAME_AS, o)
         and not (p == v.RDF_TYPE and o.startswith("_:"))
     )
+
+
+def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[said.Fact]:
+    """What is asserted of where an entity is, or all entities are."""
+    iri = None if entity is None else v.iri(entity.iri)
+    for property_, (_, is_inverse) in said.PROPERTIES.items():
+        for triple in semantic_map.reasoner.asserted(
+            None if is_inverse else iri, property_, iri if is_inverse else None
+        ):
+            if (fact := said.fact_of(triple)) is not None:
+                yield fact
 
 
 class Picture(NamedTuple):

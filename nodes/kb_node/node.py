@@ -27,10 +27,11 @@ from nodes.kb_node.documents import (
 from nodes.kb_node.pages import Pages
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.relations.said import denied
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
-from nodes.kb_node.relations.telling import SPOKEN, explained, relations
+from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
@@ -76,7 +77,7 @@ from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.health import LOADING
-from schemas.relations import Relation
+from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
 
@@ -306,11 +307,24 @@ class KnowledgeBase:
         self._past.entity(query.name, query.as_of)
         return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
 
-    def on_get(self, query: Get) -> Entity | Future[Entity]:
+    def on_get(self, query: Get) -> Described | Future[Described]:
         """One entity, now or as of then."""
         if query.as_of is not None:
-            return self._aside.submit(self._past.entity, query.name, query.as_of)
-        return self.map.entity(query.name)
+            return self._aside.submit(self._described_then, query)
+        entity = self.map.entity(query.name)
+        if not query.where:
+            return Described.of(entity)
+        space = self._surroundings.space()
+        wrong = denied(space, answers.said_of_place(self.map, entity))
+        return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
+
+    def _described_then(self, query: Get) -> Described:
+        assert query.as_of is not None
+        entity = self._past.entity(query.name, query.as_of)
+        if not query.where:
+            return Described.of(entity)
+        space = Space(self._past.entities(query.as_of, None, ()))
+        return Described.of(entity, tuple(whereabouts(space, entity.name)))
 
     def on_infer(self, query: Infer) -> Inferred:
         """What follows."""
@@ -382,7 +396,14 @@ class KnowledgeBase:
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
-        return self._aside.submit(answers.check, [*self.map.tbox, *self.map.abox()], query.engine)
+        said = tuple(answers.said_of_place(self.map))
+        entities = tuple(self.map.entities()) if said else ()
+        triples = [*self.map.tbox, *self.map.abox()]
+        return self._aside.submit(
+            lambda: structs.replace(
+                answers.check(triples, query.engine), denied=tuple(denied(Space(entities), said))
+            )
+        )
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """A query, evaluated beside the node's own work."""

@@ -11,13 +11,14 @@ from nodes import bus
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.storage.seed import seed
 from nodes.supervisor.settings import Settings
+from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
 from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
 from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
 from schemas.commits import Effects, NewEntity
-from schemas.entities import Entity
+from schemas.entities import Entity, Pose
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
 
@@ -175,6 +176,30 @@ def test_questions_are_answered(session):
     assert (there.pose, there.removed) == (ask(session, "get", Get(name="q")).pose, None)
     document = ask(session, "export", Export(format="turtle", inferred=True))
     assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf.parse(document.content, "export")
+
+
+def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
+    kitchen = stars.star(
+        "k9", v.dm("Kitchen"), pose=Pose(position_m=(50.0, 0.0, 0.0)), size_m=(4.0, 4.0, 2.5)
+    )
+    said = (v.entity_iri("sat"), v.dm("isLocatedIn"), v.entity_iri("k9"))
+    ask(session, "commit", transaction("seen1", [*kitchen, *chair("sat", (51.0, 0.0, 0.0)), said]))
+    there = ask(session, "get", Get(name="sat", where=True))
+    assert [(r.relation, r.object) for r in there.whereabouts] == [("isLocatedIn", "k9")]
+    assert not there.denied
+    assert not ask(session, "check", Check()).denied
+    assert not ask(session, "get", Get(name="sat")).whereabouts
+    moved = transaction("seen2", chair("sat", (60.0, 0.0, 0.0)), chair("sat", (51.0, 0.0, 0.0)))
+    commit = ask(session, "commit", moved)
+    away = ask(session, "get", Get(name="sat", where=True))
+    assert not away.whereabouts
+    (denied,) = away.denied
+    assert denied.text.startswith("sat was said to be in k9; it stands 7.")
+    checked = ask(session, "check", Check())
+    assert checked.consistent
+    assert denied in checked.denied
+    then = ask(session, "get", Get(name="sat", where=True, as_of=commit.seq - 1))
+    assert (then.whereabouts, then.denied) == (there.whereabouts, ())
 
 
 def load(number, content, **fields):

@@ -8,18 +8,18 @@ from mypy import api
 from schemas import bridge, commands
 from schemas.calls import Call, Handler, by_verb, reply_type
 from schemas.commits import Commit, Effects, Transaction
-from schemas.entities import Entity
+from schemas.relations import Described
 from schemas.scenes import Scene, SceneQuery
 
 WIRE = """
 from concurrent.futures import Future
 from nodes.extern.client import Client
 from schemas.commands import Get, Pause
-from schemas.entities import Entity
+from schemas.relations import Described
 from schemas.replies import Done
 
-def entity(query: Get) -> Entity: ...
-def later(query: Get) -> Future[Entity]: ...
+def entity(query: Get) -> Described: ...
+def later(query: Get) -> Future[Described]: ...
 def done(query: Get) -> Done: ...
 
 def use(client: Client) -> None:
@@ -27,7 +27,7 @@ def use(client: Client) -> None:
     Get.answered_by(later)
     Get.answered_by(done)
     Pause.answered_by(entity)
-    found: Entity = client.send(Get("cup1"))
+    found: Described = client.send(Get("cup1"))
     wrong: Done = client.send(Get("cup1"))
     client.add("Cup", at="there")
     client.step(0.5).text
@@ -38,14 +38,14 @@ def use(client: Client) -> None:
 def test_each_call_says_what_it_is_answered_with():
     for kind in (*commands.COMMANDS.values(), *bridge.BRIDGE.values()):
         assert reply_type(kind) is not None
-    assert reply_type(commands.Get) is Entity
+    assert reply_type(commands.Get) is Described
     assert reply_type(SceneQuery) is Scene
     assert reply_type(Transaction) == Effects | None
     assert reply_type(bridge.Recall) == tuple[Commit, ...]
 
 
 def test_a_kind_of_a_call_is_answered_like_it():
-    assert reply_type(type("Take", (commands.Get,), {})) is Entity
+    assert reply_type(type("Take", (commands.Get,), {})) is Described
 
 
 @pytest.mark.parametrize("kind", [Call, commands.Command])

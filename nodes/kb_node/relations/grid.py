@@ -47,7 +47,11 @@ class Grid:
 
 def _cells(bounds: Bounds) -> list[tuple[int, int]] | None:
     """The cells that some bounds cover; None for too many."""
-    x0, y0, x1, y1 = (int(value // CELL_M) for value in bounds)
+    low_x, low_y, high_x, high_y = bounds
+    x0, y0 = int(low_x // CELL_M), int(low_y // CELL_M)
+    x1, y1 = int(high_x // CELL_M), int(high_y // CELL_M)
+    if x0 == x1 and y0 == y1:
+        return [(x0, y0)]
     if (x1 - x0 + 1) * (y1 - y0 + 1) > MOST_CELLS:
         return None
     return [(x, y) for x in range(x0, x1 + 1) for y in range(y0, y1 + 1)]

@@ -106,9 +106,13 @@ class Solid:
     @cached_property
     def bounds(self) -> Bounds:
         """Least x and y, greatest x and y [m]."""
-        xs = [corner[0] for corner in self.corners]
-        ys = [corner[1] for corner in self.corners]
-        return min(xs), min(ys), max(xs), max(ys)
+        (a, b, c), (d, e, f), _ = self.rotation
+        x, y, z = self.size
+        px, py, _ = self.position
+        px, py = px + c * z / 2, py + f * z / 2
+        half_x = (abs(a) * x + abs(b) * y + abs(c) * z) / 2
+        half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
+        return px - half_x, py - half_y, px + half_x, py + half_y
 
     @cached_property
     def supports(self) -> tuple[Support, ...]:

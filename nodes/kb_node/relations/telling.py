@@ -39,6 +39,20 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
 def relations_of(space: Space, name: str) -> Iterator[Relation]:
     """What a thing is in, inside, on, under, above and near to."""
     solid = _solid(space, name)
+    yield from (found := list(whereabouts(space, name)))
+    if solid.is_place:
+        return
+    told = {relation.object for relation in found}
+    beside = [other for other in space.around(solid, space.limits.near_most_m) if not other.is_place]
+    for other in sorted(beside, key=lambda other: measures.gap(solid, other)):
+        if other.name not in told:
+            yield from (relation for relation in _beside(space, solid, other) if relation.holds)
+
+
+def whereabouts(space: Space, name: str) -> Iterator[Relation]:
+    """What a thing is inside, on and in; nothing for one without a position."""
+    if (solid := space.solids.get(name)) is None:
+        return
     container, support, place = space.whereabouts(solid)
     if container is not None:
         yield _told("isInside", solid, *container)
@@ -46,13 +60,6 @@ def relations_of(space: Space, name: str) -> Iterator[Relation]:
         yield _told("isOn", solid, *support)
     if place is not None:
         yield _told("isLocatedIn", solid, *place)
-    if solid.is_place:
-        return
-    told = {found[0].name for found in (container, support) if found is not None}
-    beside = [other for other in space.around(solid, space.limits.near_most_m) if not other.is_place]
-    for other in sorted(beside, key=lambda other: measures.gap(solid, other)):
-        if other.name not in told:
-            yield from (relation for relation in _beside(space, solid, other) if relation.holds)
 
 
 def relations_between(space: Space, name: str, other_name: str) -> Iterator[Relation]:
@@ -167,11 +174,12 @@ def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) 
         holds=measure.holds,
         gap_m=round(measure.gap_m, 4),
         share=round(measure.share, 4),
-        text=f"{solid.name} {says} {other.name}: {_why(relation, solid, other, measure)}",
+        text=f"{solid.name} {says} {other.name}: {why(relation, solid, other, measure)}",
     )
 
 
-def _why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+    """The measurement behind a relation, whether it holds or not, as a clause."""
     match relation:
         case "isOn":
             where = "above" if made.gap_m >= 0.0 else "below"

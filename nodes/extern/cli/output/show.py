@@ -23,6 +23,7 @@ from schemas import wording
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
 from schemas.explanations import Explanation
+from schemas.relations import Described, Relation
 from schemas.replies import Changed, Inferred, SystemStatus
 
 _WIDE = 100_000
@@ -56,7 +57,7 @@ def entity_line(entities: Sequence[Entity]) -> str:
     return wording.entities(len(entities)) + why
 
 
-def entity_card(e: Entity, properties: Iterable[PropertyInfo] = ()) -> Table:
+def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
     """All about one entity; labels are those of `properties`."""
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
     own_size = " (the model's own)" if e.body is not None and e.body.own_size else ""
@@ -67,6 +68,8 @@ def entity_card(e: Entity, properties: Iterable[PropertyInfo] = ()) -> Table:
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
         "size": (_size(e) or "unknown") + own_size,
+        **({"where": ", ".join(map(_whereabouts, e.whereabouts))} if e.whereabouts else {}),
+        **({"but": "; ".join(r.text for r in e.denied)} if e.denied else {}),
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
@@ -207,6 +210,11 @@ def commit_line(commit: Commit) -> str:
 def _size(e: Entity) -> str:
     extents = e.size_m or ()
     return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
+
+
+def _whereabouts(relation: Relation) -> str:
+    """Without the measurement, which `semmap relations` gives."""
+    return relation.text.removeprefix(f"{relation.subject} is ").partition(":")[0]
 
 
 def _body(e: Entity) -> str:

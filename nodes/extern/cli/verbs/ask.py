@@ -73,8 +73,8 @@ def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **
 @_as_of
 @talks
 def get(client: Client, name: str, format: str, as_of: str | None) -> None:
-    """Show one entity."""
-    entity = client.get(name, as_of=as_of)
+    """Show one entity, and where it is."""
+    entity = client.get(name, where=True, as_of=as_of)
     if format == "json":
         print_json(entity)
     else:
@@ -89,6 +89,7 @@ def check(client: Client, engine: Any) -> None:
     """Check whether the map is consistent; if it is not, explain why."""
     checked = client.check(engine)
     print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
+    print_lines(f"  note: {relation.text}" for relation in checked.denied)
     if not checked.consistent:
         sys.exit(errors.Inconsistent.exit_status)
 
