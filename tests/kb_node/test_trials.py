@@ -3,7 +3,7 @@
 import pytest
 
 from nodes.kb_node import trials
-from nodes.kb_node.documents import tbox_validation
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.undo import undo
 from ontology import vocabulary as v
 from schemas import errors
