@@ -2,7 +2,7 @@
 
 import pytest
 
-from nodes.kb_node import trials
+from nodes.kb_node.answers import trials
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.undo import undo
 from ontology import vocabulary as v
