@@ -21,7 +21,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.entities import Pose
 from schemas.explanations import Term, Triple
-from schemas.ontologies import Quickness, TBoxReport, Unsatisfiable
+from schemas.tbox_report import Quickness, TBoxReport, Unsatisfiable
 
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
 _PATIENCE_S = 60.0

@@ -16,7 +16,7 @@ from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from nodes.kb_node.reasoner.fastpaths.stars import in_stars
+from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable

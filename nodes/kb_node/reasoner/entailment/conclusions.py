@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from nodes.kb_node.reasoner.entailment.axioms import Axioms
+from nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
 from nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
 from nodes.kb_node.reasoner.entailment.prover import Prover
 from nodes.kb_node.reasoner.explanations import Term, Triple
