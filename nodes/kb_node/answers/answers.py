@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator
 from types import MappingProxyType
 from typing import NamedTuple
 
-from nodes.kb_node import asked_terms
+from nodes.kb_node import proofs
+from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -105,7 +106,7 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
         try:
             Reasoner(triples, scattered=True)
         except Inconsistent as error:
-            explanation = error.explanation
+            explanation = proofs.message(error.explanation)
         reason = explanation.text if explanation else ""
     return Checked(
         consistent=not reason,
