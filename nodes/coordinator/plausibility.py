@@ -20,7 +20,7 @@ def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool)
     is_, would_be = ("a place", "an object") if entity.place else ("an object", "a place")
     raise errors.Refused(
         f"{entity.name} is {is_} ({entity.class_}), and as a {found.name} it would be {would_be};"
-        " if that is meant, add --force"
+        " if that is intended, add --force"
     )
 
 
