@@ -99,6 +99,7 @@ class KnowledgeBase:
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
+            self.map.entities,
         )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
