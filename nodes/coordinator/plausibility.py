@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
-from ontology.model_sizes import own_size_m
+from ontology.model_shapes import own_size_m
 from schemas import errors
 from schemas.entities import ClassInfo, Entity, Pose, Size
 
