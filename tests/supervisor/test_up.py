@@ -37,7 +37,7 @@ def down(*words: str | Path) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("abox", "status", "said"),
     [
-        (FLAT_TTL.read_text()[:3000], 2, "no valid Turtle"),
+        (FLAT_TTL.read_text()[:3000], 2, "not valid Turtle"),
         (f"<{BASE}_1#a> a <{BASE}_domain_model#Chair>, <{BASE}_domain_model#Kitchen> .", 1, "cannot be both"),
         (f"<{BASE}_1#a> a <{BASE}_domain_model#Chiar> .", 2, "unknown class 'Chiar'"),
     ],
@@ -159,7 +159,7 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
     [
         (
             "Ontology(<urn:o>\n\n  Nonsense())",
-            "own.ofn is no valid OWL functional syntax: line 3 cannot be read",
+            "own.ofn is not valid OWL functional syntax: line 3 cannot be read",
         ),
         ("<urn:a> <urn:b> <urn:c> .", "own.ofn has no class: is it a TBox"),
     ],

@@ -63,7 +63,7 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
         if name in names:
             raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
         if name in taken_names:
-            raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
+            raise errors.NameTaken(f"the name '{name}' is already taken; --replace clears the map first")
         taken_names.add(name)
         names[name] = None
         new.append(transactions.described(name, found, item))

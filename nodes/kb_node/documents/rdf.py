@@ -91,7 +91,7 @@ def parse(
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
             line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
-        raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {reason}") from None
+        raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
 
 
 def _triples(

@@ -99,8 +99,8 @@ def test_bad_words(system, words, status, said):
 @pytest.mark.parametrize(
     ("file", "status", "said"),
     [
-        ("truncated.owl", 2, "no valid RDF/XML"),
-        ("truncated.ttl", 2, "no valid Turtle"),
+        ("truncated.owl", 2, "not valid RDF/XML"),
+        ("truncated.ttl", 2, "not valid Turtle"),
         ("inconsistent.ttl", 1, "chair2"),
         ("unknown.ttl", 2, "unknown class 'Chiar' (of chair2"),
         ("empty.ttl", 2, "empty"),

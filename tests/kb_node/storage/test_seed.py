@@ -52,7 +52,7 @@ def test_a_map_is_begun_from_two_files(data, files):
 
 
 def test_a_map_may_begin_empty(data, files):
-    assert seed(data, files[0], None) == "0 entities from nothing"
+    assert seed(data, files[0], None) == "0 entities"
     assert read(data)[0] == []
 
 
@@ -95,8 +95,8 @@ def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
     [
         (None, "", errors.BadFile, "there is no file .*my tbox.ttl"),
         (TBOX_TURTLE, None, errors.BadFile, "there is no file .*my abox.ttl"),
-        (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is no valid Turtle"),
-        (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is no valid Turtle"),
+        (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is not valid Turtle"),
+        (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is not valid Turtle"),
         (TBOX_TURTLE, " ", errors.BadFile, "my abox.ttl is empty"),
         (ABOX, ABOX, errors.BadFile, "has no class: is it a TBox"),
         (
@@ -145,7 +145,7 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
         f" Declaration(Class(<{v.TBOX}Barstool>)) SubClassOf(<{v.TBOX}Barstool> <{v.TBOX}Seat>))"
     )
     imports = {"http://o.org/home": files[0]}
-    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities from nothing"
+    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities"
     journal = Journal(data / FILENAME)
     classes = SemanticMap(journal).classes
     journal.close()

@@ -53,7 +53,7 @@ def require_reading(query: str) -> str:
             f"{form} is an update, and SPARQL only reads here; what changes the map is add, update, remove"
         )
     if form is None:
-        raise errors.BadRequest("the query is no SPARQL: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
+        raise errors.BadRequest("the query is not valid SPARQL: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
     if beyond := next((word for word in words if word in _ELSEWHERE), None):
         raise errors.Refused(f"{beyond} is refused: a query sees this map only, and nothing of the network")
     return form
@@ -71,10 +71,10 @@ def syntax_error(
     """What Oxigraph's parser says, without the grammar: the place and, where it can be told, the reason."""
     match = _FAULT.match(str(error))
     if match is None:
-        return errors.BadRequest(f"the query is no SPARQL: {' '.join(str(error).split())}")
+        return errors.BadRequest(f"the query is not valid SPARQL: {' '.join(str(error).split())}")
     line, column, expected = int(match[1]), int(match[2]), match[3]
     reason = _reason(query, line, column, expected, prefixes)
-    return errors.BadRequest(f"the query is no SPARQL: line {line}, column {column}: {reason}")
+    return errors.BadRequest(f"the query is not valid SPARQL: line {line}, column {column}: {reason}")
 
 
 def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixes) -> str:

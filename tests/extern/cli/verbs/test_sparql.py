@@ -60,7 +60,7 @@ BAD = [
     (("sparql", CHAIRS, "--limit", "0"), 2, "limit must be a whole number from 1"),
     (("sparql", "@nowhere.rq"), 2, "there is no file nowhere.rq"),
     (("watch", "--sparql", "ASK { ?s ?p ?o }"), 2, "only a SELECT can be watched"),
-    (("watch", "--sparql", "SELECT ?x {"), 2, "the query is no SPARQL"),
+    (("watch", "--sparql", "SELECT ?x {"), 2, "the query is not valid SPARQL"),
 ]
 
 
