@@ -10,10 +10,10 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.coordinator import formats
-from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
+from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
 from nodes.runtime.version import version

@@ -12,12 +12,12 @@ from msgspec import structs
 
 from nodes import bus
 from nodes.coordinator import authority
-from nodes.coordinator.bridge import Bridge
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
 from nodes.coordinator.health_view import HealthView
+from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.scene_commands import Running
 from nodes.coordinator.turns import Change, Results, Turns

@@ -24,7 +24,7 @@ from typing import (
 )
 
 from nodes.extern.files import read_file
-from nodes.extern.ontologies import ontology
+from nodes.extern.ontology_upload import ontology
 from schemas import commands, errors, replies
 from schemas.calls import reply_type
 from schemas.commands import Command

@@ -12,19 +12,13 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, questions, trials, undo
+from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
+from nodes.kb_node.answers import answers, questions, trials
+from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.documents import (
-    blank_nodes,
-    document_change,
-    load_parts,
-    rdf,
-    tbox_notes,
-    tbox_validation,
-    term_syntax,
-)
-from nodes.kb_node.pages import Pages
+from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
+from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.said import denied
@@ -105,6 +99,7 @@ class KnowledgeBase:
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
+            self.map.entities,
         )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from nodes.kb_node import gc_pause
-from nodes.kb_node.documents import tbox_validation
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from ontology import vocabulary as v

@@ -7,7 +7,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Undo
 from tests.kb_node import home
-from tests.kb_node.documents.test_tbox_validation import NEW_CLASSES, replace
+from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, transaction, turtle
 from tests.kb_node.storage.test_history import A, B, C, move
 

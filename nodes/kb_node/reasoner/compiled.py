@@ -13,9 +13,10 @@ from nodes.kb_node.reasoner.explain.reasons import Clash
 from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.explain.support import Support
 from nodes.kb_node.reasoner.explain.words import Words
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from nodes.kb_node.reasoner.fastpaths.stars import in_stars
+from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -26,7 +27,6 @@ from nodes.kb_node.reasoner.terms import (
     SAME_AS,
     TYPE,
 )  # fmt: skip
-from schemas.explanations import Explanation, Term, Triple
 
 
 class Refused(Exception):

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
-from nodes.kb_node.documents import ontology_files, rdf, tbox_validation
+from nodes.kb_node.documents import ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import FILENAME, Journal

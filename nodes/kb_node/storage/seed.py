@@ -9,13 +9,8 @@ from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
-from nodes.kb_node.documents import (
-    abox_document,
-    ontology_files,
-    rdf,
-    tbox_declarations,
-    tbox_validation,
-)
+from nodes.kb_node.documents import abox_document, ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from nodes.perception_node.input.cloud import Transform
-from nodes.perception_node.segmentation.grid import Floats, Labels, Mask
+from nodes.perception_node.segmentation.working_picture import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nodes.perception_node.input.cloud import Cloud
-from nodes.perception_node.segmentation.grid import spread
 from nodes.perception_node.segmentation.merging import merge
 from nodes.perception_node.segmentation.pairs import NAMES, features
 from nodes.perception_node.segmentation.segment import taken_apart
 from nodes.perception_node.segmentation.statistics import Indices, Statistics
+from nodes.perception_node.segmentation.working_picture import spread
 
 
 @dataclass(frozen=True)

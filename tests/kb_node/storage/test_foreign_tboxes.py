@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents import tbox_notes
+from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.seed import seed

@@ -13,7 +13,7 @@ from nodes.kb_node.storage.repair import repair
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from schemas import errors
 from tests.kb_node import home
-from tests.kb_node.documents.test_tbox_validation import NEW_CLASSES, replace
+from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction
 from tests.kb_node.storage.test_journal import edit, flip
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from schemas.ontologies import TBoxReport
+from schemas.tbox_report import TBoxReport
 
 _COLUMN = 15
 _FEW = 20

@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import pyhornedowl
 
-from nodes.kb_node.documents.owl.axioms import triples_of
+from nodes.kb_node.documents.owl.axiom_triples import triples_of
 from ontology import vocabulary as v
 from schemas.explanations import Triple
 

@@ -13,9 +13,9 @@ from nodes.kb_node.reasoner.abox.equality import Equality
 from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
 from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Reason, Same, member
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
 
 
 class ABox(Equality):

@@ -14,10 +14,10 @@ from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.abox.steps import Steps
 from nodes.kb_node.reasoner.abox.store import Store
 from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from nodes.kb_node.reasoner.explanations import Term
 from nodes.kb_node.reasoner.tbox.axioms import Group, Role
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.terms import is_literal
-from schemas.explanations import Term
 
 MANY = 16
 """Pairs of nodes beyond which edges are searched by the one end only."""

@@ -14,9 +14,9 @@ from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.individuals import Equals
 from nodes.kb_node.reasoner.abox.store import ASSERTED, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Reason
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
 
 
 class Retraction:

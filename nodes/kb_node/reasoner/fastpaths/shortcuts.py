@@ -11,8 +11,8 @@ from collections.abc import Sequence, Set
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
 
 
 def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:

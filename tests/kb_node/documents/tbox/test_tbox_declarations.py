@@ -2,8 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf, tbox_notes
-from nodes.kb_node.documents.tbox_declarations import declared, keeping_roots
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_notes
+from nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from nodes import bus
-from nodes.coordinator.bridge import Bridge
+from nodes.coordinator.kb_client import Bridge
 from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.commits import Commit, Effects, Transaction

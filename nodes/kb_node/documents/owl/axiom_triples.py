@@ -12,7 +12,7 @@ from typing import Any
 
 import pyhornedowl.model as m
 
-from nodes.kb_node.documents.owl.expressions import DATATYPE, Expressions, owl, swrl
+from nodes.kb_node.documents.owl.expression_triples import DATATYPE, Expressions, owl, swrl
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.storage.history import Past
 from ontology import vocabulary as v
 from schemas import errors

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.documents.tbox_check import check
+from nodes.kb_node.documents.tbox.tbox_check import check
 from ontology import HOUSEHOLD_TTL
 from schemas import errors
 from tests.data import data_folder

@@ -1,7 +1,7 @@
 import pytest
 
 from nodes.extern.client_verbs import Verbs
-from nodes.extern.ontologies import ontology
+from nodes.extern.ontology_upload import ontology
 from nodes.kb_node.documents import rdf
 from nodes.runtime import extras
 from schemas import errors

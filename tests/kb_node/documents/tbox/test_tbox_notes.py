@@ -1,6 +1,7 @@
 import re
 
-from nodes.kb_node.documents import rdf, tbox_notes
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from tests.kb_node import home
