@@ -167,7 +167,7 @@ class KnowledgeBase:
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
-        self._node.describe(f"{self._summary()}; the disk takes no commits")
+        self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
@@ -186,7 +186,7 @@ class KnowledgeBase:
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)
             if transaction.dry_run:
-                raise errors.BadRequest("a dry run goes alone")
+                raise errors.BadRequest("a dry run cannot be combined with other transactions")
         before = self.map.seq
         results = self.map.commit_together(several.transactions)
         for error in results:
@@ -386,7 +386,7 @@ class KnowledgeBase:
             return Loaded(commit=effects, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
-                f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
+                f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
 
     def on_check(self, query: Check) -> Future[Checked]:

@@ -144,7 +144,7 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
     (own / "more.ofn").write_text(f"Ontology(<http://o.org/more> Declaration(Class(<{v.TBOX}Pouffe>)))")
     data = tmp_path / "data"
     words = ("--tbox", own, "--import", f"http://o.org/home={home}", "--no-sim", "--no-record")
-    note = "1 import was not found, and the TBox holds without: http://o.org/nowhere"
+    note = "1 import was not found; the TBox is used without: http://o.org/nowhere"
     for also in (words, words[-2:]):  # the second time it goes on with what it has
         with running(data, *also) as system, system.client() as client:
             assert any(line.startswith("TBox ") and line.strip().endswith(note) for line in system.said)

@@ -25,10 +25,10 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
         )
     )
     if commit is None:  # a dry run of what was done before
-        return Changed(commit=None, text="nothing is left to take back")
+        return Changed(commit=None, text="nothing is left to undo")
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
-    text = f"took back commit {first}"
+    text = f"undid commit {first}"
     if settling:
         text += f" and what settled after it ({wording.commits(settling)})"
     return changed(commit, text, names=commit.names)

@@ -26,7 +26,7 @@ def of_document(
         said = abox_document.of_strangers(found)
         if load.strict:
             raise errors.UnknownName(said)
-        sorted_out.notes.append(f"{said}; --strict refuses such")
+        sorted_out.notes.append(f"{said}; --strict refuses such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),

@@ -76,7 +76,7 @@ class SparqlService:
         self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
-                raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
+                raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
             self._worker = _Worker(self._publish)
             self._infers = command.inferred
             self._load()
@@ -269,4 +269,4 @@ class _Worker:
 
 
 def _ended() -> errors.Refused:
-    return errors.Refused("the process that answers SPARQL has ended; ask again, and a new one starts")
+    return errors.Refused("the process that answers SPARQL has ended; ask again, which starts a new one")

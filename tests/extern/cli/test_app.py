@@ -106,7 +106,7 @@ def test_bad_words(system, words, status, said):
         ("empty.ttl", 2, "empty"),
         ("bytes.bin", 2, "not UTF-8 text"),
         ("other.json", 2, "neither a scene"),
-        ("tbox.ttl", 2, "a TBox is loaded with --tbox"),
+        ("tbox.ttl", 2, "to load a TBox use --tbox"),
     ],
 )
 def test_bad_files(system, files, file, status, said):

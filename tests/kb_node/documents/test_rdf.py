@@ -166,7 +166,7 @@ def test_the_syntax_is_told_by_the_content(content, syntax):
             b'{"@context": {"@import": "http://127.0.0.1:9/c"}, "p": "x"}',
             "nothing is fetched from the network",
         ),
-        (b"<urn:a> <urn:b> <<( <urn:a> <urn:b> <urn:c> )>> .", "something about a triple"),
+        (b"<urn:a> <urn:b> <<( <urn:a> <urn:b> <urn:c> )>> .", "a statement about a triple"),
         (b"@prefix : <urn:x> . { :a :b :c }", "not valid Turtle"),
     ],
 )
