@@ -9,7 +9,8 @@ from typing import Any, NamedTuple, TypeVar
 from msgspec import structs
 
 from nodes.kb_node import gc_pause, preconditions, proofs
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns

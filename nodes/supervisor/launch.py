@@ -25,7 +25,7 @@ def run_node(name: str, settings: Settings) -> None:
 
 
 def seed(settings: Settings) -> None:
-    """Make the journal, or say that it is there, on stdout. A world that cannot be is told first."""
+    """Create the journal, or report on stdout that it exists; validates the world first."""
     from nodes.coordinator.files.content import kind_of
     from nodes.kb_node.storage.seed import seed as seed_journal
 

@@ -24,8 +24,8 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
         )
     )
     if commit is None:  # a dry run of what was done before
-        return Changed(commit=None, text="nothing is left to take back")
+        return Changed(commit=None, text="nothing is left to undo")
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
-    text = f"took back commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")
+    text = f"undid commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")
     return changed(commit, text, names=commit.names)

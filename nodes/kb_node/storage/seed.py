@@ -9,13 +9,8 @@ from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
-from nodes.kb_node.documents import (
-    abox_document,
-    ontology_files,
-    rdf,
-    tbox_declarations,
-    tbox_validation,
-)
+from nodes.kb_node.documents import abox_document, ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
@@ -50,7 +45,7 @@ def seed(
     path = data / FILENAME
     if path.exists() and not fresh:
         Journal(path).close()  # one that cannot be read is told before anything starts
-        return f"going on with the map in {data} (--fresh begins anew and keeps this one aside)"
+        return f"continuing with the map in {data} (--fresh starts a new one and keeps this one)"
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
@@ -93,7 +88,7 @@ def seed(
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
-        raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
+        raise errors.Refused(f"cannot keep a map in {data}: {error.strerror}") from None
     return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
 
 

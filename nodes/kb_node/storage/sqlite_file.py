@@ -11,7 +11,7 @@ from pathlib import Path
 
 from schemas import errors
 
-ANEW = "start anew with --fresh (it is kept)"
+ANEW = "start a new map with --fresh (this one is kept)"
 
 
 class InUse(errors.Refused):
@@ -92,4 +92,4 @@ def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
 def mend(path: Path) -> str:
     """How one goes on after damage."""
     repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
-    return f"go on from the last good commit with: {repair} (the damaged file is kept)"
+    return f"continue from the last good commit with: {repair} (the damaged file is kept)"

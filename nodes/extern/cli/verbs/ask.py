@@ -46,7 +46,7 @@ _STATUS_S = 20.0
     help="Only what is in that place, or inside that container.",
 )
 @click.option("--near", metavar="THING", shell_complete=entity_names, help="Only what is near it.")
-@click.option("--within", type=float, metavar="M", help="With --near: at most so far from it [m].")
+@click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
 @click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
 @click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)

@@ -47,7 +47,7 @@ class PlainPaths:
 
 
 class FastPaths(PlainPaths):
-    """Shapes whose consequences are known, and changes that are plain at sight."""
+    """Shapes whose consequences are known, and changes that affect no other individual."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import NamedTuple
 
-from nodes.kb_node import asked_terms, proofs
-from nodes.kb_node.asked_terms import RELATIONS
+from nodes.kb_node import proofs
+from nodes.kb_node.answers import asked_terms
+from nodes.kb_node.answers.asked_terms import RELATIONS
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.explain.sentences import said
 from nodes.kb_node.reasoner.refutation import refute, why_different

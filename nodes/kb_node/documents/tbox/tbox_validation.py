@@ -41,8 +41,8 @@ def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -
     lost = [(s, o) for s, o in types if o in before.spatial and s not in spatial]
     for individual, c in lost:
         raise DoesNotFit(
-            f"the map does not fit the TBox: {v.local_name(individual)} would be no thing in space any more,"
-            f" because it does not say that {v.local_name(c)} is a class of such"
+            f"the map does not fit the TBox: {v.local_name(individual)} would lose its spatial class,"
+            f" because the TBox does not say that {v.local_name(c)} is spatial"
         )
 
 
