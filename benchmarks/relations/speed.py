@@ -9,7 +9,7 @@ import time
 from msgspec import structs
 
 from nodes.kb_node.relations.facts import Facts
-from ontology.model_sizes import own_size_m
+from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Provenance, Size, Vector
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
