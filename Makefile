@@ -55,7 +55,7 @@ diagrams: setup  ## Draw the manual's Mermaid diagrams that have changed; needs 
 schema: setup  ## Write the JSON Schema of scene files anew
 	$(BIN)/python -m schemas.scene_files > schemas/scene.schema.json
 
-shapes: setup  ## Write the models' support surfaces and hollows anew, for the knowledge base
+shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, for the other nodes
 	$(BIN)/python -m nodes.sim_node.models.write_shapes
 
 models: setup  ## Draw the contact sheet of all models

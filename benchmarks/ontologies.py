@@ -21,7 +21,8 @@ from typing import Any
 
 import psutil
 
-from nodes.kb_node.documents import catalogue, ontology_files, tbox_check
+from nodes.kb_node.documents import catalogue, ontology_files
+from nodes.kb_node.documents.tbox import tbox_check
 from schemas import errors
 
 OTHERS = ("owlrl", "reasonable")

@@ -21,7 +21,7 @@ def check_export(t: Tour) -> None:
     from demo.tour import EXPORT
 
     before = _said(t)
-    t.do("load", str(EXPORT), "--replace", holds="says nothing that the map does not hold already")
+    t.do("load", str(EXPORT), "--replace", holds="adds nothing to the map")
     t.do("clear")
     t.do("load", str(EXPORT), holds=f"loaded {len(before)} entities")
     if _said(t) != before:

@@ -161,7 +161,7 @@ def tour(t: Tour) -> None:
     t.do("infer", "beer7", holds="beer7 type Drinkable")
     t.do("explain", "beer7", "type", "Food", holds="beer7")
 
-    t.tell("A chair with all defaults, and a change of it: what is not named stays")
+    t.tell("A chair with all defaults, and a change of it: omitted fields keep their values")
     t.do("add", "Chair", "--default", "--wait", holds="body: present")
     t.do("update", "beer7", "--ref", "warm beer", "--yaw", "0.5", holds="updated beer7")
 

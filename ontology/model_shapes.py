@@ -1,4 +1,4 @@
-"""What the models are shaped like, as far as carrying and holding goes: data read off their geometry.
+"""How large the simulator's models are, and what they carry and hold: data read off their geometry.
 
 `ontology/model_shapes.json` is written by `make shapes`; a test compares it with the models.
 """
@@ -44,6 +44,15 @@ class ModelShape(Struct, frozen=True, kw_only=True):
     size_m: Size
     surfaces: tuple[Surface, ...] = ()
     interiors: tuple[Interior, ...] = ()
+
+
+def own_size_m(model: str) -> Size | None:
+    """Extent of a model of the library along its own axes [m]; of "" that of the box which stands in for one.
+
+    None for a model from a file of the user's: only the simulator knows it.
+    """
+    shape = shapes().get(model)
+    return None if shape is None else shape.size_m
 
 
 @cache

@@ -12,6 +12,6 @@ Terms are N-Triples text (`<iri>`, `"1.0"^^<datatype>`, `_:label`), and a triple
 """
 
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from schemas.explanations import Explanation, Step, Term, Triple
+from nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 
 __all__ = ["Change", "Explanation", "Inconsistent", "Reasoner", "Step", "Term", "Triple"]

@@ -46,9 +46,9 @@ def test_commits_are_refused_until_there_is_space_again(tmp_path):
                 lambda: (now := node(client)).last_error and now, "the status says that the disk is full"
             )
             assert "could not be written" in status.last_error
-            assert status.detail.endswith("the disk takes no commits")
+            assert status.detail.endswith("the disk accepts no commits")
             assert (status.pid, status.state) == (before.pid, "ready")
         seq = client.status().commit
         assert client.add("Chair", "chair2", at=(3.0, 1.0, 0.0)).commit == seq + 1
         assert {e.name for e in client.list()} == there | {"chair2"}
-        until(lambda: not node(client).detail.endswith("the disk takes no commits"), "all is well again")
+        until(lambda: not node(client).detail.endswith("the disk accepts no commits"), "all is well again")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.kb.made import Cost, Figures, cost, each, entities
-from nodes.kb_node import answers
+from nodes.kb_node.answers import answers
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.seed import seed

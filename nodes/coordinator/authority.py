@@ -28,8 +28,8 @@ def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
     for entity in concerned:
         if not {entity.shape_provenance.source, entity.reference_provenance.source} <= _LESSER:
             raise errors.Refused(
-                f"an operator said what {entity.name} is, so only an operator may change that or remove it;"
-                " anybody may say where it is"
+                f"an operator stated what {entity.name} is, so only an operator may change that or remove it;"
+                " any client may move it"
             )
 
 

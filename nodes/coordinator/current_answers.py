@@ -17,7 +17,7 @@ from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.runtime.futures import then
 from nodes.runtime.version import version
-from ontology.model_sizes import own_size_m
+from ontology.model_shapes import own_size_m
 from schemas import bridge, errors
 from schemas import commands as c
 from schemas.entities import Entity, Size

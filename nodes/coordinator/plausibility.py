@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
-from ontology.model_sizes import own_size_m
+from ontology.model_shapes import own_size_m
 from schemas import errors
 from schemas.entities import ClassInfo, Entity, Pose, Size
 
@@ -20,7 +20,7 @@ def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool)
     is_, would_be = ("a place", "an object") if entity.place else ("an object", "a place")
     raise errors.Refused(
         f"{entity.name} is {is_} ({entity.class_}), and as a {found.name} it would be {would_be};"
-        " if that is meant, add --force"
+        " if that is intended, add --force"
     )
 
 
@@ -62,4 +62,4 @@ def _odd_size(found: ClassInfo | None, size_m: Size | None) -> tuple[str, ...]:
 
 
 def _metres(size_m: Size) -> str:
-    return " x ".join(f"{extent:.3g}" for extent in size_m) + " m"
+    return " x ".join(f"{float(f'{extent:.3g}'):g}" for extent in size_m) + " m"

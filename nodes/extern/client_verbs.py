@@ -153,12 +153,12 @@ def _load(
     that the TBox does not have; `strict` refuses a file that relates things to what nobody describes.
     With `parts` it is as many commits as it takes, for files of any size.
 
-    With `tbox` the file (or folder) is a TBox that takes the place of the present one, with all that it
+    With `tbox` the file (or folder) is a TBox that replaces the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
     `spatial_root` are classes, by IRI or name, whose instances are things in space.
     """
     if imports and not tbox:
-        raise errors.BadRequest("imports (--import) are those of a TBox (--tbox)")
+        raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
     return commands.Load(
         content=content,

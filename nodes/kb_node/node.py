@@ -12,19 +12,13 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import answers, gc_pause, questions, trials, undo
+from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
+from nodes.kb_node.answers import answers, questions, trials
+from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.config import KbConfig
-from nodes.kb_node.documents import (
-    blank_nodes,
-    document_change,
-    load_parts,
-    rdf,
-    tbox_notes,
-    tbox_validation,
-    term_syntax,
-)
-from nodes.kb_node.pages import Pages
+from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
+from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.said import denied
@@ -105,6 +99,7 @@ class KnowledgeBase:
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
+            self.map.entities,
         )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
@@ -172,7 +167,7 @@ class KnowledgeBase:
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
-        self._node.describe(f"{self._summary()}; the disk takes no commits")
+        self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
@@ -191,7 +186,7 @@ class KnowledgeBase:
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)
             if transaction.dry_run:
-                raise errors.BadRequest("a dry run goes alone")
+                raise errors.BadRequest("a dry run cannot be combined with other transactions")
         before = self.map.seq
         results = self.map.commit_together(several.transactions)
         for error in results:
@@ -391,7 +386,7 @@ class KnowledgeBase:
             return Loaded(commit=effects, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
-                f"{error.text}; it takes the place of the present TBox, so what is to stay must be in it, too"
+                f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
 
     def on_check(self, query: Check) -> Future[Checked]:

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple, TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import gc_pause, preconditions
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node import gc_pause, preconditions, proofs
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
@@ -404,7 +405,7 @@ class SemanticMap:
                 return self.reasoner.apply(delete=delete, insert=insert)
             return self._change_in_parts(delete, insert)
         except Inconsistent as error:
-            raise errors.Inconsistent(error.explanation.text, explanation=error.explanation) from None
+            raise proofs.refusal(error) from None
 
     def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple]) -> Change:
         """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""

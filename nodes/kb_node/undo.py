@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from nodes.kb_node import gc_pause
-from nodes.kb_node.documents import tbox_validation
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from ontology import vocabulary as v
@@ -36,10 +36,10 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: TakeBack) -> Comm
     except tbox_validation.DoesNotFit as error:
         raise errors.Refused(
             f"commit {target.seq} cannot be undone: {error.text}; first remove or update what does not fit,"
-            " or let another TBox hold: semmap load --tbox FILE"
+            " or load another TBox: semmap load --tbox FILE"
         ) from None
     if commit is None:
-        raise errors.Refused(f"nothing is left of commit {target.seq} that could be taken back")
+        raise errors.Refused(f"there is nothing left of commit {target.seq} to undo")
     return commit
 
 
@@ -91,7 +91,7 @@ def _transaction(
 def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
     for commit in _in_force(later):
         if target.seq in commit.undoes:
-            raise errors.Refused(f"commit {target.seq} was taken back by commit {commit.seq} already")
+            raise errors.Refused(f"commit {target.seq} was already undone by commit {commit.seq}")
 
 
 def _newest_asked(journal: Journal) -> Commit:
@@ -100,7 +100,9 @@ def _newest_asked(journal: Journal) -> Commit:
     for commit in _in_force(backwards):
         if commit.verb and not commit.undoes:
             return commit
-    raise errors.Refused("there is nothing to undo: no client has changed the map, or all was undone already")
+    raise errors.Refused(
+        "there is nothing to undo: no client has changed the map, or everything has been undone"
+    )
 
 
 def _named(journal: Journal, seq: int) -> Commit:
@@ -111,7 +113,7 @@ def _named(journal: Journal, seq: int) -> Commit:
 
 def _require_authority(command: TakeBack, target: Commit) -> None:
     if command.source in ("scene", "perception") and target.source in ("operator", "file"):
-        raise errors.Refused(f"commit {target.seq} is an operator's, so only an operator may take it back")
+        raise errors.Refused(f"commit {target.seq} was made by an operator, so only an operator may undo it")
 
 
 def _later(journal: Journal, target: Commit) -> list[Commit]:
@@ -190,8 +192,8 @@ def _what_rests_on(target: Commit, others: list[Commit]) -> str:
     seqs = {commit.seq for commit in others}
     changes = (c for c in _in_force(others) if not (c.undoes and seqs.issuperset(c.undoes)))
     if (newest := next(changes, None)) is None:
-        return f"it is too late to undo commit {target.seq}: what it said was changed since"
+        return f"it is too late to undo commit {target.seq}: what it stated has changed since"
     return (
         f"it is too late to undo commit {target.seq} ({target.reason}): commit {newest.seq} ({newest.reason})"
-        f" rests on it; undo that one first: semmap undo {newest.seq}"
+        f" depends on it; undo that one first: semmap undo {newest.seq}"
     )

@@ -32,7 +32,9 @@ class ClassNames:
         try:
             name = self._index.find(word)
         except Ambiguous as error:
-            raise AmbiguousClass(f"'{word}' may be {enumerated(error.names)}; say which class") from None
+            raise AmbiguousClass(
+                f"'{word}' is ambiguous: {enumerated(error.names)}; say which class"
+            ) from None
         if name is None:
             raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
         return self.by_name[name]

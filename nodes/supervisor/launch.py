@@ -25,15 +25,15 @@ def run_node(name: str, settings: Settings) -> None:
 
 
 def seed(settings: Settings) -> None:
-    """Make the journal, or say that it is there, on stdout. A world that cannot be is told first."""
-    from nodes.kb_node.storage.going_on import going_on
+    """Create the journal, or report on stdout that it exists; validates the world first."""
+    from nodes.kb_node.storage.existing_map import existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
         open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
-    if not settings.fresh and (told := going_on(Path(settings.data))) is not None:
+    if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
     from nodes.coordinator.files.content import kind_of

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from nodes.coordinator.door import Door
-from nodes.kb_node import trials
-from nodes.kb_node.pages import Pages
+from nodes.kb_node.answers import trials
+from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.undo import undo

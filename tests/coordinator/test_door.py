@@ -213,9 +213,10 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     door.follow("chair1", Pose(position_m=(1.5, 1.0, 0.0)))
     add(door, name="chair2")
-    assert door.change(c.Undo()).text == "took back commit 3"
+    assert door.change(c.Undo()).text == "undid commit 3"
     reply = door.change(c.Undo())
-    assert (reply.text, reply.names) == ("took back commit 1 with the 1 that settled it", ("chair1",))
+    assert reply.text == "undid commit 1 and what settled after it (commit 2)"
+    assert reply.names == ("chair1",)
     assert door.map.entities == {}
     with pytest.raises(errors.Refused, match="nothing to undo"):
         door.change(c.Undo())
@@ -244,7 +245,7 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
             door.follow("chair1", rests)
     door.follow("chair1", rests)
     assert door.map.entity("chair1").pose_provenance.agent == "ann"
-    assert door.change(c.Undo()).text == "took back commit 2"
+    assert door.change(c.Undo()).text == "undid commit 2"
 
 
 def raise_(error):
@@ -328,7 +329,7 @@ def test_a_command_whose_reply_was_lost_with_the_coordinator_is_not_done_twice(d
     next_door.map.begin(semantic_map.snapshot())
     again = next_door.change(command)
     assert (again.commit, again.names) == (first.commit, first.names)
-    assert again.text.startswith("done before: ")
+    assert again.text.startswith("already done: ")
     assert semantic_map.seq == 2
 
 

@@ -52,6 +52,6 @@ def test_imports_are_for_tboxes(file):
         def request(self, make, read=None):
             return make()
 
-    with pytest.raises(errors.BadRequest, match="are those of a TBox"):
+    with pytest.raises(errors.BadRequest, match="applies to TBoxes only"):
         Client().load(file, imports={"http://o.org/b": file})
     assert Client().load(file, tbox=True).tbox

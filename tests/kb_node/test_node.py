@@ -249,7 +249,7 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
             "commit",
             codec.encode({"id": "x", "source": "operator", "insert": [["a", "b", "c"]]}),
             errors.BadRequest,
-            "no triple of RDF terms in N-Triples syntax: a b c",
+            "not a valid N-Triples statement: a b c",
         ),
         ("get", codec.encode({"name": "nobody"}), errors.UnknownName, "no entity is named 'nobody'"),
     ],

@@ -7,7 +7,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Undo
 from tests.kb_node import home
-from tests.kb_node.documents.test_tbox_validation import NEW_CLASSES, replace
+from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, transaction, turtle
 from tests.kb_node.storage.test_history import A, B, C, move
 
@@ -148,7 +148,7 @@ def test_the_refusal_names_the_commit_that_rests_on_it(semantic_map):
     order(semantic_map, "chair1", A, B)
     with pytest.raises(
         errors.Refused,
-        match=r"commit 1 \(a chair\): commit 2 \(\) rests on it; undo that one first: semmap undo 2",
+        match=r"commit 1 \(a chair\): commit 2 \(\) depends on it; undo that one first: semmap undo 2",
     ):
         take_back(semantic_map, 1)
 
@@ -159,7 +159,7 @@ def test_the_refusal_does_not_name_what_was_taken_back(semantic_map):
     order(semantic_map, "chair1", A, B)
     says(":chair1 dm:hasPreferredReference :r . :r dm:lexicalReference 'stool' .")(semantic_map)
     take_back(semantic_map, 3)
-    with pytest.raises(errors.Refused, match=r"commit 2 .* rests on it"):
+    with pytest.raises(errors.Refused, match=r"commit 2 .* depends on it"):
         take_back(semantic_map, 1)
     take_back(semantic_map, 2)
     take_back(semantic_map, 1)
@@ -188,9 +188,9 @@ def test_what_would_be_inconsistent_is_refused_with_the_explanation(semantic_map
     ("commit", "fields", "text"),
     [
         (9, {}, "there is no commit 9 yet; the last one is 3"),
-        (2, {}, "commit 2 was taken back by commit 3 already"),
-        (1, {"source": "perception"}, "commit 1 is an operator's, so only an operator may take it back"),
-        (1, {"source": "scene"}, "commit 1 is an operator's"),
+        (2, {}, "commit 2 was already undone by commit 3"),
+        (1, {"source": "perception"}, "commit 1 was made by an operator, so only an operator may undo it"),
+        (1, {"source": "scene"}, "commit 1 was made by an operator"),
     ],
 )
 def test_what_cannot_be_undone(semantic_map, commit, fields, text):
@@ -214,13 +214,13 @@ def test_what_touches_no_entity_is_taken_back_once(semantic_map, text):
     add(semantic_map, "chair1")
     first = take_back(semantic_map, 1)
     order(semantic_map, "chair1", A, B)
-    with pytest.raises(errors.Refused, match="commit 1 was taken back by commit 3 already"):
+    with pytest.raises(errors.Refused, match="commit 1 was already undone by commit 3"):
         take_back(semantic_map, 1)
     again = take_back(semantic_map, first.seq)
     assert again.inserted == first.retracted
     take_back(semantic_map, 1)
     says(text)(semantic_map)
-    with pytest.raises(errors.Refused, match=f"commit 1 was taken back by commit {again.seq + 1} already"):
+    with pytest.raises(errors.Refused, match=f"commit 1 was already undone by commit {again.seq + 1}"):
         take_back(semantic_map, 1)
 
 
@@ -245,7 +245,7 @@ def test_another_tbox_is_taken_back_and_brought_again(semantic_map):
     assert semantic_map.tbox == tbox
     assert "Bench" not in semantic_map.classes.iris
     assert semantic_map.entity("chair1").types == before
-    with pytest.raises(errors.Refused, match="commit 2 was taken back by commit 3 already"):
+    with pytest.raises(errors.Refused, match="commit 2 was already undone by commit 3"):
         take_back(semantic_map, 2)
     take_back(semantic_map, 3)
     assert semantic_map.tbox == changed

@@ -53,7 +53,7 @@ def test_a_name_wins_over_a_label():
 
 def test_a_label_of_several_is_refused_with_the_candidates():
     names = ClassNames([info("Cup", italian="tazza"), info("Mug", italian="Tazza")])
-    with pytest.raises(UnknownClass, match="'tazza' may be Cup or Mug; say which class"):
+    with pytest.raises(UnknownClass, match="'tazza' is ambiguous: Cup or Mug; say which class"):
         names.find("tazza")
 
 
@@ -70,7 +70,9 @@ def twins() -> ClassNames:
 
 @pytest.mark.parametrize("word", ["Color", "color"])
 def test_a_name_of_several_classes_is_refused_with_the_candidates(word):
-    with pytest.raises(UnknownClass, match=f"'{word}' may be dul:Color or soma:Color; say which class"):
+    with pytest.raises(
+        UnknownClass, match=f"'{word}' is ambiguous: dul:Color or soma:Color; say which class"
+    ):
         twins().find(word)
 
 
@@ -93,7 +95,7 @@ def test_what_was_not_taken_literally_is_said():
 def test_an_exact_name_wins_over_a_folded_one():
     names = ClassNames([info("TV"), info("Tv")])
     assert names.find("Tv").name == "Tv"
-    with pytest.raises(UnknownClass, match="'tv' may be TV or Tv"):
+    with pytest.raises(UnknownClass, match="'tv' is ambiguous: TV or Tv"):
         names.find("tv")
 
 

@@ -37,7 +37,7 @@ def down(*words: str | Path) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("abox", "status", "said"),
     [
-        (FLAT_TTL.read_text()[:3000], 2, "no valid Turtle"),
+        (FLAT_TTL.read_text()[:3000], 2, "not valid Turtle"),
         (f"<{BASE}_1#a> a <{BASE}_domain_model#Chair>, <{BASE}_domain_model#Kitchen> .", 1, "cannot be both"),
         (f"<{BASE}_1#a> a <{BASE}_domain_model#Chiar> .", 2, "unknown class 'Chiar'"),
     ],
@@ -144,7 +144,7 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
     (own / "more.ofn").write_text(f"Ontology(<http://o.org/more> Declaration(Class(<{v.TBOX}Pouffe>)))")
     data = tmp_path / "data"
     words = ("--tbox", own, "--import", f"http://o.org/home={home}", "--no-sim", "--no-record")
-    note = "1 import was not found, and the TBox holds without: http://o.org/nowhere"
+    note = "1 import was not found; the TBox is used without: http://o.org/nowhere"
     for also in (words, words[-2:]):  # the second time it goes on with what it has
         with running(data, *also) as system, system.client() as client:
             assert any(line.startswith("TBox ") and line.strip().endswith(note) for line in system.said)
@@ -159,7 +159,7 @@ def test_ontologies_come_up_with_their_imports_and_what_is_to_be_known_of_them(t
     [
         (
             "Ontology(<urn:o>\n\n  Nonsense())",
-            "own.ofn is no valid OWL functional syntax: line 3 cannot be read",
+            "own.ofn is not valid OWL functional syntax: line 3 cannot be read",
         ),
         ("<urn:a> <urn:b> <urn:c> .", "own.ofn has no class: is it a TBox"),
     ],

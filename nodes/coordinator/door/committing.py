@@ -58,7 +58,7 @@ def _done_before(command: Command) -> Talk[Changed | None]:
     if commit is None:
         return None
     names = tuple(entity.name for entity in commit.changed) or tuple(gone.name for gone in commit.removed)
-    return Changed(commit=commit.seq, text=f"done before: {commit.reason}", names=names)
+    return Changed(commit=commit.seq, text=f"already done: {commit.reason}", names=names)
 
 
 def commit(view: KnownMap, transaction: Transaction) -> Talk[Effects | None]:

@@ -38,9 +38,9 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
     if command.source == "operator":
         command = structs.replace(command, source="file")
     if command.parts and (command.replace or command.tbox):
-        raise errors.BadRequest("what replaces something is one commit; load it without --parts")
+        raise errors.BadRequest("--replace makes one commit; load it without --parts")
     if command.parts and command.dry_run:
-        raise errors.BadRequest("a dry run is of one commit; try it without --parts")
+        raise errors.BadRequest("a dry run covers one commit; try it without --parts")
     if command.tbox:
         return (yield from _load_tbox(view, command))
     if command.spatial_root:
@@ -63,7 +63,9 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
         if name in names:
             raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
         if name in taken_names:
-            raise errors.NameTaken(f"the name '{name}' is taken already; --replace takes the present map out")
+            raise errors.NameTaken(
+                f"the name '{name}' is already taken; --replace clears the present map first"
+            )
         taken_names.add(name)
         names[name] = None
         new.append(transactions.described(name, found, item))
@@ -123,8 +125,8 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
 def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
     if command.replace or command.skip_unknown or command.strict:
         raise errors.BadRequest(
-            "--replace, --skip-unknown and --strict are for maps: a TBox takes the place of the present one,"
-            " and the map stays as it is"
+            "--replace, --skip-unknown and --strict apply to maps only: a TBox always replaces the present"
+            " one and leaves the map as it is"
         )
     require_operator(command, "replace the TBox")
     order = LoadTBox(
@@ -139,12 +141,12 @@ def _load_tbox(view: KnownMap, command: Load) -> Talk[Changed]:
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:
-        text = f"the TBox is as in {command.filename or 'the file'} already"
+        text = f"unchanged: the TBox is already that of {command.filename or 'the file'}"
         return Changed(commit=None, text=text, notes=loaded.notes)
     yield from taken_with_classes(view, commit)
     text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
     if commit.trial is not None:
-        text = f"the TBox of {command.filename or 'the file'} takes the place of the present one"
+        text = f"the TBox of {command.filename or 'the file'} replaces the present one"
     return changed(commit, text, names=commit.names, notes=loaded.notes)
 
 
@@ -180,7 +182,7 @@ def _loaded(
 ) -> Changed:
     text = f"loaded {wording.entities(len(names))} from {command.filename or 'the file'}"
     if commit is None:
-        text = f"{command.filename or 'the file'} says nothing that the map does not hold already"
+        text = f"{command.filename or 'the file'} adds nothing to the map"
     if skipped:
         text += f", left out {len(skipped)}"
     return changed(commit, text, names=names, skipped=skipped, notes=notes)

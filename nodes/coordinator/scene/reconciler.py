@@ -236,7 +236,9 @@ class Keeping:
         try:
             self._door.follow(placement.name, rounded(placement.pose))
         except errors.Refused as error:
-            self._report(f"{placement.name} goes back, because the map rejected its new pose: {error.text}")
+            self._report(
+                f"{placement.name} was put back, because the map rejected its new pose: {error.text}"
+            )
             entity = self._door.map.entities[placement.name]
             if entity.pose is not None:
                 commit = entity.pose_provenance.commit

@@ -48,5 +48,5 @@ def import_option(function: Callable[..., Any]) -> Callable[..., Any]:
         multiple=True,
         type=_Import(),
         metavar="IRI=FILE",
-        help="Where an imported ontology is, if no catalogue and no file beside tells; may be repeated.",
+        help="Where an imported ontology is, unless a catalogue or a file beside says; may be repeated.",
     )(function)

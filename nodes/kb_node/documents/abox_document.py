@@ -49,7 +49,7 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     types = [(s, o) for s, _, o in types_said if o not in built_in]
     spatial = _with_subclasses(classes.spatial, triples)
     if declared and not any(o in spatial for _, o in types):
-        raise errors.BadFile("it declares classes and has no entity; a TBox is loaded with --tbox")
+        raise errors.BadFile("it declares classes but no entities; to load a TBox use --tbox")
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
     for s, c in unknown:
@@ -92,7 +92,7 @@ def of_strangers(found: Mapping[Term, Triple]) -> str:
     """One sentence on them."""
     few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
-    return f"nobody says what {'this is' if len(found) == 1 else 'these are'}: {few}{more}"
+    return f"referenced but not described: {few}{more}"
 
 
 def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
@@ -139,7 +139,7 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
     if not names:
         return []
     few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
-    return [f"the classes of the map stay those of its TBox, without {few}; --tbox loads others"]
+    return [f"class declarations in a map are ignored: {few}; to load classes use --tbox"]
 
 
 def _halves(triples: list[Triple]) -> list[str]:
@@ -157,8 +157,8 @@ def _halves(triples: list[Triple]) -> list[str]:
     ]
     if not lacking:
         return []
-    few = ", ".join(lacking[:_FEW]) + (f" and {len(lacking) - _FEW} more like that" if lacking[_FEW:] else "")
-    return [f"a position, orientation or size counts only when it is whole: {few}"]
+    few = ", ".join(lacking[:_FEW]) + (f" and {len(lacking) - _FEW} more" if lacking[_FEW:] else "")
+    return [f"incomplete position, orientation or size ignored: {few}"]
 
 
 def _called(individual: Term) -> str:

@@ -29,7 +29,7 @@ def _find(catalogue: Path, iri: str, seen: set[Path]) -> Path | None:
     try:
         root = ElementTree.fromstring(catalogue.read_bytes())
     except ElementTree.ParseError as error:
-        raise errors.BadFile(f"{catalogue} is no valid XML catalogue: {error}") from None
+        raise errors.BadFile(f"{catalogue} is not a valid XML catalogue: {error}") from None
     except OSError as error:
         raise errors.BadFile(f"{catalogue} cannot be read: {error.strerror}") from None
     entries = list(_entries(root, catalogue.parent))

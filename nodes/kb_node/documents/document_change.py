@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.documents import abox_document, rdf, tbox_declarations, tbox_validation
+from nodes.kb_node.documents import abox_document, rdf
+from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas import errors
 from schemas.bridge import LoadDocument, LoadTBox
@@ -25,7 +26,7 @@ def of_document(
         said = abox_document.of_strangers(found)
         if load.strict:
             raise errors.UnknownName(said)
-        sorted_out.notes.append(f"{said}; --strict refuses such")
+        sorted_out.notes.append(f"{said}; --strict refuses such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),

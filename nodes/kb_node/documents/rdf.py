@@ -91,7 +91,7 @@ def parse(
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
             line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
-        raise errors.BadFile(f"{name} is no valid {_SPOKEN[syntax]}: {reason}") from None
+        raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
 
 
 def _triples(
@@ -124,7 +124,7 @@ def _triples(
 def _label(term: str, label_prefix: str) -> str:
     """A blank node with its prefix."""
     if not term.startswith("_:"):
-        raise ValueError("it states something about a triple, and there is no place for that in OWL")
+        raise ValueError("it makes a statement about a triple, which OWL cannot express")
     return f"_:{label_prefix}{term[2:]}"
 
 
@@ -136,7 +136,7 @@ def _labelled(triple: Triple, label_prefix: str) -> Triple:
 def _reason(error: Exception) -> str:
     if "LoadDocumentCallback" in str(error):
         return (
-            "its @context is elsewhere, and nothing is fetched from the network; write the context out in it"
+            "its @context is remote, and nothing is fetched from the network; include the context in the file"
         )
     return str(error).replace("\n", " ")
 

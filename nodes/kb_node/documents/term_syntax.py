@@ -19,4 +19,4 @@ def require_triples(triples: Iterable[Triple]) -> None:
     for triple in triples:
         line = " ".join(triple)
         if not _TRIPLE.fullmatch(line):
-            raise errors.BadRequest(f"no triple of RDF terms in N-Triples syntax: {line}")
+            raise errors.BadRequest(f"not a valid N-Triples statement: {line}")

@@ -189,7 +189,7 @@ class ClassTable:
         try:
             name = index.find(word)
         except Ambiguous as error:
-            raise errors.BadRequest(f"'{word}' may be {error}; say which property") from None
+            raise errors.BadRequest(f"'{word}' is ambiguous: {error}; say which property") from None
         if name is None:
             hint = index.did_you_mean(word) or "; there are type and the properties of the TBox"
             raise errors.BadRequest(f"unknown property '{word}'{hint}")

@@ -29,7 +29,7 @@ def owlrl_faults(triples: Iterable[Triple]) -> list[str]:
         )
     except subprocess.TimeoutExpired:
         raise errors.Refused(
-            f"owlrl came to no end within {TIMEOUT_S:g} s; the map is too large for it"
+            f"owlrl did not finish within {TIMEOUT_S:g} s; the map is too large for it"
         ) from None
     if run.returncode != 0:
         raise errors.Refused(f"owlrl failed: {(run.stderr.strip() or str(run.returncode)).splitlines()[-1]}")

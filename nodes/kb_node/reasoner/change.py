@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
+from nodes.kb_node.reasoner.explanations import Term
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike
-from schemas.explanations import Term
 
 
 class Change(NamedTuple):

@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.abox_view import View
 from nodes.kb_node.reasoner.abox.retraction import Retraction
+from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.explain.proof import Prover
 from nodes.kb_node.reasoner.explain.reasons import Clash
 from nodes.kb_node.reasoner.explain.schema_support import SchemaSupport
 from nodes.kb_node.reasoner.explain.support import Support
 from nodes.kb_node.reasoner.explain.words import Words
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.paths import FastPaths, Known, PlainPaths
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
@@ -26,7 +28,6 @@ from nodes.kb_node.reasoner.terms import (
     SAME_AS,
     TYPE,
 )  # fmt: skip
-from schemas.explanations import Explanation, Term, Triple
 
 
 class Refused(Exception):
@@ -71,11 +72,12 @@ class CompiledEngine:
         self._schema = Schema(closure)
         self._of_the_schema = frozenset(s for s, _, _ in (*closure.facts, *self._inert.facts))
         self._abox = ABox(self._schema)
+        self._saturation = Saturation(self._abox)
         self._paths = FastPaths(self._abox) if fast else PlainPaths()
         self._view = View(self._abox)
         self._told_by = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
-        self._abox.run()
+        self._saturation.run()
         self._abox.settle()
         data = [triple for triple in triples if triple not in self._schema_triples]
         self.apply((), in_stars(data) if scattered else data)
@@ -112,7 +114,7 @@ class CompiledEngine:
         removed: list[Triple] = []
         touched: set[Term] = set()
         alike: list[Alike] = []
-        retraction = Retraction(abox) if delete else None
+        retraction = Retraction(abox, self._saturation) if delete else None
         try:
             if retraction is None:
                 alike = self._paths.insert(insert, lambda some: self._insert(some, added, touched), added)
@@ -140,7 +142,6 @@ class CompiledEngine:
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
-        abox = self._abox
         types = [triple for triple in triples if triple[1] == TYPE]
         edges = [triple for triple in triples if triple[1] != TYPE]
         for batch in (types, edges):  # a node that has its kind when its edges come is looked at once
@@ -149,10 +150,10 @@ class CompiledEngine:
                     raise NotCompilable("the schema changes")
                 if triple[1] in (SAME_AS, DIFFERENT_FROM):
                     self._check(triple)
-                if abox.insert(triple):
+                if self._saturation.insert(triple):
                     added.append(triple)
                     touched.add(triple[0])
-            abox.run()
+            self._saturation.run()
 
     def _check(self, triple: Triple) -> None:
         check_compilable(triple)
@@ -160,11 +161,11 @@ class CompiledEngine:
             raise NotCompilable(f"classes or properties are compared: {' '.join(triple)}")
 
     def _undo(self, retraction: Retraction | None, removed: list[Triple], added: list[Triple]) -> None:
-        back = Retraction(self._abox)
+        back = Retraction(self._abox, self._saturation)
         back.delete(added)
         for triple in removed:
-            self._abox.insert(triple)
-        self._abox.run()
+            self._saturation.insert(triple)
+        self._saturation.run()
         self._abox.settle()
         back.release()
         if retraction is not None:

@@ -9,13 +9,13 @@ from contextlib import contextmanager
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.explain.words import Words
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.rules.facts import Facts
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import iri, is_literal, is_named
-from schemas.explanations import Explanation, Term, Triple
 
 _SUB_CLASS_OF = iri("rdfs:subClassOf")
 

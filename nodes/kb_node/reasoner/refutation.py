@@ -5,9 +5,9 @@ from __future__ import annotations
 from msgspec import structs
 
 from nodes.kb_node.reasoner.explain.sentences import denial
+from nodes.kb_node.reasoner.explanations import Explanation, Triple
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, is_literal
-from schemas.explanations import Explanation, Triple
 
 
 def refute(reasoner: Reasoner, supposed: Triple, *, anew: bool = True) -> Explanation | None:

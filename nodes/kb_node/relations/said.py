@@ -6,15 +6,13 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.facts import Fact
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.telling import SPOKEN, metres, why
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 from schemas.relations import Relation, RelationName
-
-Fact = tuple[str, RelationName, str]
-"""Name, relation, name: ("cup1", "isOn", "table1")."""
 
 PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("isOn"): ("isOn", False),

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from msgspec import structs
 
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.polygons import Point, area, hull
 from ontology.model_shapes import ModelShape, shapes
 from schemas.entities import Entity, Size, Vector
@@ -193,7 +194,7 @@ class Solid:
         ]
 
 
-def solid_of(entity: Entity) -> Solid | None:
+def solid_of(entity: Entity | Placed) -> Solid | None:
     """The solid of an entity; None without a position."""
     if entity.pose is None:
         return None

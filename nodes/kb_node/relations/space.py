@@ -8,6 +8,7 @@ from typing import NamedTuple
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.grid import Grid
 from nodes.kb_node.relations.measures import Measure
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.solids import Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
@@ -26,14 +27,14 @@ class Whereabouts(NamedTuple):
 class Space:
     """The solids of a map, found by where they are."""
 
-    def __init__(self, entities: Iterable[Entity] = (), limits: Thresholds | None = None) -> None:
+    def __init__(self, entities: Iterable[Entity | Placed] = (), limits: Thresholds | None = None) -> None:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self._grid = Grid()
         for entity in entities:
             self.put(entity)
 
-    def put(self, entity: Entity) -> Solid | None:
+    def put(self, entity: Entity | Placed) -> Solid | None:
         """Add an entity, or have it where it is now; its solid, if it has a position."""
         self.take(entity.name)
         solid = solid_of(entity)
@@ -63,11 +64,11 @@ class Space:
         for other in self.around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
-                if made and made.holds and (place is None or other.footprint < place[0].footprint):
+                if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
                 continue
             made = measures.inside(solid, other, limits)
-            if made and made.holds and (container is None or other.volume < container[0].volume):
+            if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
                 container = (other, made)
             if other.bottom < solid.bottom + limits.touch_m:
                 made = measures.on(solid, other, limits)
@@ -76,6 +77,14 @@ class Space:
         if support is not None and container is not None:
             support = None  # what lies in a bowl is not on the table, and not on the bowl
         return Whereabouts(container, support, place)
+
+
+def _area(solid: Solid) -> tuple[float, str]:
+    return (solid.footprint, solid.name)
+
+
+def _volume(solid: Solid) -> tuple[float, str]:
+    return (solid.volume, solid.name)
 
 
 def _rank(other: Solid, made: Measure) -> tuple[tuple[bool, float, float, float], str]:

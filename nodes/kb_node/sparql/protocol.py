@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
@@ -23,6 +24,8 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
+    placed: tuple[Placed, ...] = ()
+    """Where the entities are, if what follows is wanted."""
 
 
 class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
@@ -41,6 +44,9 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
     """Every commit from then on, in order."""
 
     delta: Delta
+    changed: tuple[Placed, ...] = ()
+    """Entities as they are now, if what follows is wanted."""
+    removed: tuple[str, ...] = ()
 
 
 class Asked(Struct, frozen=True, kw_only=True, tag=True):

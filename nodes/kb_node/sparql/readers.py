@@ -79,7 +79,7 @@ def cause_of_death(number: int, timeout_s: float) -> errors.Refused:
         return errors.Refused(
             f"the query was cancelled: it needs more than {MEMORY_BYTES >> 20} MB of memory; narrow it"
         )
-    return errors.Refused(f"the query was cancelled: its process ended by signal {number}")
+    return errors.Refused(f"the query was cancelled: its process was ended by signal {number}")
 
 
 def _serve(lane: Connection, leash: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:
@@ -146,7 +146,7 @@ def _evaluate(question: Question, dataset: Dataset) -> Outcome:
     except MemoryError:
         os.abort()
     except Exception as error:
-        fault = errors.InternalError(f"a fault in SPARQL: {type(error).__name__}: {error}")
+        fault = errors.InternalError(f"SPARQL failed: {type(error).__name__}: {error}")
         return Outcome(number=question.number, error=errors.to_message(fault))
 
 

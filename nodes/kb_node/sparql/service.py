@@ -19,6 +19,7 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.sparql.lanes import Lanes
 from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
 from nodes.kb_node.sparql.triples.dataset import Delta
@@ -28,6 +29,7 @@ from schemas import codec, errors
 from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
 from schemas.commits import Commit
+from schemas.entities import Entity
 from schemas.explanations import Triple
 from schemas.replies import Done
 from schemas.sparql import SparqlResult, Watching
@@ -43,14 +45,16 @@ class SparqlService:
         asserted: Callable[[], Iterable[Triple]],
         publish: Callable[[News], None],
         large_map: LargeMap | None = None,
+        entities: Callable[[], Iterable[Entity]] = tuple,
     ) -> None:
-        """`asserted()` is what the map says now, `publish` gets the news.
+        """`asserted()` is what the map says now, `entities()` who is in it, `publish` gets the news.
 
         With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
         other work: after a large commit at once, else when it is asked for the first time. What follows is
         always kept in memory.
         """
         self._asserted = asserted
+        self._entities = entities
         self._publish = publish
         self._large = large_map
         self._worker: _Worker | None = None
@@ -72,7 +76,7 @@ class SparqlService:
         self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
-                raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
+                raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
             self._worker = _Worker(self._publish)
             self._infers = command.inferred
             self._load()
@@ -98,7 +102,16 @@ class SparqlService:
         elif commit.tbox:
             self._load()
         else:
-            self._worker.send(Committed(delta=delta_of(commit)))
+            self._worker.send(self._committed(commit))
+
+    def _committed(self, commit: Commit) -> Committed:
+        if not self._infers:
+            return Committed(delta=delta_of(commit))
+        return Committed(
+            delta=delta_of(commit),
+            changed=tuple(map(Placed.of, commit.changed)),
+            removed=tuple(gone.name for gone in commit.removed),
+        )
 
     def _load(self) -> None:
         """Let the process have the map as it is."""
@@ -132,7 +145,9 @@ class SparqlService:
         self._large.fill(self._seq, lambda: self._seq).add_done_callback(on_done)
 
     def _load_into_memory(self, worker: _Worker) -> None:
-        worker.send(Load(seq=self._seq, asserted=tuple(self._asserted()), infers=self._infers))
+        placed = tuple(map(Placed.of, self._entities())) if self._infers else ()
+        asserted = tuple(self._asserted())
+        worker.send(Load(seq=self._seq, asserted=asserted, infers=self._infers, placed=placed))
         self._go_on()
 
     def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
@@ -254,4 +269,4 @@ class _Worker:
 
 
 def _ended() -> errors.Refused:
-    return errors.Refused("the process that answers SPARQL has ended; ask again, and a new one starts")
+    return errors.Refused("the process that answers SPARQL has ended; ask again, which starts a new one")

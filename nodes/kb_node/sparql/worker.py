@@ -34,7 +34,7 @@ from nodes.kb_node.sparql.protocol import (
 from nodes.kb_node.sparql.readers import Reader
 from nodes.kb_node.sparql.standing_queries.lookout import Lookout
 from nodes.kb_node.sparql.triples.consequences import Consequences
-from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
+from nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
 from nodes.kb_node.sparql.triples.log import Log
 from schemas import errors
 
@@ -71,7 +71,7 @@ class Worker:
                 self._begin_log()
                 self.lookout.look_at_all(message.settled)
             case Committed():
-                self._follow(message.delta)
+                self._follow(message)
             case Hire():
                 self._readers[message.lane] = self._reader(self._lanes[message.lane])
             case Asked():
@@ -98,13 +98,14 @@ class Worker:
     def _load(self, load: Load) -> None:
         """Begin anew; the standing queries go on, with a look at what has changed for them."""
         self._dataset = Dataset(load.seq, load.asserted)
-        self._consequences = Consequences(load.asserted, self._dataset) if load.infers else None
+        self._consequences = Consequences(load.asserted, self._dataset, load.placed) if load.infers else None
         self._begin_log()
         self.lookout.look_at_all(load.seq)
 
-    def _follow(self, delta: Delta) -> None:
+    def _follow(self, committed: Committed) -> None:
+        delta = committed.delta
         if self._consequences is not None:
-            delta = self._consequences.after(delta)
+            delta = self._consequences.after(delta, committed.changed, committed.removed)
         self._log.append(delta)
         self._dataset.apply(delta)
         self.lookout.follow(delta)

@@ -10,7 +10,8 @@ import time
 from collections.abc import Iterable, Mapping
 from datetime import datetime
 
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner

@@ -79,7 +79,7 @@ class Journal:
             finally:
                 db.close()
         except sqlite3.Error as error:
-            raise errors.Refused(f"no journal can be made at {path}: {error}") from None
+            raise errors.Refused(f"cannot create a journal at {path}: {error}") from None
         return cls(path)
 
     def close(self) -> None:

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
-from nodes.kb_node.documents import ontology_files, rdf, tbox_validation
+from nodes.kb_node.documents import ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import FILENAME, Journal
@@ -38,13 +39,13 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     damaged = _opened(path)
     try:
         if _is_sound(damaged, _counting("checked", tell)):
-            return f"nothing is damaged: the map goes on from commit {damaged.last}"
+            return f"nothing is damaged: the map continues from commit {damaged.last}"
         good, reason = _copy(damaged, new, _first_tbox(damaged, tbox), tell)
         reason += _left_out(damaged, good)
     finally:
         damaged.close()
     kept = seed.put_in_place(new, path)
-    return f"the map goes on from commit {good} ({reason}); the damaged file is kept in {kept}"
+    return f"the map continues from commit {good} ({reason}); the damaged file is kept in {kept}"
 
 
 def _left_out(damaged: Journal, good: int) -> str:
@@ -53,7 +54,7 @@ def _left_out(damaged: Journal, good: int) -> str:
         last = damaged.last
     except errors.Refused:
         return ""
-    return f", and what came after it, up to commit {last}, is left out" if last > good + 1 else ""
+    return f", and everything after it, up to commit {last}, is dropped" if last > good + 1 else ""
 
 
 def _opened(path: Path) -> Journal:
@@ -65,7 +66,7 @@ def _opened(path: Path) -> Journal:
     except errors.Refused as error:
         if _filled_up(path):
             return _opened(path)
-        raise errors.Refused(f"{_reason(error)}; start anew with --fresh (it is kept)") from None
+        raise errors.Refused(f"{_reason(error)}; start a new map with --fresh (this one is kept)") from None
 
 
 def _filled_up(path: Path) -> bool:
@@ -108,8 +109,8 @@ def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
     except errors.Refused as error:
         if instead is None:
             raise errors.Refused(
-                f"{_reason(error)}: the TBox that the map began with cannot be read; give it anew with"
-                f" --tbox FILE, or start anew with --fresh (the damaged file is kept)"
+                f"{_reason(error)}: the TBox that the map started with cannot be read; provide it with"
+                f" --tbox FILE, or start a new map with --fresh (the damaged file is kept)"
             ) from None
     triples = ontology_files.gather([instead], {}).triples
     tbox_validation.compiled(triples, str(instead))

@@ -9,19 +9,14 @@ from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
 
-from nodes.kb_node.documents import (
-    abox_document,
-    ontology_files,
-    rdf,
-    tbox_declarations,
-    tbox_validation,
-)
+from nodes.kb_node.documents import abox_document, ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.triples.kept import forget
 from nodes.kb_node.storage import closure_cache
-from nodes.kb_node.storage.going_on import going_on
+from nodes.kb_node.storage.existing_map import existing_map
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import InUse
 from ontology import vocabulary as v
@@ -49,8 +44,8 @@ def seed(
     `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent with existing data untouched.
     """
     path = data / FILENAME
-    if not fresh and (told := going_on(data)) is not None:
-        return told  # one that cannot be read is told before anything starts
+    if not fresh and (told := existing_map(data)) is not None:
+        return told  # an unreadable one is reported before anything starts
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
@@ -76,11 +71,11 @@ def seed(
         notes = sorted_out.notes
         if found := abox_document.strangers(sorted_out.triples, reasoner):
             notes.append(abox_document.of_strangers(found))
-    source = abox.name if abox is not None else "nothing"
+    source = f" from {abox.name}" if abox is not None else ""
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",
         source="file",
-        reason=f"begun from {source}",
+        reason=f"begun{source}" if source else "begun empty",
         insert=tuple(abox_triples),
     )
     try:
@@ -93,8 +88,8 @@ def seed(
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
-        raise errors.Refused(f"no map can be kept in {data}: {error.strerror}") from None
-    return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
+        raise errors.Refused(f"cannot keep a map in {data}: {error.strerror}") from None
+    return "; note: ".join((f"{wording.entities(size)}{source}", *notes))
 
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:

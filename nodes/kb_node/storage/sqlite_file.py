@@ -11,7 +11,7 @@ from pathlib import Path
 
 from schemas import errors
 
-ANEW = "start anew with --fresh (it is kept)"
+ANEW = "start a new map with --fresh (this one is kept)"
 
 
 class InUse(errors.Refused):
@@ -85,11 +85,12 @@ def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
     if not isinstance(error, sqlite3.OperationalError):
         return errors.Refused(f"{path} is damaged: {error}; {mend(path)}")
     if "locked" in str(error):
-        return InUse(f"another knowledge base is using {path}")
+        stop = f"semmap down --data {path.parent}"
+        return InUse(f"another knowledge base is using {path}; stop it with: {stop}")
     return errors.Refused(f"{path} cannot be read: {error}; {ANEW}")
 
 
 def mend(path: Path) -> str:
     """How one goes on after damage."""
     repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
-    return f"go on from the last good commit with: {repair} (the damaged file is kept)"
+    return f"continue from the last good commit with: {repair} (the damaged file is kept)"

@@ -99,14 +99,14 @@ def test_bad_words(system, words, status, said):
 @pytest.mark.parametrize(
     ("file", "status", "said"),
     [
-        ("truncated.owl", 2, "no valid RDF/XML"),
-        ("truncated.ttl", 2, "no valid Turtle"),
+        ("truncated.owl", 2, "not valid RDF/XML"),
+        ("truncated.ttl", 2, "not valid Turtle"),
         ("inconsistent.ttl", 1, "chair2"),
         ("unknown.ttl", 2, "unknown class 'Chiar' (of chair2"),
         ("empty.ttl", 2, "empty"),
         ("bytes.bin", 2, "not UTF-8 text"),
         ("other.json", 2, "neither a scene"),
-        ("tbox.ttl", 2, "a TBox is loaded with --tbox"),
+        ("tbox.ttl", 2, "to load a TBox use --tbox"),
     ],
 )
 def test_bad_files(system, files, file, status, said):

@@ -59,9 +59,7 @@ def test_a_class_that_the_document_declares_is_known_but_none_of_the_map(classes
     triples = turtle(":s a dm:Sofa . dm:Sofa a owl:Class ; rdfs:subClassOf dm:Seat .")
     sorted_out = abox_document.sort_out(triples, classes, skip_unknown=False)
     assert sorted_out.skipped == []
-    assert sorted_out.notes == [
-        "the classes of the map stay those of its TBox, without Sofa; --tbox loads others"
-    ]
+    assert sorted_out.notes == ["class declarations in a map are ignored: Sofa; to load classes use --tbox"]
 
 
 def test_a_literal_as_class_is_unknown(classes):
@@ -100,11 +98,11 @@ HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"
 def test_what_lacks_a_number_is_told(text, said, classes):
     notes = abox_document.sort_out(turtle(text), classes, skip_unknown=False).notes
     notes = [note for note in notes if "unknown" not in note]
-    whole = f"a position, orientation or size counts only when it is whole: {said}"
+    whole = f"incomplete position, orientation or size ignored: {said}"
     assert notes == ([whole] if said else [])
 
 
 def test_of_very_many_that_lack_a_number_a_few_are_told(classes):
     text = "".join(f":s{i} dm:float_size_x 1 ." for i in range(50))
     *_, note = abox_document.sort_out(turtle(text), classes, skip_unknown=False).notes
-    assert note.endswith("s4 has no float_size_y and no float_size_z and 45 more like that")
+    assert note.endswith("s4 has no float_size_y and no float_size_z and 45 more")

@@ -63,7 +63,7 @@ def test_what_nobody_describes_is_noted(semantic_map):
     made, sorted_out = document_change.of_document(semantic_map, document(), turtle(STRANGE))
     assert set(made.insert) == set(turtle(STRANGE))
     assert sorted_out.notes == [
-        "nobody says what this is: kitchn (a isLocatedIn kitchn); --strict refuses such"
+        "referenced but not described: kitchn (a isLocatedIn kitchn); --strict refuses such files"
     ]
 
 
@@ -72,7 +72,7 @@ def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
     with pytest.raises(errors.UnknownName) as caught:
         document_change.of_document(semantic_map, document(strict=True), turtle(many))
     assert caught.value.text == (
-        "nobody says what these are: "
+        "referenced but not described: "
         + ", ".join(f"k{i} (a{i} isLocatedIn k{i})" for i in range(5))
         + " and 2 more"
     )

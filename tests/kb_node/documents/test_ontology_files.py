@@ -133,7 +133,7 @@ def test_a_catalogue_says_where_imports_are(write):
 def test_a_catalogue_that_is_no_xml_is_told(write):
     write("catalog-v001.xml", "<catalog>\n<uri>")
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
-    with pytest.raises(errors.BadFile, match=r"catalog-v001.xml is no valid XML catalogue: .*line 2"):
+    with pytest.raises(errors.BadFile, match=r"catalog-v001.xml is not a valid XML catalogue: .*line 2"):
         gather([path], {})
 
 
@@ -150,7 +150,7 @@ def test_broken_files_beside_are_passed_over_and_those_that_are_imported_are_tol
     write("other.ttl", "http://o.org/b this is\nno Turtle")
     assert gather([path], {}).missing == ("http://o.org/b",)
     write("b.ttl", PREFIXES + "\n<http://o.org/b> a owl:Ontology\n:x")
-    with pytest.raises(errors.BadFile, match=r"b\.ttl is no valid Turtle: .*line 4"):
+    with pytest.raises(errors.BadFile, match=r"b\.ttl is not valid Turtle: .*line 4"):
         gather([path], {})
 
 

@@ -156,7 +156,7 @@ def test_the_syntax_is_told_by_the_content(content, syntax):
         (b'<urn:a> <urn:b> "x" .\n<urn:a> <urn:b> "caff\xe8" .', r"f is not UTF-8 text \(line 2\)"),
         (TURTLE.decode().encode("utf-16"), r"f is not UTF-8 text \(line 1\)"),
         (b"\x89PNG\r\n\x1a\n", "f is not UTF-8 text"),
-        (b"<html><body>hi</body></html>", r"f is no valid Turtle: .*line 1"),
+        (b"<html><body>hi</body></html>", r"f is not valid Turtle: .*line 1"),
         (b"<urn:a b> <urn:p> <urn:c> .", "Invalid IRI code point ' '"),
         (
             b'{"@context": "http://127.0.0.1:9/c", "@id": "urn:a", "p": "x"}',
@@ -166,8 +166,8 @@ def test_the_syntax_is_told_by_the_content(content, syntax):
             b'{"@context": {"@import": "http://127.0.0.1:9/c"}, "p": "x"}',
             "nothing is fetched from the network",
         ),
-        (b"<urn:a> <urn:b> <<( <urn:a> <urn:b> <urn:c> )>> .", "something about a triple"),
-        (b"@prefix : <urn:x> . { :a :b :c }", "no valid Turtle"),
+        (b"<urn:a> <urn:b> <<( <urn:a> <urn:b> <urn:c> )>> .", "a statement about a triple"),
+        (b"@prefix : <urn:x> . { :a :b :c }", "not valid Turtle"),
     ],
 )
 def test_what_is_no_rdf_is_told_in_one_line(content, text):

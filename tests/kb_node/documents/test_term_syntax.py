@@ -47,5 +47,5 @@ def test_every_literal_of_ours_is_rdf(text, lang):
     ],
 )
 def test_what_is_no_rdf_is_refused(triple):
-    with pytest.raises(errors.BadRequest, match="no triple of RDF terms"):
+    with pytest.raises(errors.BadRequest, match="not a valid N-Triples statement"):
         require_triples([("<urn:a>", "<urn:b>", "<urn:c>"), triple])

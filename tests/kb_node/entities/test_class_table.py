@@ -101,7 +101,9 @@ def test_properties_of_one_local_name_are_told_apart():
     classes = table("<http://a.org/lab.owl#isLocatedIn> a owl:ObjectProperty .")
     assert classes.property_named("lab:isLocatedIn") == "<http://a.org/lab.owl#isLocatedIn>"
     assert classes.property_named("has_size") == v.HAS_SIZE
-    with pytest.raises(errors.BadRequest, match="'isLocatedIn' may be dm:isLocatedIn or lab:isLocatedIn"):
+    with pytest.raises(
+        errors.BadRequest, match="'isLocatedIn' is ambiguous: dm:isLocatedIn or lab:isLocatedIn"
+    ):
         classes.property_named("isLocatedIn")
 
 

@@ -1,6 +1,6 @@
 """Entities by model and place."""
 
-from ontology.model_sizes import own_size_m
+from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
 NOBODY = Provenance(commit=1, stamp_ns=0, source="file")

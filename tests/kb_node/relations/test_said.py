@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from nodes.kb_node import answers
+from nodes.kb_node.answers import answers
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.said import denial, denied, fact_of
 from nodes.kb_node.relations.space import Space

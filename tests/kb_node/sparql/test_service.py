@@ -5,9 +5,11 @@ import queue
 import random
 import signal
 import time
+from collections import Counter
 
 import pyoxigraph as ox
 import pytest
+from msgspec import structs
 
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -19,9 +21,10 @@ from ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Renew, Sparql, Watch
-from schemas.commits import Commit
+from schemas.commits import Commit, Departed
 from schemas.entities import Pose
 from tests.kb_node import home
+from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 WAIT_S = 60.0
 FOR_EVER = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l FILTER(?a < ?l) }"
@@ -35,15 +38,29 @@ class Home:
         self.reasoner = Reasoner(triples)
         self.seq = 0
         self.news = queue.SimpleQueue()
-        self.service = SparqlService(lambda: self.reasoner.asserted(), self.news.put)
+        self.there = {}
+        self.service = SparqlService(
+            lambda: self.reasoner.asserted(), self.news.put, entities=lambda: self.there.values()
+        )
 
-    def commit(self, insert=(), retract=()):
+    def commit(self, insert=(), retract=(), changed=(), removed=()):
         insert, retract = tuple(insert), tuple(retract)
         self.reasoner.apply(delete=retract, insert=insert)
         self.seq += 1
-        self.service.follow(
-            Commit(seq=self.seq, stamp_ns=0, id="", source="operator", inserted=insert, retracted=retract)
+        self.there.update((entity.name, entity) for entity in changed)
+        for name in removed:
+            del self.there[name]
+        commit = Commit(
+            seq=self.seq,
+            stamp_ns=0,
+            id="",
+            source="operator",
+            inserted=insert,
+            retracted=retract,
+            changed=tuple(changed),
+            removed=tuple(Departed(name=name, types=()) for name in removed),
         )
+        self.service.follow(commit)
 
     def replace(self, triples):
         """Another TBox."""
@@ -285,3 +302,57 @@ def test_nothing_is_started_before_the_first_question(at_home):
     with pytest.raises(errors.UnknownName):
         at_home.renew("w")
     assert at_home.service._worker is None
+
+
+ON = "SELECT ?x ?y { ?x dm:isOn ?y }"
+IN = "SELECT ?x ?y { ?x dm:isLocatedIn ?y }"
+
+
+def _there(entity):
+    return structs.replace(entity, iri=v.bare(iri(entity.name)))
+
+
+def test_what_is_computed_is_told_as_what_a_question_finds(at_home):
+    """Standing queries over where things are, over random moves: their rows are those of a new question."""
+    at_home.replace(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h"))
+    dice = random.Random(5)
+    room, table = _there(ROOM), _there(structs.replace(TABLE, name="oak1"))
+    at_home.commit(changed=[room, table])
+    rows = {}
+    for query in (ON, IN):
+        watching = at_home.watch(query, inferred=True)
+        rows[watching.watch] = (query, Counter(watching.rows))
+    on_oak = 0
+    for number in range(40):
+        name = f"cup{dice.randrange(8) + 60}"
+        if name in at_home.there and dice.random() < 0.2:
+            at_home.commit(removed=[name])
+        elif dice.random() < 0.1:
+            at_home.commit(
+                changed=[structs.replace(table, pose=Pose(position_m=(float(number % 3), 0.0, 0.0)))]
+            )
+        else:
+            at = (dice.uniform(-1.0, 2.0), 0.0, dice.choice([0.0, TOP, TOP, TOP + 0.1]))
+            at_home.commit(changed=[_there(thing(name, at, "cup"))])
+        if number % 8 == 7:
+            asked = {query: Counter(at_home.ask(query, inferred=True).rows) for query in (ON, IN)}
+            assert not any(at_home.ask(f"SELECT ?x {{ ?x dm:isOn <{v.bare(iri('oak1'))}> }}").rows)
+            on_oak += len([row for row in asked[ON] if row[1] == iri("oak1")])
+            while any(rows[watch][1] != asked[rows[watch][0]] for watch in rows):
+                news = at_home.hear().rows
+                query, known = rows[news.watch]
+                rows[news.watch] = (query, known + Counter(news.appeared) - Counter(news.disappeared))
+    assert on_oak > 2
+
+
+def test_what_was_said_is_left_out_of_what_is_so(at_home):
+    at_home.replace(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h"))
+    said = (iri("cup1"), v.dm("isOn"), iri("table1"))
+    on_it = "SELECT ?x { ?x dm:isOn :table1 }"
+    cup = _there(thing("cup1", (4.0, 0.0, 0.0)))
+    at_home.commit([said], changed=[cup, _there(TABLE)])
+    assert at_home.ask(on_it).rows == ((iri("cup1"),),)
+    assert not at_home.ask(on_it, inferred=True).rows
+    assert at_home.ask(on_it).rows == ((iri("cup1"),),)  # in another graph, but still asserted
+    at_home.commit(changed=[structs.replace(cup, pose=Pose(position_m=(0.0, 0.0, TOP)))])
+    assert at_home.ask(on_it, inferred=True).rows == at_home.ask(on_it).rows == ((iri("cup1"),),)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.kb_node.documents import tbox_notes
+from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.seed import seed
@@ -93,7 +93,7 @@ def test_missing_imports_are_known_after_a_restart(tmp_path):
     for _ in range(2):
         semantic_map = opened(tmp_path / "data")
         said = tbox_notes.notes(semantic_map.tbox, semantic_map.reasoner, semantic_map.classes)
-        assert said[0] == "1 import was not found, and the TBox holds without: http://x.org/sosa/"
+        assert said[0] == "1 import was not found; the TBox is used without: http://x.org/sosa/"
         semantic_map._journal.close()
 
 

@@ -108,7 +108,7 @@ def test_a_damaged_tbox_is_noticed(path):
     write(path)
     edit(path, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
     journal = Journal(path)
-    with pytest.raises(errors.Refused, match=r"the TBox in it is damaged; go on .* semmap repair"):
+    with pytest.raises(errors.Refused, match=r"the TBox in it is damaged; continue .* semmap repair"):
         journal.tbox(0)
     journal.close()
 
@@ -133,14 +133,14 @@ def test_what_is_no_journal_is_refused(path, content, text):
 
 
 def test_no_journal_is_made_where_there_is_no_folder(tmp_path):
-    with pytest.raises(errors.Refused, match="no journal can be made at"):
+    with pytest.raises(errors.Refused, match="cannot create a journal at"):
         Journal.create(tmp_path / "nowhere" / "journal.sqlite", b"")
 
 
 def test_another_version_is_refused_and_released(path):
     write(path)
     edit(path, "UPDATE meta SET value = x'00' WHERE key = 'format'")
-    with pytest.raises(errors.Refused, match="another version of semmap; start anew with --fresh"):
+    with pytest.raises(errors.Refused, match="another version of semmap; start a new map with --fresh"):
         Journal(path)
     edit(path, "DELETE FROM meta")
 

@@ -13,7 +13,7 @@ from nodes.kb_node.storage.repair import repair
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from schemas import errors
 from tests.kb_node import home
-from tests.kb_node.documents.test_tbox_validation import NEW_CLASSES, replace
+from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction
 from tests.kb_node.storage.test_journal import edit, flip
 
@@ -63,14 +63,16 @@ def test_it_goes_on_from_the_last_good_commit(data, broken):
     with pytest.raises(errors.Refused, match=f"commit {broken} is damaged; .* semmap repair --data {data} "):
         opened(data)
     said = repair(data)
-    after = ", and what came after it, up to commit 8, is left out" if broken < 8 else ""
-    assert said.startswith(f"the map goes on from commit {broken - 1} (commit {broken} is damaged{after}); ")
+    after = ", and everything after it, up to commit 8, is dropped" if broken < 8 else ""
+    assert said.startswith(
+        f"the map continues from commit {broken - 1} (commit {broken} is damaged{after}); "
+    )
     (kept,) = (data / "kept").iterdir()
     assert (kept / FILENAME).read_bytes() == damaged
     (seq, _, snapshot), mended = opened(data)
     assert (seq, mended) == (broken - 1, commits[: broken - 1])
     assert {e.name for e in snapshot.entities} == {e.name for c in mended for e in c.changed}
-    assert repair(data) == f"nothing is damaged: the map goes on from commit {broken - 1}"
+    assert repair(data) == f"nothing is damaged: the map continues from commit {broken - 1}"
 
 
 @pytest.mark.parametrize("left", [0.7, 0.75, 0.85, 0.95])
@@ -82,7 +84,7 @@ def test_a_journal_that_was_cut_off_goes_on_from_what_is_left(data, left):
         opened(data)
     first = data / "first.nt"
     first.write_text("".join(f"{s} {p} {o} .\n" for s, p, o in home.TBOX))
-    assert repair(data, tbox=first).startswith("the map goes on from commit ")
+    assert repair(data, tbox=first).startswith("the map continues from commit ")
     (seq, _, _), mended = opened(data)
     assert 0 < seq < 8
     assert mended == commits[:seq]
@@ -103,7 +105,7 @@ def test_a_full_disk_ends_the_repair_and_leaves_the_damaged_file(data, monkeypat
         repair(data)
     assert (data / FILENAME).read_bytes() == damaged
     monkeypatch.undo()
-    assert repair(data).startswith("the map goes on from commit 7 ")
+    assert repair(data).startswith("the map continues from commit 7 ")
 
 
 def test_it_tells_how_far_it_is(data, monkeypatch):
@@ -140,14 +142,14 @@ def test_flipped_bytes_are_noticed_or_do_no_harm(data, seed):
     path.write_bytes(content)
     found = attempt(opened, data)
     assert found == (expected, commits) or "is damaged" in found
-    if "start anew with --fresh" not in attempt(repair, data):
+    if "start a new map with --fresh" not in attempt(repair, data):
         (seq, _, _), mended = opened(data)
         assert mended == commits[:seq]
 
 
 def test_what_cannot_be_mended_says_how_to_go_on(data):
     (data / FILENAME).write_bytes(b"not a database " * 99)
-    with pytest.raises(errors.Refused, match=r"file is not a database; start anew with --fresh"):
+    with pytest.raises(errors.Refused, match=r"file is not a database; start a new map with --fresh"):
         repair(data)
 
 
@@ -155,7 +157,9 @@ def test_a_damaged_tbox_is_where_the_good_commits_end(data):
     edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 5")
     with pytest.raises(errors.Refused, match="the TBox in it is damaged"):
         opened(data)
-    assert repair(data).startswith("the map goes on from commit 4 (the TBox in it is damaged, and what came")
+    assert repair(data).startswith(
+        "the map continues from commit 4 (the TBox in it is damaged, and everything"
+    )
 
 
 def damage_a_page_of_the_tbox(path):
@@ -186,11 +190,13 @@ def test_a_first_tbox_that_is_lost_can_be_given_anew(data, how, tmp_path_factory
         damage_a_page_of_the_tbox(data / FILENAME)
     with pytest.raises(errors.Refused, match="semmap repair --data"):
         opened(data)
-    with pytest.raises(errors.Refused, match=r"cannot be read; give it anew with --tbox FILE, or start anew"):
+    with pytest.raises(
+        errors.Refused, match=r"cannot be read; provide it with --tbox FILE, or start a new map"
+    ):
         repair(data)
     with pytest.raises(errors.BadFile, match="is it a TBox"):
         repair(data, tbox=scene(tbox.with_name("no_tbox.ttl")))
-    assert repair(data, tbox=tbox).startswith("the map goes on from commit 8 (")
+    assert repair(data, tbox=tbox).startswith("the map continues from commit 8 (")
     assert opened(data)[1] == expected[1]
 
 

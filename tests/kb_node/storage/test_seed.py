@@ -52,14 +52,14 @@ def test_a_map_is_begun_from_two_files(data, files):
 
 
 def test_a_map_may_begin_empty(data, files):
-    assert seed(data, files[0], None) == "0 entities from nothing"
+    assert seed(data, files[0], None) == "0 entities"
     assert read(data)[0] == []
 
 
 def test_a_map_that_is_there_wins(data, files):
     seed(data, *files)
     before = contents(data)
-    assert seed(data, files[0], None).startswith("going on with the map in ")
+    assert seed(data, files[0], None).startswith("continuing with the map in ")
     assert contents(data) == before
 
 
@@ -95,8 +95,8 @@ def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
     [
         (None, "", errors.BadFile, "there is no file .*my tbox.ttl"),
         (TBOX_TURTLE, None, errors.BadFile, "there is no file .*my abox.ttl"),
-        (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is no valid Turtle"),
-        (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is no valid Turtle"),
+        (TBOX_TURTLE[:-20], ABOX, errors.BadFile, "my tbox.ttl is not valid Turtle"),
+        (TBOX_TURTLE, ABOX[:-5], errors.BadFile, r"^\S+/my files/my abox.ttl is not valid Turtle"),
         (TBOX_TURTLE, " ", errors.BadFile, "my abox.ttl is empty"),
         (ABOX, ABOX, errors.BadFile, "has no class: is it a TBox"),
         (
@@ -131,10 +131,10 @@ def test_what_cannot_begin_a_map_leaves_the_old_data_alone(data, files, tbox, ab
 
 def test_what_the_disk_does_not_take_is_no_fault_of_the_files(data, files, monkeypatch):
     def refuse(path, tbox):
-        raise errors.Refused(f"no journal can be made at {path}: disk full")
+        raise errors.Refused(f"cannot create a journal at {path}: disk full")
 
     monkeypatch.setattr(Journal, "create", refuse)
-    with pytest.raises(errors.Refused, match=r"^no journal can be made at "):
+    with pytest.raises(errors.Refused, match=r"^cannot create a journal at "):
         seed(data, *files)
 
 
@@ -145,7 +145,7 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
         f" Declaration(Class(<{v.TBOX}Barstool>)) SubClassOf(<{v.TBOX}Barstool> <{v.TBOX}Seat>))"
     )
     imports = {"http://o.org/home": files[0]}
-    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities from nothing"
+    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities"
     journal = Journal(data / FILENAME)
     classes = SemanticMap(journal).classes
     journal.close()
@@ -155,5 +155,5 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
 
 
 def test_a_file_is_no_data_folder(files):
-    with pytest.raises(errors.Refused, match=r"no map can be kept in .*: File exists"):
+    with pytest.raises(errors.Refused, match=r"cannot keep a map in .*: File exists"):
         seed(files[1], files[0], None)

@@ -65,7 +65,7 @@ def _verdict(found: TBoxReport) -> Iterator[str]:
     if found.untried:
         yield _line("untried", f"{found.untried} classes, because each would take too long")
     if found.is_sound and not found.untried:
-        yield _line("consistent", "yes, and there can be something of every class")
+        yield _line("consistent", "yes, and every class is satisfiable")
 
 
 def _line(what: str, text: str) -> str:

@@ -11,6 +11,7 @@ import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
+from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
@@ -30,7 +31,9 @@ def _stated(fields: dict[str, Any]) -> dict[str, Any]:
 _id = click.option(
     "--id", "id", metavar="ID", help="Command id; a command sent twice with one id is executed once."
 )
-_dry_run = click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
+_dry_run = click.option(
+    "--dry-run", is_flag=True, help="Report what would change, without changing anything."
+)
 _set = click.option(
     "--set", "set", multiple=True, metavar="PROPERTY=VALUE", help="State a property; may be repeated."
 )
@@ -72,9 +75,9 @@ def add(client: Client, **fields: Any) -> None:
 )
 @_set
 @click.option(
-    "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Take a property back; may be repeated."
+    "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Remove a property; may be repeated."
 )
-@click.option("--force", is_flag=True, help="Also where an object becomes a place, or a place an object.")
+@click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
 @_dry_run
 @talks
 def update(client: Client, **fields: Any) -> None:
@@ -82,13 +85,13 @@ def update(client: Client, **fields: Any) -> None:
     print_lines(show.changed(client.update(**given(fields))))
 
 
-@click.command("set")
+@click.command("set", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("values", metavar="VALUE...", nargs=-1, required=True)
 @_if_is
 @click.option("--if-unset", is_flag=True, help="Only if the property has no value now.")
-@click.option("--confidence", type=float, metavar="P", help="How sure that is, 0 to 1.")
+@click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1.")
 @_id
 @_dry_run
 @talks
@@ -100,7 +103,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
     print_lines(show.changed(client.set(name, property, *values, **_stated(fields))))
 
 
-@click.command()
+@click.command(cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("value", required=False)
@@ -134,9 +137,9 @@ def clear(client: Client, dry_run: bool) -> None:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--replace", is_flag=True, help="Replace the present entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
-@click.option("--strict", is_flag=True, help="Refuse what speaks of things that nobody says what they are.")
-@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) in place of the present one.")
-@click.option("--parts", is_flag=True, help="As many commits as it takes, for files of any size.")
+@click.option("--strict", is_flag=True, help="Refuse files that refer to undescribed things.")
+@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the present one.")
+@click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @import_option
 @spatial_root_option
 @_dry_run
@@ -148,6 +151,6 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
             reply = client.load(file, imports=dict(imports), **how)
         except errors.NoAnswer as error:
             raise errors.NoAnswer(
-                f"{error.text}; whether {file.name} was loaded is not known here: semmap history tells"
+                f"{error.text}; whether {file.name} was loaded is unknown; to find out: semmap history"
             ) from None
     print_lines(show.changed(reply))

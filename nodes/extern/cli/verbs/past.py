@@ -51,7 +51,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
 
 @click.command()
 @click.argument("commit", type=int, required=False)
-@click.option("--dry-run", is_flag=True, help="Say what would change, and change nothing.")
+@click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @talks
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
     """Undo a commit unless later ones depend on it; by default, the newest that a client requested."""

@@ -33,7 +33,7 @@ def check(
     themselves, or that nothing can be of some class; 2 that a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
-    from nodes.kb_node.documents.tbox_check import check as check_files
+    from nodes.kb_node.documents.tbox.tbox_check import check as check_files
 
     report = check_files(files, dict(imports), spatial_root)
     if format == "json":

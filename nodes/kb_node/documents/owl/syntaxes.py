@@ -92,7 +92,7 @@ def parse(text: str, syntax: OwlSyntax) -> list[Triple]:
         if term.startswith("<") and not _IRI.fullmatch(term):
             at = max(text.find(term), text.find(f'"{term[1:-1]}"'))
             line = f"line {text.count(chr(10), 0, at) + 1}: " if at >= 0 else ""
-            raise ValueError(f"{line}{term} is no absolute IRI")
+            raise ValueError(f"{line}{term} is not an absolute IRI")
     return triples
 
 

@@ -1,147 +1,156 @@
-"""The ABox and what follows in it: forward from what was inserted until nothing changes or something clashes.
+"""The ABox: what is stored of individuals, what is concluded of them, and how they are looked at.
 
 Stored are the asserted edges, the kind of each node, and what cannot be read off them: edges that chains or
 values make, and which nodes are the same. The agenda is a queue of new edges and of nodes whose kind grew.
+
+Nodes that are the same individual share one `Equals`; whatever is asked of one is asked of all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator
+from itertools import combinations, count
 
+from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.equality import Equality
-from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
-from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED, VALUE
-from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Reason, Same, member
-from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
-from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
+from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.abox.steps import Steps
+from nodes.kb_node.reasoner.abox.store import DERIVED, Store
+from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from nodes.kb_node.reasoner.explanations import Term
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
+from nodes.kb_node.reasoner.tbox.schema import Schema
+from nodes.kb_node.reasoner.terms import is_literal
+
+MANY = 16
+"""Pairs of nodes beyond which edges are searched by the one end only."""
 
 
-class ABox(Equality):
-    """Individuals, their edges and what follows. `insert` and `delete` change, `run` concludes.
+class Equals:
+    """Nodes that are the same individual, and the links that made them so."""
 
-    A Clash leaves the agenda as it was, so that the caller can undo its changes and `run` again.
-    """
+    __slots__ = ("links", "members")
 
-    def insert(self, triple: Triple) -> bool:
-        """Assert a triple; whether it is new. Conclusions come with `run`."""
-        s, p, o = triple
-        store, schema = self.store, self.schema
-        subject = store.numbers.get(s)
-        if subject is None:
-            subject = store.node(s)
-        if p == TYPE:
-            cls = schema.find_class(o)
-            return self._give(subject, self._first_use(o, schema.cls) if cls is None else cls)
-        object_ = store.numbers.get(o)
-        if object_ is None:
-            object_ = store.node(o)
-        predicate = schema.find_property(p)
-        if predicate is None:
-            predicate = self._first_use(p, schema.property)
-        edge = store.edge(subject, predicate, object_)
-        if edge != NONE:
-            if store.source[edge] == ASSERTED:
-                return False
-            store.source[edge] = ASSERTED
-            if reason := self.reasons.pop(edge, None):
-                reason.alive = False
+    def __init__(self, member: int) -> None:
+        self.members = [member]
+        self.links: list[Reason] = []
+
+
+class ABox:
+    """The state that all rules share: columns, kinds, equalities, reasons, and the agenda of what is new."""
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+        self.kinds = Kinds(schema)
+        self.steps = Steps(schema, self.kinds)
+        self.store = Store(self.kinds)
+        self.equals: dict[int, Equals] = {}
+        self.reasons: dict[int, Reason] = {}
+        self.moved: dict[int, Kind] = {}
+        """The nodes whose kind changed since `settle`, with the kind they had."""
+        self.rest_on_edge: dict[int, list[Reason]] = {}
+        self.rest_on_node: dict[int, list[Reason]] = {}
+        self._order = count()
+        self.spellings: dict[datatypes.Value, list[int]] = {}
+        self.is_mixed = False
+        """Whether a literal without a known value was ever the same as another: all spellings matter then."""
+        self.fresh: list[int] = []
+        self.dirty: dict[int, None] = {}
+        for term in schema.nominals:
+            if not is_literal(term):
+                self.dirty[self.store.node(term)] = None  # the schema alone may say what they are and have
+
+    def members(self, node: int) -> list[int]:
+        """All nodes that are the same as one, itself included."""
+        equals = self.equals.get(node)
+        return [node] if equals is None else equals.members
+
+    def is_same(self, one: int, other: int) -> bool:
+        """Whether two nodes are the same individual or value."""
+        if one == other:
             return True
-        self.fresh.append(store.add(subject, predicate, object_, ASSERTED))
-        return True
+        equals = self.equals.get(one)
+        if equals is not None and equals is self.equals.get(other):
+            return True
+        return self.value(one) is not None and self.value(one) == self.value(other)
 
-    def run(self) -> None:
-        """Draw all conclusions. Raises Clash at the first contradiction."""
-        fresh, dirty = self.fresh, self.dirty
-        node = edge = NONE
-        try:
-            while fresh or dirty:
-                node = edge = NONE
-                if dirty:
-                    node, _ = dirty.popitem()
-                    self._spread(node)
-                else:
-                    edge = fresh.pop()
-                    self._look_at(edge)
-        except (Clash, NotCompilable):
-            if node == NONE:
-                fresh.append(edge)
-            else:
-                dirty[node] = None
-            raise
+    def named(self, node: int, term: Term) -> int | None:
+        """Which of those that are the same as a node a term names, a literal also in another spelling."""
+        found, members = self.store.find(term), self.members(node)
+        if found is not None and found in members:
+            return found
+        value = datatypes.value(term) if is_literal(term) else None
+        return None if value is None else next((m for m in members if self.value(m) == value), None)
 
-    def _first_use(self, term: Term, number: Callable[[Term], int]) -> int:
-        """A class or property that the schema does not mention."""
-        node = self.store.find(term)
-        if node is not None and node in self.equals:
-            raise NotCompilable(f"{term} is the same as another class or property")
-        return number(term)
+    def is_literal(self, node: int) -> bool:
+        """Whether a node is a literal."""
+        return self.store.kind[node].excluded is not None
 
-    def _give(self, node: int, cls: int) -> bool:
-        kind = self.store.kind[node]
-        if cls in kind.given:
-            return False
-        wider = self.kinds.give(kind, cls)
-        self.set(node, wider)
-        if wider.mask != kind.mask:
-            self._widen(node, wider.mask)
-            if wider.clash or wider.values or not self.store.is_bare(node):
-                self.dirty[node] = None
-        return True
+    def value(self, node: int) -> datatypes.Value | None:
+        """The value of a literal; None for an individual."""
+        if not self.is_literal(node):
+            return None
+        return datatypes.value(self.store.terms[node])
 
-    def _spread(self, node: int) -> None:
-        """A node's kind grew: what that says of the node itself and of its neighbours."""
-        kind = self.store.kind[node]
-        if kind.clash and not (self.is_literal(node) and self.store.is_bare(node)):
-            one, other = kind.clash
-            raise Clash(Member(node, one), Member(node, other))
-        self.add_values(node)
-        for side in (self.store.out, self.store.into):
-            for edge in side.all(node):
-                if self.store.predicate[edge] > DIFFERENT:
-                    self._step(edge)
-
-    def add_values(self, node: int) -> None:
-        """Add the edges that a node's classes come with (cls-hv1)."""
-        is_new = self.store.is_bare(node) and node not in self.equals
-        for predicate, term in self.store.kind[node].values:
-            value = self.store.node(term)
-            if is_new or self.find(node, (predicate, False), value) == NONE:
-                self.fresh.append(self.store.add(node, predicate, value, VALUE))
-
-    def _look_at(self, edge: int) -> None:
-        """A new edge: all rules that it may take part in."""
+    def related(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
+        """The edges that a role follows from a node: (edge, its end here, its end there)."""
         store = self.store
-        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
-        if p == NONE:
+        if group.is_wide:
+            yield from self._among_all(node, group)
             return
-        if p == SAME:
-            self._join(s, o, Edge(edge))
-            return
-        if p == DIFFERENT:
-            if self.is_same(s, o):
-                raise Clash(Edge(edge), Same(s, o))
-            return
-        if self.is_mixed and self.is_literal(o):
-            self._meet(o)
-        rules = self._step(edge).rules
-        if rules is None or (rules.of_values and s not in self.equals and store.out.is_alone(edge)):
-            return
-        self._apply(rules, edge, s, o)
+        for member in self.members(node):
+            for p in group.out:
+                for edge in store.out.of(member, p):
+                    yield edge, member, store.object[edge]
+            for p in group.into:
+                for edge in store.into.of(member, p):
+                    yield edge, member, store.subject[edge]
 
-    def _step(self, edge: int) -> Step:
-        store = self.store
-        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
-        subject, object_ = store.kind[s], store.kind[o]
-        step = self.steps.known.get((p, subject, object_)) or self.steps.step(p, subject, object_)
-        if step.subject is not subject:
-            self._widen(s, step.subject.mask)
-        if step.object is not object_:
-            self._widen(o, step.object.mask)
-        if step.special and not (step.of_values and s not in self.equals and store.out.is_alone(edge)):
-            self._check(step, edge, s, o)
-        return step
+    def _among_all(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
+        store, out, into = self.store, frozenset(group.out), frozenset(group.into)
+        predicate = store.predicate
+        for member in self.members(node):
+            for edge in store.out.all(member):
+                if predicate[edge] in out:
+                    yield edge, member, store.object[edge]
+            for edge in store.into.all(member):
+                if predicate[edge] in into:
+                    yield edge, member, store.subject[edge]
+
+    def reached(self, node: int, role: Role) -> dict[int, tuple[int, int, int]]:
+        """Who is reached from a node by one step of a role or more: the last edge, and its ends.
+
+        Of those that are the same, the first of their `members` stands for all.
+        """
+        group, found = self.steps.group(role), dict[int, tuple[int, int, int]]()
+        pending = [node]
+        for here in pending:
+            for edge, start, end in self.related(here, group):
+                if (one := self.members(end)[0]) not in found:
+                    found[one] = (edge, start, end)
+                    pending.append(end)
+        return found
+
+    def find(self, one: int, role: Role, other: int) -> int:
+        """An edge that implies a role between two nodes or their equals, or NONE."""
+        group, store = self.steps.group(role), self.store
+        if group.is_wide or len(self.members(one)) * len(self.members(other)) > MANY:
+            there = self.related(other, Group(group.into, group.out))
+            for (edge, _, end), (back, _, start) in zip(self.related(one, group), there, strict=False):
+                if self.is_same(end, other):
+                    return edge
+                if self.is_same(start, one):
+                    return back
+            return NONE
+        for x in self.members(one):
+            for y in self.members(other):
+                for p in group.out:
+                    if (edge := store.edge(x, p, y)) != NONE:
+                        return edge
+                for p in group.into:
+                    if (edge := store.edge(y, p, x)) != NONE:
+                        return edge
+        return NONE
 
     def is_plain(self, edge: int) -> bool:
         """Whether nothing follows from an edge but the kinds that its ends have now."""
@@ -156,62 +165,54 @@ class ABox(Equality):
             return of_values and store.out.is_alone(edge)
         return True
 
-    def _check(self, step: Step, edge: int, s: int, o: int) -> None:
-        """The parts of a step that are about more than one edge, or that clash."""
-        if self.store.kind[o].clash and self.is_literal(o):
-            self._clash_of_literal(edge, o)
-        if step.clash:
-            role, owner, filler = step.clash
-            x, y = (o, s) if role[1] else (s, o)
-            raise Clash(Edge(edge, role), *member(x, owner), *member(y, filler))
-        for at_subject, limit in step.limits:
-            self._limit(edge, *((s, o) if at_subject else (o, s)), limit)
-        for at_subject, key in step.keys:
-            self._identify(s if at_subject else o, key)
+    def bridges(self, edges: Iterable[int], *nodes: int) -> list[Claim]:
+        """That nodes and the ends of edges are the same, where they are and are not one node."""
+        store = self.store
+        ends = {node for edge in edges for node in (store.subject[edge], store.object[edge])}
+        pairs = combinations(sorted(ends.union(nodes)), 2)
+        return [Same(one, other) for one, other in pairs if self.equals and self.is_same(one, other)]
 
-    def _clash_of_literal(self, edge: int, node: int) -> None:
-        one, other = self.store.kind[node].clash or (0, 0)
-        if one < 0:
-            raise Clash(Edge(edge))
-        raise Clash(Member(node, one), Member(node, other))
+    def set(self, node: int, kind: Kind) -> None:
+        """Change the kind of a node."""
+        self.moved.setdefault(node, self.store.kind[node])
+        self.store.kind[node] = kind
 
-    def _apply(self, rules: EdgeRules, edge: int, s: int, o: int) -> None:
-        if rules.by_value and self.is_literal(o):
-            self._meet(o)
-        if rules.irreflexive and self.is_same(s, o):
-            raise Clash(Edge(edge, rules.irreflexive), Same(s, o))
-        for at_subject, limit in rules.limits:
-            self._limit(edge, *((s, o) if at_subject else (o, s)), limit)
-        for role, other in rules.exclusive:
-            found = self.find(s, other, o)
-            if found != NONE:
-                raise Clash(Edge(edge, role), Edge(found, other), *self.bridges((edge, found)))
-        for forwards, chain in rules.heads:
-            self._continue(edge, *((s, o) if forwards else (o, s)), chain)
-        for forwards, chain in rules.tails:
-            self._begin(edge, *((s, o) if forwards else (o, s)), chain)
+    def widen(self, node: int, mask: int) -> None:
+        """Add classes to a node and all that are the same."""
+        for member in self.members(node):
+            kind = self.store.kind[member]
+            wider = self.kinds.widen(kind, mask)
+            if wider is not kind:
+                self.set(member, wider)
+                self.dirty[member] = None
 
-    def _continue(self, edge: int, x: int, y: int, chain: Chain) -> None:
-        for other, end, z in list(self.related(y, self.steps.group((chain.second, False)))):
-            self.make_chain(chain, x, z, edge, other, *_same(y, end))
+    def conclude(
+        self, claims: tuple[Claim, ...], *, edge: int | None = None, link: tuple[int, int] | None = None
+    ) -> Reason:
+        """A new reason for an edge or a link, found again by what it rests on when that is deleted."""
+        reason = Reason(next(self._order), claims, edge=edge, link=link)
+        for claim in reason.claims:
+            if isinstance(claim, Edge):
+                rest = self.rest_on_edge.setdefault(claim.edge, [])
+            else:
+                node = claim.node if isinstance(claim, Member) else claim.one
+                rest = self.rest_on_node.setdefault(node, [])
+            if len(rest) >= MANY and len(rest) & (len(rest) - 1) == 0:
+                rest[:] = [other for other in rest if other.alive]
+            rest.append(reason)
+        return reason
 
-    def _begin(self, edge: int, y: int, z: int, chain: Chain) -> None:
-        for other, end, x in list(self.related(y, self.steps.group((chain.first, True)))):
-            self.make_chain(chain, x, z, other, edge, *_same(y, end))
+    def settle(self) -> None:
+        """File the individuals whose kind changed; to be called at the end of a transaction."""
+        for node, before in self.moved.items():
+            if before.excluded is None:
+                self.store.file(node, before, self.store.kind[node])
+        self.moved.clear()
 
-    def make_chain(self, chain: Chain, x: int, z: int, first: int, second: int, *same: Claim) -> None:
-        """Two edges, and what makes them meet, add a third (prp-spo2, prp-trp)."""
-        edges = Edge(first, (chain.first, False)), Edge(second, (chain.second, False))
-        self._derive(x, chain.result, z, *edges, *same)
-
-    def _derive(self, subject: int, predicate: int, object_: int, *claims: Claim) -> None:
-        """Add an edge that a rule makes, unless another one implies it."""
-        if self.is_literal(subject) or self.find(subject, (predicate, False), object_) != NONE:
-            return
-        edge = self.store.add(subject, predicate, object_, DERIVED)
-        self.reasons[edge] = self._remember(Reason(next(self._order), claims, edge=edge))
-        self.fresh.append(edge)
-
-
-def _same(one: int, other: int) -> tuple[Claim, ...]:
-    return () if one == other else (Same(one, other),)
+    def forget_spelling(self, literal: int) -> None:
+        """A literal that nothing has any more is no spelling of its value."""
+        value = self.value(literal)
+        if value in self.spellings:
+            self.spellings[value] = [other for other in self.spellings[value] if other != literal]
+            if not self.spellings[value]:
+                del self.spellings[value]

@@ -9,9 +9,9 @@ from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import ASSERTED
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
-from schemas.explanations import Term, Triple
 
 
 class View:

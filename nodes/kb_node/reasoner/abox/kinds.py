@@ -7,9 +7,9 @@ from array import array
 from collections.abc import Iterable, Iterator
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.explanations import Term
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.terms import iri
-from schemas.explanations import Term
 
 _FLOATING = (iri("xsd:float"), iri("xsd:double"))
 _NUMBER = re.compile(

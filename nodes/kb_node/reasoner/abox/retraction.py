@@ -9,21 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.abox import ABox, Equals
 from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.individuals import Equals
+from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.abox.store import ASSERTED, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Reason
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
 
 
 class Retraction:
-    """One batch of deletions; `run` of the ABox draws the conclusions anew."""
+    """One batch of deletions; `run` of the saturation draws the conclusions anew."""
 
-    def __init__(self, abox: ABox) -> None:
+    def __init__(self, abox: ABox, saturation: Saturation) -> None:
         self._abox = abox
+        self._saturation = saturation
         self._store = abox.store
         self._suspects: dict[int, None] = {}
         self._reset: set[int] = set()
@@ -187,7 +188,7 @@ class Retraction:
         abox = self._abox
         for node in (subject, object_):
             if self._store.kind[node].values:
-                abox.add_values(node)
+                self._saturation.add_values(node)
         for backwards, chain in abox.steps.made_by(predicate):
             self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
 
@@ -202,5 +203,5 @@ class Retraction:
             second, first = abox.find(after, onward, z), abox.find(before, back, x)
             for pair in ((one, second), (first, other)):
                 if NONE not in pair:
-                    abox.make_chain(chain, x, z, *pair, *abox.bridges(pair, x, z))
+                    self._saturation.make_chain(chain, x, z, *pair, *abox.bridges(pair, x, z))
                     return

@@ -12,9 +12,9 @@ from typing import Any, Final
 
 from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
 from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.explanations import Term
 from nodes.kb_node.reasoner.fastpaths.layout import Layout
 from nodes.kb_node.reasoner.terms import is_literal
-from schemas.explanations import Term
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""

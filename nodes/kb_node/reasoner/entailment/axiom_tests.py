@@ -8,8 +8,8 @@ from typing import Final
 
 from nodes.kb_node.reasoner.entailment.expressions import Expression, Named, Or, Reader, Role
 from nodes.kb_node.reasoner.entailment.prover import Prover
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, TYPE, iri
-from schemas.explanations import Term, Triple
 
 
 class Axioms:

@@ -32,6 +32,7 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     negated,
 )
 from nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import (
@@ -45,7 +46,6 @@ from nodes.kb_node.reasoner.terms import (
     is_named,
     is_reserved,
 )
-from schemas.explanations import Term, Triple
 
 _DEEPEST = 6
 """Expressions, definitions and case distinctions one inside the other."""

@@ -19,8 +19,8 @@ from nodes.kb_node.reasoner.entailment.expressions import (
     Unreadable,
     Writer,
 )
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, THING, TYPE, iri, is_literal
-from schemas.explanations import Term, Triple
 
 WIDEST = 24
 """Alternatives that are told apart; of more nothing is supposed, which is sound."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from nodes.kb_node.reasoner.explain.words import Verb, Words, article, is_uncountable
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
@@ -18,7 +19,6 @@ from nodes.kb_node.reasoner.terms import (
     is_named,
     literal,
 )
-from schemas.explanations import Term, Triple
 
 _BOUNDS: Final = (
     "owl:maxCardinality", "owl:maxQualifiedCardinality", "owl:cardinality", "owl:qualifiedCardinality",

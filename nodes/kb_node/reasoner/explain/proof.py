@@ -12,10 +12,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.explain.sentences import sentence
 from nodes.kb_node.reasoner.explain.words import Words
+from nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
-from schemas.explanations import Explanation, Step, Term, Triple
 
 _MOST = 2000
 """Shapes remembered."""

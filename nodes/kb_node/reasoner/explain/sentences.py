@@ -7,6 +7,7 @@ from typing import Final
 
 from nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
 from nodes.kb_node.reasoner.explain.words import Words, base_form
+from nodes.kb_node.reasoner.explanations import Step, Term, Triple
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     SAME_AS,
@@ -17,7 +18,6 @@ from nodes.kb_node.reasoner.terms import (
     is_named,
     literal,
 )
-from schemas.explanations import Step, Term, Triple
 
 _STRUCTURE: Final = frozenset(
     iris(

@@ -14,9 +14,9 @@ from nodes.kb_node.reasoner.abox.kinds import bits
 from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
 from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
 from nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import ANY, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri
-from schemas.explanations import Term, Triple
 
 _T = TypeVar("_T")
 _DEEPEST = 200

@@ -11,8 +11,8 @@ from itertools import chain, compress, repeat
 from typing import NamedTuple
 
 from nodes.kb_node.reasoner.abox.kinds import Kind
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Terms
-from schemas.explanations import Term, Triple
 
 _MANY = 16
 """Runs that are worth it."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.explain.proof import Proof
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
 from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
-from schemas.explanations import Explanation, Term, Triple
 
 WorkOut = Callable[[Sequence[Triple]], None]
 """Inserts triples and draws all conclusions, by the rules."""
@@ -47,7 +47,7 @@ class PlainPaths:
 
 
 class FastPaths(PlainPaths):
-    """Shapes whose consequences are known, and changes that are plain at sight."""
+    """Shapes whose consequences are known, and changes that affect no other individual."""
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox

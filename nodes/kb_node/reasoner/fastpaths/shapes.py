@@ -15,12 +15,12 @@ from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import VALUE
 from nodes.kb_node.reasoner.explain.proof import Proof
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.batches import batches
 from nodes.kb_node.reasoner.fastpaths.layout import Layout
 from nodes.kb_node.reasoner.fastpaths.runs import Run, Runs, Shape
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Explanation, Term, Triple
 
 _MOST = 2000
 """Shapes remembered."""

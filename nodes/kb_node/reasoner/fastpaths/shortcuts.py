@@ -1,7 +1,7 @@
-"""Changes of which it is plain at sight that they concern nobody else.
+"""Fast paths for changes that affect no other individual.
 
-The two that robots ask for all day: a thing goes with all that was said of it, and a number becomes another.
-Whatever is not plain is left to `retraction.Retraction`.
+The two that robots ask for all day: a thing is removed with all that was said of it, and a number is
+replaced by another. Everything else is left to `retraction.Retraction`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Sequence, Set
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import TYPE
-from schemas.explanations import Term, Triple
 
 
 def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:

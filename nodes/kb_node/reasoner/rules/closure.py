@@ -13,11 +13,11 @@ from functools import cache
 from itertools import combinations
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.rules.facts import Facts, Reason
 from nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
 from nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
 from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
-from schemas.explanations import Term, Triple
 
 
 class Closure(Facts):

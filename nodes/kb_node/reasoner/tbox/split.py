@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Final
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.reasoner.terms import (
@@ -25,7 +26,6 @@ from nodes.kb_node.reasoner.terms import (
     is_literal,
     is_reserved,
 )  # fmt: skip
-from schemas.explanations import Term, Triple
 
 UNIVERSAL: Final = frozenset(iris("owl:topObjectProperty owl:topDataProperty"))
 """The properties that relate everything: a subproperty of theirs says nothing."""

@@ -20,7 +20,7 @@ _SPO: Final = ("subject", "predicate", "object")
 
 
 def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> SparqlResult:
-    """The answer over what is asserted or, with `inferred`, over that and what follows from it.
+    """The answer over what is asserted or, with `inferred`, over all that is so, asserted or not.
 
     Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
     """
@@ -29,7 +29,7 @@ def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> Sparq
         found = dataset.store.query(
             query,
             prefixes=known,
-            default_graph=[ASSERTED, INFERRED] if inferred else ASSERTED,
+            default_graph=[ASSERTED, INFERRED] if inferred else dataset.asserted_graphs(),
             named_graphs=[],
         )
         if isinstance(found, ox.QueryBoolean):

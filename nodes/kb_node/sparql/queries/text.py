@@ -50,19 +50,19 @@ def require_reading(query: str) -> str:
     form = next((word for word in words if word in _FORMS or word in _UPDATES), None)
     if form in _UPDATES:
         raise errors.Refused(
-            f"{form} is an update, and SPARQL only reads here; what changes the map is add, update, remove"
+            f"{form} is an update, and SPARQL is read-only here; to change the map use add, update or remove"
         )
     if form is None:
-        raise errors.BadRequest("the query is no SPARQL: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
+        raise errors.BadRequest("not a valid SPARQL query: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
     if beyond := next((word for word in words if word in _ELSEWHERE), None):
-        raise errors.Refused(f"{beyond} is refused: a query sees this map only, and nothing of the network")
+        raise errors.Refused(f"{beyond} is refused: a query can access only this map, not the network")
     return form
 
 
 def require_select(query: str) -> None:
     """Raises BadRequest for a query that has no rows to watch; Refused as `require_reading`."""
     if (form := require_reading(query)) != "SELECT":
-        raise errors.BadRequest(f"only a SELECT can be watched, and this is a query of form {form}")
+        raise errors.BadRequest(f"only a SELECT query can be watched, and this is a query of form {form}")
 
 
 def syntax_error(
@@ -71,10 +71,10 @@ def syntax_error(
     """What Oxigraph's parser says, without the grammar: the place and, where it can be told, the reason."""
     match = _FAULT.match(str(error))
     if match is None:
-        return errors.BadRequest(f"the query is no SPARQL: {' '.join(str(error).split())}")
+        return errors.BadRequest(f"not a valid SPARQL query: {' '.join(str(error).split())}")
     line, column, expected = int(match[1]), int(match[2]), match[3]
     reason = _reason(query, line, column, expected, prefixes)
-    return errors.BadRequest(f"the query is no SPARQL: line {line}, column {column}: {reason}")
+    return errors.BadRequest(f"not a valid SPARQL query: line {line}, column {column}: {reason}")
 
 
 def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixes) -> str:

@@ -99,7 +99,7 @@ class Lookout:
             self._looks.append(Look(self._admit(command), since=seq, seq=seq, number=number))
             return
         if command.watch not in self._standing:
-            raise errors.UnknownName(f"there is no standing query '{command.watch}' (any more)")
+            raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
         standing = self._standing[command.watch]
         if command.end:
             self._drop(standing)

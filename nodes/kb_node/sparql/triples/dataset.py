@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
@@ -21,6 +21,8 @@ from schemas.explanations import Term, Triple
 
 ASSERTED = ox.DefaultGraph()
 INFERRED = ox.NamedNode("urn:semmap:inferred")
+DENIED = ox.NamedNode("urn:semmap:denied")
+"""What is asserted of where things are and is not so."""
 _TYPE = v.bare(v.RDF_TYPE)
 
 
@@ -32,6 +34,10 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
     inserted: tuple[Triple, ...] = ()
     no_longer_inferred: tuple[Triple, ...] = ()
     newly_inferred: tuple[Triple, ...] = ()
+    denied: tuple[Triple, ...] = ()
+    """Asserted, but not so any more as things stand."""
+    undenied: tuple[Triple, ...] = ()
+    """So again, or not asserted any more."""
 
     @property
     def asserted(self) -> tuple[Triple, ...]:
@@ -40,15 +46,20 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
 
     @property
     def everything(self) -> tuple[Triple, ...]:
-        """What was asserted, retracted, or follows now or no longer."""
-        return self.asserted + self.no_longer_inferred + self.newly_inferred
+        """What was asserted, retracted, or follows or is denied now or no longer."""
+        return self.asserted + self.no_longer_inferred + self.newly_inferred + self.denied + self.undenied
 
 
 class Dataset:
-    """Two graphs without a triple in common, as they are after commit `seq`."""
+    """What is asserted, and what follows beside it, as they are after commit `seq`.
+
+    What is asserted but denied is in a third graph.
+    """
 
     settled = 0
     """Before that commit it is no map yet."""
+    denials = 0
+    """How much is denied."""
 
     def __init__(self, seq: int, asserted: Iterable[Triple], store: ox.Store | None = None) -> None:
         """`store` may hold others already."""
@@ -66,6 +77,8 @@ class Dataset:
 
     def apply(self, delta: Delta) -> None:
         """Go on to the commit after."""
+        self._shift(delta.undenied, DENIED, ASSERTED)
+        self.denials -= len(delta.undenied)
         for quad in quads(delta.retracted, ASSERTED):
             self._retract(quad)
         inserted = list(quads(delta.inserted, ASSERTED))
@@ -76,7 +89,27 @@ class Dataset:
         for quad in quads(delta.no_longer_inferred, INFERRED):
             self.store.remove(quad)
         self.store.extend(quads(delta.newly_inferred, INFERRED))
+        self.deny(delta.denied)
         self.seq = delta.seq
+
+    def deny(self, triples: Collection[Triple]) -> None:
+        """What is asserted is not so."""
+        self._shift(triples, ASSERTED, DENIED)
+        self.denials += len(triples)
+
+    def asserted_graphs(self) -> list[ox.NamedNode | ox.BlankNode | ox.DefaultGraph]:
+        """Where all that is asserted is: in one graph, for the queries' sake, while nothing is denied."""
+        return [ASSERTED, DENIED] if self.denials else [ASSERTED]
+
+    def _shift(
+        self,
+        triples: Iterable[Triple],
+        source: ox.NamedNode | ox.DefaultGraph,
+        target: ox.NamedNode | ox.DefaultGraph,
+    ) -> None:
+        for quad in quads(triples, source):
+            self.store.remove(quad)
+        self.store.extend(quads(triples, target))
 
     def _insert(self, quad: ox.Quad) -> None:
         """Insert one with a literal, unless it is asserted in another spelling already."""

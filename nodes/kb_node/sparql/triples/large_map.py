@@ -93,7 +93,7 @@ class LargeMap:
         try:
             path = self._stores.begin()
         except OSError as error:
-            future.set_exception(errors.Refused(f"the store of SPARQL cannot be made: {error.strerror}"))
+            future.set_exception(errors.Refused(f"the SPARQL store cannot be created: {error.strerror}"))
             return future
 
         def work() -> None:
@@ -102,7 +102,7 @@ class LargeMap:
                 self._soon(lambda: settle(future, lambda: self._finished(path, sent, found, seq, now())))
             except (OSError, ValueError) as error:
                 shutil.rmtree(path, ignore_errors=True)
-                refusal = errors.Refused(f"the store of SPARQL could not be made: {error}")
+                refusal = errors.Refused(f"the SPARQL store could not be created: {error}")
                 self._soon(lambda: future.set_exception(refusal))
 
         threading.Thread(target=work, name="sparql-filling", daemon=True).start()
@@ -131,11 +131,11 @@ class LargeMap:
     def _finished(self, path: Path, sent: int, found: int, seq: int, settled: int) -> Filled:
         if found < sent:
             shutil.rmtree(path, ignore_errors=True)
-            raise errors.Refused("some literals differ in nothing but how they are spelled")
+            raise errors.Refused("some literals differ only in spelling")
         try:
             return Filled(self._stores.finish(path, seq, self._journal.digest(seq)), seq, settled)
         except OSError as error:
-            raise errors.Refused(f"the store of SPARQL could not be kept: {error.strerror}") from None
+            raise errors.Refused(f"the SPARQL store could not be kept: {error.strerror}") from None
 
     def close(self) -> None:
         """Give up what is being made."""

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from nodes.extern.cli.output import show, show_past, tables
 from schemas.entities import BodyState, Entity, Pose, Provenance
+from schemas.relations import Described
 from schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
 
@@ -46,7 +47,7 @@ def system(*nodes):
 
 TABLES = {
     "entities": lambda: show.entity_table([entity("chair1"), entity("chair_in_the_corner_12")]),
-    "card": lambda: show.entity_card(entity("chair1")),
+    "card": lambda: show.entity_card(Described.of(entity("chair1"))),
     "history": lambda: show_past.history_table([commit(8), commit(1234)]),
     "status": lambda: show.status_table(system(node("kb_node"), node("perception_node", "09:12:01 no disk"))),
 }

@@ -56,7 +56,7 @@ def test_json_is_for_programs(tmp_path, capsys):
         (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "one frame"),
         (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
         (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
-        (["empty.pcd"], "it has no points"),
+        (["empty.pcd"], "contains no points"),
         ([], "FILE"),
     ],
 )

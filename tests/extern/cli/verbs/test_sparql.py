@@ -59,8 +59,8 @@ BAD = [
     (("sparql", CHAIRS, "--timeout", "-1"), 2, "timeout must be a number above 0"),
     (("sparql", CHAIRS, "--limit", "0"), 2, "limit must be a whole number from 1"),
     (("sparql", "@nowhere.rq"), 2, "there is no file nowhere.rq"),
-    (("watch", "--sparql", "ASK { ?s ?p ?o }"), 2, "only a SELECT can be watched"),
-    (("watch", "--sparql", "SELECT ?x {"), 2, "the query is no SPARQL"),
+    (("watch", "--sparql", "ASK { ?s ?p ?o }"), 2, "only a SELECT query can be watched"),
+    (("watch", "--sparql", "SELECT ?x {"), 2, "not a valid SPARQL query"),
 ]
 
 

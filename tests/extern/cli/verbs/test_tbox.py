@@ -24,7 +24,7 @@ def test_what_is_found_is_told(file, capsys):
     assert "ontology        http://o.org/o (http://o.org/o/1)\n" in said
     assert "holds           1 class" in said
     assert "missing         http://o.org/m (--import http://o.org/m=FILE says where it is)\n" in said
-    assert "consistent      yes, and there can be something of every class\n" in said
+    assert "consistent      yes, and every class is satisfiable\n" in said
     assert " ms (median)\n" in said
 
 

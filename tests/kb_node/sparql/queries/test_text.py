@@ -51,7 +51,7 @@ def test_what_is_no_query_is_bad(query):
 
 
 def test_only_a_select_is_watched():
-    with pytest.raises(errors.BadRequest, match=r"only a SELECT can be watched, and this is .* ASK"):
+    with pytest.raises(errors.BadRequest, match=r"only a SELECT query can be watched, and this is .* ASK"):
         text.require_select("ASK { ?s ?p ?o }")
 
 
@@ -73,6 +73,6 @@ def test_only_a_select_is_watched():
 def test_a_syntax_error_has_a_place_and_a_reason(query, said):
     with pytest.raises(errors.BadRequest) as error:
         answer(query, Dataset(0, ()), inferred=False, limit=10)
-    assert error.value.text.startswith("the query is no SPARQL: ")
+    assert error.value.text.startswith("not a valid SPARQL query: ")
     assert said in error.value.text
     assert "\n" not in error.value.text

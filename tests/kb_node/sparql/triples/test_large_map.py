@@ -8,6 +8,7 @@ import pytest
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql import worker
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.triples.dataset import Delta
 from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import seed
@@ -212,8 +213,8 @@ def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
     (path,) = stores(node)
     kept = dataset(path, node.map.seq, node.map.seq)
     commit = node.commit("more", chair("more"))
-    kept.apply(worker.Delta(seq=commit.seq, inserted=commit.inserted))
-    kept.renew([worker.Delta(seq=commit.seq, inserted=commit.inserted)])
+    kept.apply(Delta(seq=commit.seq, inserted=commit.inserted))
+    kept.renew([Delta(seq=commit.seq, inserted=commit.inserted)])
     opened = kept.opened()
     assert opened.seq == commit.seq
     triple = commit.inserted[0]

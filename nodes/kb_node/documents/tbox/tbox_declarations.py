@@ -91,7 +91,9 @@ class _ClassFinder:
         try:
             name = self._index.find(word)
         except Ambiguous as error:
-            raise errors.UnknownClass(f"--spatial-root {word} may be {error}; say which class") from None
+            raise errors.UnknownClass(
+                f"--spatial-root {word} is ambiguous: {error}; say which class"
+            ) from None
         if name is None:
             hint = self._index.did_you_mean(word)
             raise errors.UnknownClass(f"--spatial-root {word}: the TBox has no such class{hint}")

@@ -2,8 +2,9 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf, tbox_notes
-from nodes.kb_node.documents.tbox_declarations import declared, keeping_roots
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_notes
+from nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
@@ -103,7 +104,7 @@ def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
     reasoner.apply(insert=triples(COLOR))
     note = tbox_notes.set_aside(tbox)
     assert note.startswith(
-        "set aside, because no map could be kept with it: ColorRegion subClassOf PhysicalAtt"
+        "ignored, because no map could be kept with it: ColorRegion subClassOf PhysicalAtt"
     )
     assert declared(tbox) == tbox
     assert tbox_notes.set_aside(triples()) == ""

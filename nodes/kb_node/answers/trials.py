@@ -7,7 +7,7 @@ from itertools import islice
 
 from msgspec import structs
 
-from nodes.kb_node.answers import worth_saying
+from nodes.kb_node.answers.answers import worth_saying
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
 from schemas.commits import Commit, Effects, Trial

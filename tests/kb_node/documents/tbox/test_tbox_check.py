@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from nodes.kb_node.documents.tbox_check import check
+from nodes.kb_node.documents.tbox.tbox_check import check
 from ontology import HOUSEHOLD_TTL
 from schemas import errors
 from tests.data import data_folder
@@ -87,7 +87,7 @@ def test_an_ontology_of_nothing_but_unsatisfiable_classes_has_no_quickness_to_me
 
 def test_what_cannot_be_read_is_told(tmp_path):
     (tmp_path / "bad.ttl").write_text("\n\n:a")
-    with pytest.raises(errors.BadFile, match=r"bad.ttl is no valid Turtle: .*line 3"):
+    with pytest.raises(errors.BadFile, match=r"bad.ttl is not valid Turtle: .*line 3"):
         check([tmp_path / "bad.ttl"], {})
 
 

@@ -37,11 +37,11 @@ def missing(imports: tuple[str, ...]) -> str:
     if not imports:
         return ""
     few = " and ".join(filter(None, (", ".join(imports[:_FEW]), _more(len(imports) - _FEW))))
-    return f"{_count(len(imports), 'import')} not found, and the TBox holds without: {few}"
+    return f"{_count(len(imports), 'import')} not found; the TBox is used without: {few}"
 
 
 def not_in_space(classes: ClassTable) -> str:
-    """What it means that no class is known to be spatial."""
+    """What follows from the TBox having no spatial class."""
     if classes.spatial:
         return ""
     return (
@@ -57,7 +57,7 @@ def set_aside(tbox: Iterable[Triple]) -> str:
         what, _, why = text.partition(": ")
         reasons.setdefault(why, []).append(f"{s} {what}")
     said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
-    return said and f"set aside, because no map could be kept with it: {said}"
+    return said and f"ignored, because no map could be kept with it: {said}"
 
 
 def beyond(kinds: Counter[str]) -> str:
@@ -65,11 +65,11 @@ def beyond(kinds: Counter[str]) -> str:
     if not kinds:
         return ""
     most = sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))[:_FEW]
-    few = ", ".join(f"{count} {kind}" for kind, count in most)
+    few = ", ".join(f"{count} x {kind}" for kind, count in most)
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
-    axioms = "1 axiom says" if kinds.total() == 1 else f"{kinds.total()} axioms say"
-    return f"{axioms} more than OWL 2 RL can, and that part has no effect ({few})"
+    axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
+    return f"{axioms} beyond OWL 2 RL, and that part has no effect ({few})"
 
 
 def slow(reasoner: Reasoner) -> str:

@@ -7,11 +7,13 @@ from collections.abc import Iterable, Iterator
 from types import MappingProxyType
 from typing import NamedTuple
 
-from nodes.kb_node import asked_terms
+from nodes.kb_node import proofs
+from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.relations import said
+from nodes.kb_node.relations.facts import Fact
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -46,7 +48,7 @@ def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
     )
 
 
-def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[said.Fact]:
+def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[Fact]:
     """What is asserted of where an entity is, or all entities are."""
     iri = None if entity is None else v.iri(entity.iri)
     for property_, (_, is_inverse) in said.PROPERTIES.items():
@@ -104,7 +106,7 @@ def check(triples: Iterable[Triple], engine: str) -> Checked:
         try:
             Reasoner(triples, scattered=True)
         except Inconsistent as error:
-            explanation = error.explanation
+            explanation = proofs.message(error.explanation)
         reason = explanation.text if explanation else ""
     return Checked(
         consistent=not reason,

@@ -2,7 +2,8 @@
 
 import pytest
 
-from nodes.kb_node.documents import rdf, tbox_validation
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.storage.history import Past
 from ontology import vocabulary as v
 from schemas import errors
@@ -102,10 +103,10 @@ REFUSED = {
         tbox_validation.DoesNotFit,
         "the map does not fit the TBox: unknown class 'Kitchen' \\(of kitchen1\\)",
     ),
-    "no thing in space": (
+    "a spatial class lost": (
         TBOX_TURTLE.replace("dm:Chair a owl:Class ; rdfs:subClassOf dm:Seat", "dm:Chair a owl:Class"),
         tbox_validation.DoesNotFit,
-        "chair. would be no thing in space any more, because it does not say that Chair is a class of such",
+        "chair. would lose its spatial class, because the TBox does not say that Chair is spatial",
     ),
     "inconsistent map": (
         TBOX_TURTLE + "dm:Chair owl:disjointWith dm:Seat .",

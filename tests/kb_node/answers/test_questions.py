@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node import questions
+from nodes.kb_node.answers import questions
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from ontology import vocabulary as v

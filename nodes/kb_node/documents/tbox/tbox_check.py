@@ -9,9 +9,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from nodes.kb_node.documents import ontology_files, tbox_declarations
+from nodes.kb_node.documents import ontology_files
 from nodes.kb_node.documents.abox_document import is_built_in
 from nodes.kb_node.documents.ontology_files import VERSION, Gathered
+from nodes.kb_node.documents.tbox import tbox_declarations
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.profile import outside_rl

@@ -1,6 +1,7 @@
 import re
 
-from nodes.kb_node.documents import rdf, tbox_notes
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from tests.kb_node import home
@@ -18,11 +19,11 @@ def test_of_a_plain_tbox_nothing_is_to_be_said():
 
 def test_missing_imports_are_named():
     assert notes("<urn:o> a owl:Ontology ; owl:imports <urn:p> , <urn:o> .") == (
-        "1 import was not found, and the TBox holds without: urn:p",
+        "1 import was not found; the TBox is used without: urn:p",
     )
     many = " , ".join(f"<urn:p{i}>" for i in range(7))
     assert notes(f"<urn:o> owl:imports {many} .") == (
-        "7 imports were not found, and the TBox holds without:"
+        "7 imports were not found; the TBox is used without:"
         " urn:p0, urn:p1, urn:p2, urn:p3, urn:p4 and 2 more",
     )
 
@@ -30,12 +31,12 @@ def test_missing_imports_are_named():
 def test_what_is_outside_owl_2_rl_is_counted():
     some = "[ a owl:Restriction ; owl:onProperty dm:hasSize ; owl:someValuesFrom dm:Chair ]"
     assert notes(f"dm:Chair rdfs:subClassOf {some} .") == (
-        "1 axiom says more than OWL 2 RL can, and that part has no effect"
-        " (1 existential restriction as a superclass)",
+        "1 axiom goes beyond OWL 2 RL, and that part has no effect"
+        " (1 x existential restriction as a superclass)",
     )
     (said,) = notes(f"dm:Chair rdfs:subClassOf {some} , {some} . dm:near a owl:ReflexiveProperty .")
-    assert said.startswith("3 axioms say more than OWL 2 RL can, and that part has no effect (2 existential")
-    assert said.endswith("1 reflexive property)")
+    assert said.startswith("3 axioms go beyond OWL 2 RL, and that part has no effect (2 x existential")
+    assert said.endswith("1 x reflexive property)")
 
 
 def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():

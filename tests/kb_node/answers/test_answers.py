@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node import answers
+from nodes.kb_node.answers import answers
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.abox_document import sort_out
 from nodes.kb_node.reasoner.rules.general import GeneralEngine

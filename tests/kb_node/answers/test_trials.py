@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.kb_node import trials
-from nodes.kb_node.documents import tbox_validation
+from nodes.kb_node.answers import trials
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.undo import undo
 from ontology import vocabulary as v
 from schemas import errors

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import NamedTuple
 
-from nodes.kb_node import asked_terms
-from nodes.kb_node.asked_terms import RELATIONS
+from nodes.kb_node import proofs
+from nodes.kb_node.answers import asked_terms
+from nodes.kb_node.answers.asked_terms import RELATIONS
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.explain.sentences import said
 from nodes.kb_node.reasoner.refutation import refute, why_different
@@ -57,7 +58,8 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
 
 def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
     """Why it holds by the rules; None if it does not."""
-    return next(filter(None, map(reasoner.explain, asked.triples)), None)
+    found = next(filter(None, map(reasoner.explain, asked.triples)), None)
+    return None if found is None else proofs.message(found)
 
 
 def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
@@ -70,20 +72,22 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     first = asked.triples[0]
     clause = said(first, reasoner.words)
     if asked.negated:
-        if (found := refute(reasoner, first, anew=anew)) is not None:
-            return found
+        if (denied := refute(reasoner, first, anew=anew)) is not None:
+            return proofs.message(denied)
         holds = reasoner.explain(first)
         raise errors.Refused(
             f"it does hold: {holds.text}"
             if holds
             else f"it is not known that {clause}, but nothing excludes it"
         )
-    if (found := why(reasoner, asked) or why_different(reasoner, first, anew=anew)) is not None:
+    if (found := why(reasoner, asked)) is not None:
         return found
+    if (different := why_different(reasoner, first, anew=anew)) is not None:
+        return proofs.message(different)
     excluded = refute(reasoner, first, anew=anew)
     if excluded is None:
         raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
-    raise errors.Refused(f"it does not hold: {excluded.text}", explanation=excluded)
+    raise errors.Refused(f"it does not hold: {excluded.text}", explanation=proofs.message(excluded))
 
 
 def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
@@ -97,7 +101,7 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
     if reasoner.holds(triple):
         return Possible(possible=True, text=f"yes: {clause} already")
     if (excluded := refute(reasoner, triple, anew=anew)) is not None:
-        return Possible(possible=False, text=f"no: {excluded.text}", explanation=excluded)
+        return Possible(possible=False, text=f"no: {excluded.text}", explanation=proofs.message(excluded))
     text = f"yes: nothing excludes that {clause}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from nodes.kb_node import proofs
 from nodes.kb_node.documents import abox_document, ontology_files
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -22,9 +23,7 @@ def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
     try:
         reasoner = Reasoner(tbox)
     except Inconsistent as error:
-        raise errors.Inconsistent(
-            f"{what} is inconsistent: {error.explanation.text}", explanation=error.explanation
-        ) from None
+        raise proofs.refusal(error, of=what) from None
     if not ClassTable(reasoner).names:
         raise errors.BadFile(f"{name or what} has no class: is it a TBox (an OWL ontology with classes)?")
     return reasoner
@@ -42,8 +41,8 @@ def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -
     lost = [(s, o) for s, o in types if o in before.spatial and s not in spatial]
     for individual, c in lost:
         raise DoesNotFit(
-            f"the map does not fit the TBox: {v.local_name(individual)} would be no thing in space any more,"
-            f" because it does not say that {v.local_name(c)} is a class of such"
+            f"the map does not fit the TBox: {v.local_name(individual)} would lose its spatial class,"
+            f" because the TBox does not say that {v.local_name(c)} is spatial"
         )
 
 

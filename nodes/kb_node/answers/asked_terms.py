@@ -31,7 +31,7 @@ def class_(semantic_map: SemanticMap, word: str) -> Term:
     try:
         name = classes.index.find(word)
     except Ambiguous as error:
-        raise errors.UnknownClass(f"'{word}' may be {error}; say which class") from None
+        raise errors.UnknownClass(f"'{word}' is ambiguous: {error}; say which class") from None
     if name is None:
         raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
     return classes.iris[name]
@@ -65,7 +65,7 @@ def individual(semantic_map: SemanticMap, word: str) -> Term:
         there = reasoner.mentioned({v.iri(namespace + word) for namespace in namespaces.values()})
         if len(there) > 1:
             names = sorted(prefixes.prefixed(term, namespaces) for term in there)
-            raise errors.BadRequest(f"'{word}' may be {errors.enumerated(names)}; say which")
+            raise errors.BadRequest(f"'{word}' is ambiguous: {errors.enumerated(names)}; say which")
         if there:
             return there.pop()
     return v.iri(semantic_map.entity(word).iri)

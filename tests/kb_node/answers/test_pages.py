@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node.pages import Pages
+from nodes.kb_node.answers.pages import Pages
 from schemas.bridge import SnapshotQuery
 from tests.kb_node.home import chair, close, new_map, transaction
 

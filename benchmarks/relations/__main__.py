@@ -1,0 +1,60 @@
+"""`python -m benchmarks.relations [--scenes N] [--pairs N] [--sizes N ...] [--json FILE]`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from benchmarks.relations import rightness, speed
+from benchmarks.table import Row, lines
+
+
+def rows(scenes: int, pairs: int, sizes: list[int]) -> list[Row]:
+    """All figures."""
+    on = rightness.on_against_contacts(scenes)
+    inside = rightness.inside_against_samples(pairs)
+    flat = rightness.flat()
+    moves = {size: speed.move_ms(size) for size in sizes}
+    return [
+        Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),
+        Row(f"isInside against sampled points, {pairs} pairs: F1", inside.f1, "", 0.97, 0.99, more=True),
+        Row("the flat: said by hand and computed", 1 - len(flat.missing) / flat.said, "", 1, 1, more=True),
+        Row("the flat: computed beyond what was said", len(flat.extra), "facts", 0, 0),
+        *(Row(f"relations after a move, {size}, p50", ms, "ms", 0.15, 0.08) for size, ms in moves.items()),
+        Row(
+            f"relations after a move, {max(sizes)} against {min(sizes)}",
+            moves[max(sizes)] / moves[min(sizes)],
+            "times",
+            1.5,
+            1.5,
+        ),
+        Row("all relations of 50 bodies from nothing", speed.from_nothing_ms(50), "ms", 20, 5),
+    ]
+
+
+def main() -> None:
+    """Measure, print a table, write JSON."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.relations", description="Spatial relations.")
+    parser.add_argument("--scenes", type=int, default=200, help="random settled scenes")
+    parser.add_argument("--pairs", type=int, default=2000, help="of a container and a thing")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[500, 10_000, 100_000], help="entities")
+    parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
+    words = parser.parse_args()
+    found = rows(words.scenes, words.pairs, words.sizes)
+    print(lines(found))
+    if words.json_file is not None:
+        words.json_file.write_text(json.dumps([as_json(row) for row in found], indent=1) + "\n")
+
+
+def as_json(row: Row) -> dict[str, object]:
+    """A row as other programs read it."""
+    better = "higher" if row.more else "lower"
+    return {
+        "what": row.what, "value": row.value, "unit": row.unit, "reach": row.reach, "aim": row.aim,
+        "better": better,
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,128 @@
+"""How often the relations are right: against contact forces, sampled points, and what a person wrote down."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.relations.settled import settled_scene
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.entities import entity_reading
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.facts import Facts
+from nodes.kb_node.relations.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.solids import Solid, solid_of
+from nodes.kb_node.relations.thresholds import Thresholds
+from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import vocabulary as v
+from ontology.model_shapes import shapes
+from schemas.entities import Entity, Pose, Provenance
+
+_NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
+_SAMPLES = 4000
+
+
+class Counts(NamedTuple):
+    """Found and true, found only, true only."""
+
+    right: int
+    extra: int
+    missing: int
+
+    @property
+    def f1(self) -> float:
+        """The harmonic mean of precision and recall."""
+        return 2 * self.right / max(1, 2 * self.right + self.extra + self.missing)
+
+    @classmethod
+    def of(cls, found: set[tuple[str, str]], true: set[tuple[str, str]]) -> Counts:
+        """Of two sets of pairs."""
+        return cls(len(found & true), len(found - true), len(true - found))
+
+    @classmethod
+    def together(cls, counts: Iterable[Counts]) -> Counts:
+        """The sums."""
+        return cls(*map(sum, zip(*counts, strict=True)))
+
+
+def on_against_contacts(scenes: int) -> Counts:
+    """`isOn` against resting contacts in random settled scenes."""
+    return Counts.together(_on_in_scene(seed) for seed in range(scenes))
+
+
+def _on_in_scene(seed: int) -> Counts:
+    scene = settled_scene(seed)
+    facts = Facts()
+    facts.update(scene.entities)
+    found = {(upper, lower) for upper, relation, lower in facts if relation in ("isOn", "isInside")}
+    return Counts.of(found, scene.on)
+
+
+def inside_against_samples(pairs: int) -> Counts:
+    """`isInside` against many random points of a thing: whether half of them are in a hollow of another."""
+    rng = random.Random(3)
+    points = np.random.default_rng(3)
+    hollow = sorted(name for name, shape in shapes().items() if shape.interiors)
+    found, true = set(), set()
+    for number in range(pairs):
+        outer = _solid(f"outer{number}", rng.choice(hollow), (0.0, 0.0, 0.0))
+        x, y, z = outer.size
+        at = (rng.uniform(-x, x) / 2, rng.uniform(-y, y) / 2, rng.uniform(0.0, z))
+        inner = _solid(f"inner{number}", None, at, tuple(rng.uniform(0.1, 0.6) * s for s in outer.size))
+        pair = (inner.name, outer.name)
+        made = measures.inside(inner, outer, Thresholds())
+        if made is not None and made.holds:
+            found.add(pair)
+        own = points.uniform((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), (_SAMPLES, 3)) * inner.size + at
+        share = max(np.all((own >= h.low) & (own <= h.high), axis=1).mean() for h in outer.hollows)
+        if share >= 0.5:
+            true.add(pair)
+    return Counts.of(found, true)
+
+
+def _solid(name: str, model: str | None, at: tuple[float, float, float], size: object = None) -> Solid:
+    entity = Entity(
+        name=name, class_="", iri=f"urn:{name}", types=(), pose=Pose(position_m=at), size_m=size,  # type: ignore[arg-type]
+        model=model or "", provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
+        reference_provenance=_NOBODY,
+    )  # fmt: skip
+    solid = solid_of(entity)
+    assert solid is not None
+    return solid
+
+
+class Flat(NamedTuple):
+    """What was said of the flat by hand: how much, what is not computed, and what is beyond."""
+
+    said: int
+    missing: list[tuple[str, str, str]]
+    extra: list[tuple[str, str, str]]
+
+
+def flat() -> Flat:
+    """The flat's own file against what is computed; beyond is what does not follow from the file either."""
+    files = (HOUSEHOLD_TTL, FLAT_TTL)
+    triples = [t for f in files for t in rdf.parse(f.read_bytes(), f.name, label_prefix=f.stem)]
+    reasoner = Reasoner(triples)
+    classes = ClassTable(reasoner)
+    individuals = {
+        s for s, p, _ in triples if p == v.RDF_TYPE and not reasoner.types(s).isdisjoint(classes.spatial)
+    }
+    entities = [entity_reading.read_entity(reasoner, classes, s, _NOBODY) for s in individuals]
+    facts = Facts()
+    facts.update(filter(None, entities))
+    computed = set(facts)
+    said = {
+        fact
+        for t in triples
+        if t[1] in PROPERTIES and (fact := fact_of(t)) is not None and t[0].startswith("<")
+    }
+    known = {entity.name: v.iri(entity.iri) for entity in entities if entity is not None}
+    said = {fact for fact in said if fact[0] in known and fact[2] in known}
+    extra = [f for f in computed - said if not reasoner.holds((known[f[0]], v.dm(f[1]), known[f[2]]))]
+    return Flat(len(said), sorted(said - computed), sorted(extra))

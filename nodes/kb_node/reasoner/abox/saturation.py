@@ -1,0 +1,207 @@
+"""Saturation: forward from what was inserted until nothing more follows or something clashes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.equality import Equality
+from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
+from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED, VALUE
+from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
+from nodes.kb_node.reasoner.explanations import Term, Triple
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
+from nodes.kb_node.reasoner.terms import TYPE
+
+
+class Saturation:
+    """The rules at work on an ABox: `insert` asserts, `run` concludes.
+
+    A Clash leaves the agenda as it was, so that the caller can undo its changes and `run` again.
+    """
+
+    def __init__(self, abox: ABox) -> None:
+        self._abox = abox
+        self._equality = Equality(abox)
+        self._store = abox.store
+        self._steps = abox.steps
+
+    def insert(self, triple: Triple) -> bool:
+        """Assert a triple; whether it is new. Conclusions come with `run`."""
+        s, p, o = triple
+        store, schema = self._store, self._abox.schema
+        subject = store.numbers.get(s)
+        if subject is None:
+            subject = store.node(s)
+        if p == TYPE:
+            cls = schema.find_class(o)
+            return self._give(subject, self._first_use(o, schema.cls) if cls is None else cls)
+        object_ = store.numbers.get(o)
+        if object_ is None:
+            object_ = store.node(o)
+        predicate = schema.find_property(p)
+        if predicate is None:
+            predicate = self._first_use(p, schema.property)
+        edge = store.edge(subject, predicate, object_)
+        if edge != NONE:
+            if store.source[edge] == ASSERTED:
+                return False
+            store.source[edge] = ASSERTED
+            if reason := self._abox.reasons.pop(edge, None):
+                reason.alive = False
+            return True
+        self._abox.fresh.append(store.add(subject, predicate, object_, ASSERTED))
+        return True
+
+    def run(self) -> None:
+        """Draw all conclusions. Raises Clash at the first contradiction."""
+        fresh, dirty = self._abox.fresh, self._abox.dirty
+        node = edge = NONE
+        try:
+            while fresh or dirty:
+                node = edge = NONE
+                if dirty:
+                    node, _ = dirty.popitem()
+                    self._spread(node)
+                else:
+                    edge = fresh.pop()
+                    self._look_at(edge)
+        except (Clash, NotCompilable):
+            if node == NONE:
+                fresh.append(edge)
+            else:
+                dirty[node] = None
+            raise
+
+    def _first_use(self, term: Term, number: Callable[[Term], int]) -> int:
+        """A class or property that the schema does not mention."""
+        node = self._store.find(term)
+        if node is not None and node in self._abox.equals:
+            raise NotCompilable(f"{term} is the same as another class or property")
+        return number(term)
+
+    def _give(self, node: int, cls: int) -> bool:
+        kind = self._store.kind[node]
+        if cls in kind.given:
+            return False
+        wider = self._abox.kinds.give(kind, cls)
+        self._abox.set(node, wider)
+        if wider.mask != kind.mask:
+            self._abox.widen(node, wider.mask)
+            if wider.clash or wider.values or not self._store.is_bare(node):
+                self._abox.dirty[node] = None
+        return True
+
+    def _spread(self, node: int) -> None:
+        """A node's kind grew: what that says of the node itself and of its neighbours."""
+        kind = self._store.kind[node]
+        if kind.clash and not (self._abox.is_literal(node) and self._store.is_bare(node)):
+            one, other = kind.clash
+            raise Clash(Member(node, one), Member(node, other))
+        self.add_values(node)
+        for side in (self._store.out, self._store.into):
+            for edge in side.all(node):
+                if self._store.predicate[edge] > DIFFERENT:
+                    self._step(edge)
+
+    def add_values(self, node: int) -> None:
+        """Add the edges that a node's classes come with (cls-hv1)."""
+        is_new = self._store.is_bare(node) and node not in self._abox.equals
+        for predicate, term in self._store.kind[node].values:
+            value = self._store.node(term)
+            if is_new or self._abox.find(node, (predicate, False), value) == NONE:
+                self._abox.fresh.append(self._store.add(node, predicate, value, VALUE))
+
+    def _look_at(self, edge: int) -> None:
+        """A new edge: all rules that it may take part in."""
+        store = self._store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        if p == NONE:
+            return
+        if p == SAME:
+            self._equality.join(s, o, Edge(edge))
+            return
+        if p == DIFFERENT:
+            if self._abox.is_same(s, o):
+                raise Clash(Edge(edge), Same(s, o))
+            return
+        if self._abox.is_mixed and self._abox.is_literal(o):
+            self._equality.meet(o)
+        rules = self._step(edge).rules
+        if rules is None or (rules.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+            return
+        self._apply(rules, edge, s, o)
+
+    def _step(self, edge: int) -> Step:
+        store = self._store
+        s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
+        subject, object_ = store.kind[s], store.kind[o]
+        step = self._steps.known.get((p, subject, object_)) or self._steps.step(p, subject, object_)
+        if step.subject is not subject:
+            self._abox.widen(s, step.subject.mask)
+        if step.object is not object_:
+            self._abox.widen(o, step.object.mask)
+        if step.special and not (step.of_values and s not in self._abox.equals and store.out.is_alone(edge)):
+            self._check(step, edge, s, o)
+        return step
+
+    def _check(self, step: Step, edge: int, s: int, o: int) -> None:
+        """The parts of a step that are about more than one edge, or that clash."""
+        if self._store.kind[o].clash and self._abox.is_literal(o):
+            self._clash_of_literal(edge, o)
+        if step.clash:
+            role, owner, filler = step.clash
+            x, y = (o, s) if role[1] else (s, o)
+            raise Clash(Edge(edge, role), *member(x, owner), *member(y, filler))
+        for at_subject, limit in step.limits:
+            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+        for at_subject, key in step.keys:
+            self._equality.identify(s if at_subject else o, key)
+
+    def _clash_of_literal(self, edge: int, node: int) -> None:
+        one, other = self._store.kind[node].clash or (0, 0)
+        if one < 0:
+            raise Clash(Edge(edge))
+        raise Clash(Member(node, one), Member(node, other))
+
+    def _apply(self, rules: EdgeRules, edge: int, s: int, o: int) -> None:
+        if rules.by_value and self._abox.is_literal(o):
+            self._equality.meet(o)
+        if rules.irreflexive and self._abox.is_same(s, o):
+            raise Clash(Edge(edge, rules.irreflexive), Same(s, o))
+        for at_subject, limit in rules.limits:
+            self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
+        for role, other in rules.exclusive:
+            found = self._abox.find(s, other, o)
+            if found != NONE:
+                raise Clash(Edge(edge, role), Edge(found, other), *self._abox.bridges((edge, found)))
+        for forwards, chain in rules.heads:
+            self._continue(edge, *((s, o) if forwards else (o, s)), chain)
+        for forwards, chain in rules.tails:
+            self._begin(edge, *((s, o) if forwards else (o, s)), chain)
+
+    def _continue(self, edge: int, x: int, y: int, chain: Chain) -> None:
+        for other, end, z in list(self._abox.related(y, self._steps.group((chain.second, False)))):
+            self.make_chain(chain, x, z, edge, other, *_same(y, end))
+
+    def _begin(self, edge: int, y: int, z: int, chain: Chain) -> None:
+        for other, end, x in list(self._abox.related(y, self._steps.group((chain.first, True)))):
+            self.make_chain(chain, x, z, other, edge, *_same(y, end))
+
+    def make_chain(self, chain: Chain, x: int, z: int, first: int, second: int, *same: Claim) -> None:
+        """Two edges, and what makes them meet, add a third (prp-spo2, prp-trp)."""
+        edges = Edge(first, (chain.first, False)), Edge(second, (chain.second, False))
+        self._derive(x, chain.result, z, *edges, *same)
+
+    def _derive(self, subject: int, predicate: int, object_: int, *claims: Claim) -> None:
+        """Add an edge that a rule makes, unless another one implies it."""
+        if self._abox.is_literal(subject) or self._abox.find(subject, (predicate, False), object_) != NONE:
+            return
+        edge = self._store.add(subject, predicate, object_, DERIVED)
+        self._abox.reasons[edge] = self._abox.conclude(claims, edge=edge)
+        self._abox.fresh.append(edge)
+
+
+def _same(one: int, other: int) -> tuple[Claim, ...]:
+    return () if one == other else (Same(one, other),)

@@ -1,0 +1,43 @@
+"""What the benchmark of spatial relations counts, on a few scenes."""
+
+from benchmarks.relations.__main__ import as_json
+from benchmarks.relations.rightness import Counts, flat, inside_against_samples, on_against_contacts
+from benchmarks.relations.speed import rooms
+from benchmarks.table import Row
+from nodes.kb_node.relations.facts import Facts
+
+
+def test_shares_of_right_ones():
+    some = Counts.of({("a", "b"), ("c", "d")}, {("a", "b"), ("e", "f"), ("g", "h")})
+    assert some == Counts(right=1, extra=1, missing=2)
+    assert some.f1 == 0.4
+    assert Counts.together([some, some]) == Counts(2, 2, 4)
+
+
+def test_settled_heaps_and_sampled_points():
+    on = on_against_contacts(3)
+    assert on.right > 8
+    assert on.f1 > 0.6
+    assert inside_against_samples(200).f1 > 0.9
+
+
+def test_the_flat_is_as_it_was_described():
+    found = flat()
+    assert found.said > 50
+    assert found.missing == [
+        ("tap1", "isOn", "sink1")
+    ]  # the model's rim is lower than its box, for its own tap
+    assert all(name.startswith("door") for name, _, _ in found.extra)
+
+
+def test_the_rooms_are_of_tables_with_cups_on_them():
+    facts = Facts()
+    facts.update(there := rooms(100))
+    assert len(there) == 100
+    assert {relation for _, relation, _ in facts} == {"isOn", "isLocatedIn"}
+    assert sum(relation == "isOn" for _, relation, _ in facts) == 84
+
+
+def test_a_row_says_which_way_is_better():
+    assert as_json(Row("F1", 0.9, "", 0.8, 0.9, more=True))["better"] == "higher"
+    assert as_json(Row("move", 0.9, "ms", 1.0, 0.5))["better"] == "lower"

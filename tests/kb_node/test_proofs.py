@@ -1,0 +1,54 @@
+import pytest
+from msgspec import structs
+
+from nodes.kb_node import proofs
+from nodes.kb_node.reasoner import Inconsistent, Reasoner, explanations, refute
+from ontology import vocabulary as v
+from schemas import codec, errors
+from schemas import explanations as wire
+
+CUP, DISH, FOOD = "<urn:Cup>", "<urn:Dish>", "<urn:Food>"
+TBOX = [(CUP, v.RDFS_SUB_CLASS_OF, DISH), (DISH, "<http://www.w3.org/2002/07/owl#disjointWith>", FOOD)]
+CUP1 = ("<urn:cup1>", v.RDF_TYPE, CUP)
+FOOD1 = ("<urn:cup1>", v.RDF_TYPE, FOOD)
+
+
+@pytest.fixture
+def reasoner():
+    return Reasoner([*TBOX, CUP1])
+
+
+def crossed(message):
+    return codec.decode(codec.encode(message), type(message))
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"), [(explanations.Step, wire.Step), (explanations.Explanation, wire.Explanation)]
+)
+def test_both_forms_have_the_same_fields(ours, theirs):
+    assert ours.__struct_fields__ == theirs.__struct_fields__
+    assert ours.__struct_defaults__ == theirs.__struct_defaults__
+
+
+def test_a_proof_crosses_the_wire_with_all_it_says(reasoner):
+    proof = reasoner.explain(("<urn:cup1>", v.RDF_TYPE, DISH))
+    arrived = crossed(proofs.message(proof))
+    assert proof.steps
+    assert isinstance(arrived, wire.Explanation)
+    assert [structs.asdict(step) for step in arrived.steps] == [structs.asdict(step) for step in proof.steps]
+    rest = [field for field in proof.__struct_fields__ if field != "steps"]
+    assert [getattr(arrived, field) for field in rest] == [getattr(proof, field) for field in rest]
+
+
+def test_a_refutation_keeps_what_was_supposed(reasoner):
+    assert crossed(proofs.message(refute(reasoner, FOOD1))).supposed == FOOD1
+
+
+@pytest.mark.parametrize(("of", "beginning"), [("", ""), ("the TBox", "the TBox is inconsistent: ")])
+def test_a_refusal_says_why(reasoner, of, beginning):
+    with pytest.raises(Inconsistent) as found:
+        reasoner.apply(insert=[FOOD1])
+    refusal = proofs.refusal(found.value, of=of)
+    assert isinstance(refusal, errors.Inconsistent)
+    assert refusal.text == beginning + found.value.explanation.text
+    assert refusal.explanation == proofs.message(found.value.explanation)
