@@ -32,6 +32,11 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
+def commits(seqs: Sequence[int]) -> str:
+    """`commit 7`, `commits 7, 8`."""
+    return f"commit{'s' * (len(seqs) > 1)} {', '.join(map(str, seqs))}"
+
+
 def sentence(error: Exception, kind: Any) -> str:
     """Why something is no message of type `kind`: `at: the 1st must be a number from -10000 to 10000`."""
     if isinstance(error, ValidationError):

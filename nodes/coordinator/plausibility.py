@@ -62,4 +62,4 @@ def _odd_size(found: ClassInfo | None, size_m: Size | None) -> tuple[str, ...]:
 
 
 def _metres(size_m: Size) -> str:
-    return " x ".join(f"{extent:.3g}" for extent in size_m) + " m"
+    return " x ".join(f"{float(f'{extent:.3g}'):g}" for extent in size_m) + " m"

@@ -215,7 +215,8 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair2")
     assert door.change(c.Undo()).text == "undid commit 3"
     reply = door.change(c.Undo())
-    assert (reply.text, reply.names) == ("undid commit 1 with the 1 that settled it", ("chair1",))
+    assert reply.text == "undid commit 1 and what settled after it (commit 2)"
+    assert reply.names == ("chair1",)
     assert door.map.entities == {}
     with pytest.raises(errors.Refused, match="nothing to undo"):
         door.change(c.Undo())

@@ -64,7 +64,7 @@ def _load_described(view: KnownMap, command: Load, described: Iterable[Described
             raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
         if name in taken_names:
             raise errors.NameTaken(
-                f"the name '{name}' is taken already; --replace clears the present map first"
+                f"the name '{name}' is already taken; --replace clears the present map first"
             )
         taken_names.add(name)
         names[name] = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, once, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
+from schemas import wording
 from schemas.bridge import TakeBack
 from schemas.commands import Undo
 from schemas.replies import Changed
@@ -27,5 +28,7 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
         return Changed(commit=None, text="nothing is left to undo")
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
-    text = f"undid commit {first}" + (f" with the {len(settling)} that settled it" if settling else "")
+    text = f"undid commit {first}"
+    if settling:
+        text += f" and what settled after it ({wording.commits(settling)})"
     return changed(commit, text, names=commit.names)

@@ -71,11 +71,11 @@ def seed(
         notes = sorted_out.notes
         if found := abox_document.strangers(sorted_out.triples, reasoner):
             notes.append(abox_document.of_strangers(found))
-    source = abox.name if abox is not None else "nothing"
+    source = f" from {abox.name}" if abox is not None else ""
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",
         source="file",
-        reason=f"begun from {source}",
+        reason=f"begun{source}" if source else "begun empty",
         insert=tuple(abox_triples),
     )
     try:
@@ -89,7 +89,7 @@ def seed(
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"cannot keep a map in {data}: {error.strerror}") from None
-    return "; note: ".join((f"{wording.entities(size)} from {source}", *notes))
+    return "; note: ".join((f"{wording.entities(size)}{source}", *notes))
 
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:

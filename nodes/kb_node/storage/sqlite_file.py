@@ -85,7 +85,8 @@ def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
     if not isinstance(error, sqlite3.OperationalError):
         return errors.Refused(f"{path} is damaged: {error}; {mend(path)}")
     if "locked" in str(error):
-        return InUse(f"another knowledge base is using {path}")
+        stop = f"semmap down --data {path.parent}"
+        return InUse(f"another knowledge base is using {path}; stop it with: {stop}")
     return errors.Refused(f"{path} cannot be read: {error}; {ANEW}")
 
 

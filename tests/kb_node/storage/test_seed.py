@@ -52,7 +52,7 @@ def test_a_map_is_begun_from_two_files(data, files):
 
 
 def test_a_map_may_begin_empty(data, files):
-    assert seed(data, files[0], None) == "0 entities from nothing"
+    assert seed(data, files[0], None) == "0 entities"
     assert read(data)[0] == []
 
 
@@ -145,7 +145,7 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
         f" Declaration(Class(<{v.TBOX}Barstool>)) SubClassOf(<{v.TBOX}Barstool> <{v.TBOX}Seat>))"
     )
     imports = {"http://o.org/home": files[0]}
-    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities from nothing"
+    assert seed(data, tmp_path / "own", None, imports=imports) == "0 entities"
     journal = Journal(data / FILENAME)
     classes = SemanticMap(journal).classes
     journal.close()

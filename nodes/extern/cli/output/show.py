@@ -77,9 +77,9 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         **({"perception": e.conflict} if e.conflict else {}),
         "model": "-" if e.place else _model(e),
         "last change": provenance_text(e.provenance),
-        "posed": provenance_text(e.pose_provenance),
-        "class and size": provenance_text(e.shape_provenance),
-        "called so": provenance_text(e.reference_provenance),
+        "pose set": provenance_text(e.pose_provenance),
+        "class and size set": provenance_text(e.shape_provenance),
+        "reference set": provenance_text(e.reference_provenance),
     }
     return card(rows)
 
@@ -158,7 +158,7 @@ def status_table(status: SystemStatus) -> Table:
 def status_line(status: SystemStatus) -> str:
     """The map and the scene in one line."""
     verdicts = {
-        True: "map and scene agree" + (", except for:" if status.problems else ""),
+        True: "map and scene agree" + (", except where noted below" if status.problems else ""),
         False: "map and scene do not agree yet",
         None: "the map is updated by perception only"
         if status.truth == "perceived"

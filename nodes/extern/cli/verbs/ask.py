@@ -14,6 +14,7 @@ from nodes import bus
 from nodes.extern import availability
 from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import class_names, entity_names
+from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
@@ -102,7 +103,7 @@ def infer(client: Client, name: str | None) -> None:
     print_lines(show.inferred(client.infer(name)))
 
 
-@click.command()
+@click.command(cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
@@ -122,7 +123,7 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
         print_lines(show.explanation(explanation))
 
 
-@click.command()
+@click.command(cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("predicate")
 @click.argument("value")
@@ -208,8 +209,8 @@ def status(client: Client, format: str) -> None:
         return
     show.console().print(show.status_table(status))
     print(show.status_line(status))
-    print_lines(show.status_notes(status))
     print_lines(f"  {problem}" for problem in status.problems)
+    print_lines(show.status_notes(status))
 
 
 @click.command()

@@ -11,6 +11,7 @@ import click
 
 from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
+from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
 from nodes.extern.cli.output import show
 from nodes.extern.cli.output.load_progress import progress
@@ -84,7 +85,7 @@ def update(client: Client, **fields: Any) -> None:
     print_lines(show.changed(client.update(**given(fields))))
 
 
-@click.command("set")
+@click.command("set", cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("values", metavar="VALUE...", nargs=-1, required=True)
@@ -102,7 +103,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
     print_lines(show.changed(client.set(name, property, *values, **_stated(fields))))
 
 
-@click.command()
+@click.command(cls=NegativeNumbers)
 @click.argument("name", shell_complete=entity_names)
 @click.argument("property", metavar="PROPERTY")
 @click.argument("value", required=False)

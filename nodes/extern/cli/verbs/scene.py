@@ -9,6 +9,7 @@ import click
 
 from nodes.extern.cli.calling import given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
+from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from nodes.runtime import extras
@@ -33,7 +34,7 @@ def pause(client: Client, off: bool) -> None:
     print(client.pause(off=off).text)
 
 
-@click.command()
+@click.command(cls=NegativeNumbers)
 @click.argument("seconds", type=float, default=0.1)
 @talks
 def step(client: Client, seconds: float) -> None:

@@ -65,7 +65,7 @@ def beyond(kinds: Counter[str]) -> str:
     if not kinds:
         return ""
     most = sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))[:_FEW]
-    few = ", ".join(f"{count} {kind}" for kind, count in most)
+    few = ", ".join(f"{count} x {kind}" for kind, count in most)
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
     axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
