@@ -14,7 +14,7 @@ from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.facts import Facts
+from nodes.kb_node.relations.place_facts import Facts
 from nodes.kb_node.relations.said import PROPERTIES, fact_of
 from nodes.kb_node.relations.solids import Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds

@@ -4,7 +4,7 @@ from benchmarks.relations.__main__ import as_json
 from benchmarks.relations.rightness import Counts, flat, inside_against_samples, on_against_contacts
 from benchmarks.relations.speed import rooms
 from benchmarks.table import Row
-from nodes.kb_node.relations.facts import Facts
+from nodes.kb_node.relations.place_facts import Facts
 
 
 def test_shares_of_right_ones():

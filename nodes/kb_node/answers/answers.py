@@ -13,7 +13,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.relations import said
-from nodes.kb_node.relations.facts import Fact
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.facts import Fact
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.telling import SPOKEN, metres, why

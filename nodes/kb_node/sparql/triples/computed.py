@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Set
 from typing import Final, NamedTuple
 
-from nodes.kb_node.relations.facts import Fact, Facts
+from nodes.kb_node.relations.place_facts import Fact, Facts
 from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.said import denial, fact_of
 from ontology import vocabulary as v

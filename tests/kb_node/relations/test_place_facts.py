@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.facts import Facts
+from nodes.kb_node.relations.place_facts import Facts
 from nodes.kb_node.relations.placed import Placed
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
