@@ -50,6 +50,8 @@ _UNIT_TOLERANCE = 1e-3
 
 def require_unit(quaternion: Quaternion) -> None:
     """Raises ValueError for a quaternion that is not of unit length (to one in a thousand)."""
+    if quaternion == IDENTITY:  # as most are
+        return
     norm = math.hypot(*quaternion)
     if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
         raise ValueError(f"the quaternion {quaternion} has length {norm:.4g}; it must be 1")

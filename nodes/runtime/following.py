@@ -94,9 +94,10 @@ class Follower(Generic[C]):
             self._ask(pages.query, on_page)
 
         def on_page(page: Snapshot) -> None:
+            if page.more:
+                self._ask(pages.after(page), on_page)  # made while this one is taken
             pages.take(page)
-            if not pages.are_complete:
-                self._ask(pages.query, on_page)
+            if page.more:
                 return
             self._fetching = False
             self._begin(pages.snapshot, tuple(classes))

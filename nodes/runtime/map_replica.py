@@ -23,6 +23,11 @@ class SnapshotPages:
         self._seq: int | None = None
         self._entities: list[Entity] = []
 
+    @staticmethod
+    def after(page: Snapshot) -> SnapshotQuery:
+        """What asks for the page that follows `page`, which has more after it."""
+        return SnapshotQuery(after=page.entities[-1].name, limit=PAGE)
+
     def take(self, page: Snapshot) -> None:
         """The reply to `query`, which asks for the next page from then on."""
         if self._seq is None:
@@ -30,7 +35,7 @@ class SnapshotPages:
         self._entities += map(self._shared.entity, page.entities)
         self.are_complete = not page.more
         if page.more:
-            self.query = SnapshotQuery(after=page.entities[-1].name, limit=PAGE)
+            self.query = self.after(page)
 
     @property
     def snapshot(self) -> Snapshot:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from msgspec import structs
+from msgspec.structs import force_setattr as _set
 
-from schemas.entities import IDENTITY, Entity, Pose, Provenance
+from schemas.entities import IDENTITY, Entity, Provenance
 
 _MOST: Final = 10_000
 """Texts, or provenances, remembered; then it begins anew."""
@@ -21,25 +21,31 @@ class SharedParts:
         self._provenances: dict[int, Provenance] = {}
 
     def entity(self, entity: Entity) -> Entity:
-        """An equal entity that shares its parts with others."""
-        kind = (entity.class_, entity.types, entity.model)
-        class_, types, model = self._kinds.setdefault(kind, kind)
-        return structs.replace(
-            entity,
-            class_=class_,
-            types=types,
-            model=model,
-            pose=_upright(entity.pose),
-            preferred_reference=self._text(entity.preferred_reference),
-            provenance=self._provenance(entity.provenance),
-            pose_provenance=self._provenance(entity.pose_provenance),
-            shape_provenance=self._provenance(entity.shape_provenance),
-            reference_provenance=self._provenance(entity.reference_provenance),
-        )
+        """The same entity, which now shares its parts with others.
 
-    def _text(self, text: str | None) -> str | None:
-        if text is None:
-            return None
+        It is changed in place, to equal parts: making a copy takes several times as long. So it must have
+        been decoded just now, and nobody else may look at it on another thread meanwhile.
+        """
+        kind = (entity.class_, entity.types, entity.model)
+        shared = self._kinds.setdefault(kind, kind)
+        if shared is not kind:
+            class_, types, model = shared
+            _set(entity, "class_", class_)
+            _set(entity, "types", types)
+            _set(entity, "model", model)
+        pose, reference = entity.pose, entity.preferred_reference
+        if pose is not None and pose.orientation_wxyz == IDENTITY:
+            _set(pose, "orientation_wxyz", IDENTITY)
+        if reference is not None:
+            _set(entity, "preferred_reference", self._text(reference))
+        provenance = self._provenance
+        _set(entity, "provenance", provenance(entity.provenance))
+        _set(entity, "pose_provenance", provenance(entity.pose_provenance))
+        _set(entity, "shape_provenance", provenance(entity.shape_provenance))
+        _set(entity, "reference_provenance", provenance(entity.reference_provenance))
+        return entity
+
+    def _text(self, text: str) -> str:
         if len(self._texts) > _MOST:
             self._texts.clear()
         return self._texts.setdefault(text, text)
@@ -49,10 +55,3 @@ class SharedParts:
         if len(self._provenances) > _MOST:
             self._provenances.clear()
         return self._provenances.setdefault(said.commit, said)
-
-
-def _upright(pose: Pose | None) -> Pose | None:
-    """A pose that is not turned shares its orientation with all others that are not."""
-    if pose is None or pose.orientation_wxyz != IDENTITY:
-        return pose
-    return Pose(position_m=pose.position_m)

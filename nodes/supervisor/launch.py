@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from nodes.supervisor.settings import JOURNAL, Settings
+from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec, errors
 
@@ -26,17 +26,21 @@ def run_node(name: str, settings: Settings) -> None:
 
 def seed(settings: Settings) -> None:
     """Create the journal, or report on stdout that it exists; validates the world first."""
-    from nodes.coordinator.files.content import kind_of
-    from nodes.kb_node.storage.seed import seed as seed_journal
+    from nodes.kb_node.storage.existing_map import existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
         open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
+    if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
+        print(told)
+        return
+    from nodes.coordinator.files.content import kind_of
+    from nodes.kb_node.storage.seed import seed as seed_journal
+
     abox = Path(settings.abox) if settings.abox is not None else None
-    begins = settings.fresh or not Path(settings.data, JOURNAL).exists()
-    if begins and abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
+    if abox is not None and kind_of(abox.read_bytes(), abox.name) != "abox":
         load = f"semmap load {shlex.quote(str(abox))}"
         raise errors.BadFile(f"{abox.name} is not an ABox; start with --abox none, then: {load}")
     imports = {iri: Path(file) for iri, file in settings.imports.items()}

@@ -140,7 +140,7 @@ def test_commands_work_as_printed(page, flat, folder):
 def parse(words):
     """Is it a command line that the verb understands? Nothing is started."""
     name, *rest = words
-    command = app.commands[name]
+    command = app.get_command(None, name)
     while isinstance(command, click.Group) and rest:
         command, rest = command.commands[rest[0]], rest[1:]
     with command.make_context(name, [word.strip("[]") for word in rest if word != "..."]):

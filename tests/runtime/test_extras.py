@@ -158,7 +158,7 @@ from nodes.extern import zenoh_codec
 from nodes.extern.cli.all_verbs import app
 from nodes.extern.cli.app import execute
 
-for verb in app.commands:
+for verb in app.list_commands(None):
     assert execute([verb, "--help"]) == 0, verb
 print("all of", len(app.commands))
 """

@@ -1,42 +1,52 @@
-"""All verbs of the command line. Each sends a command; only `watch` subscribes instead."""
+"""All verbs of the command line. Each sends a command; only `watch` subscribes instead.
+
+A verb's module is imported when the verb is wanted: importing them all takes longer than most answers.
+"""
 
 from __future__ import annotations
 
+import importlib
+
 import click
 
-from nodes.extern.cli.verbs import ask, completion, edit, lifecycle, past, perceive, run, scene, tbox
 from schemas import errors
 
-_VERBS = (
-    *(edit.add, edit.update, edit.set_, edit.unset, edit.remove, edit.clear, edit.load, past.undo, run.run),
-    *(
-        ask.list_,
-        ask.get,
-        ask.check,
-        ask.infer,
-        ask.explain,
-        ask.could,
-        ask.relations,
-        ask.export,
-        ask.classes,
-        ask.properties,
-        ask.status,
+_MODULES = {
+    "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+    "ask": (
+        *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
+        *("classes", "properties", "status", "sparql", "watch"),
     ),
-    *(ask.sparql, ask.watch, past.history, past.last_seen),
-    perceive.perceive,
-    *(scene.move, scene.pause, scene.step, scene.reset, scene.picture, scene.replay),
-    *(lifecycle.up, lifecycle.down, lifecycle.node, lifecycle.repair, tbox.tbox, completion.completion),
-)
+    "past": ("undo", "history", "last-seen"),
+    "run": ("run",),
+    "perceive": ("perceive",),
+    "scene": ("move", "pause", "step", "reset", "picture", "replay"),
+    "lifecycle": ("up", "down", "node", "repair"),
+    "tbox": ("tbox",),
+    "completion": ("completion",),
+}
+"""The verbs of each module of `verbs/`."""
+_MODULE_OF = {verb: module for module, verbs in _MODULES.items() for verb in verbs}
 
 
 class _Group(click.Group):
-    """Names the nearest verbs when one is unknown."""
+    """Imports a verb when it is asked for, and names the nearest verbs when one is unknown."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(_MODULE_OF)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self.commands and cmd_name in _MODULE_OF:
+            module = importlib.import_module(f"nodes.extern.cli.verbs.{_MODULE_OF[cmd_name]}")
+            made = [c for c in vars(module).values() if isinstance(c, click.Command) and c.name == cmd_name]
+            self.add_command(made[0])
+        return super().get_command(ctx, cmd_name)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and self.get_command(ctx, args[0]) is None:
-            hint = errors.did_you_mean(args[0], self.commands)
+            hint = errors.did_you_mean(args[0], _MODULE_OF)
             raise click.UsageError(f"unknown verb '{args[0]}'{hint or '; see: semmap --help'}")
         return super().resolve_command(ctx, args)
 
@@ -45,7 +55,3 @@ class _Group(click.Group):
 @click.version_option(package_name="semmap")
 def app() -> None:
     """A robot's semantic map: what there is, what it is called, where it stands, and what follows."""
-
-
-for verb in _VERBS:
-    app.add_command(verb)

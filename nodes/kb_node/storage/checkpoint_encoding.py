@@ -10,8 +10,9 @@ from __future__ import annotations
 import sys
 import zlib
 from array import array
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import chain, islice
 from typing import Final
 
@@ -84,17 +85,17 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
     stored = _bodies.decode(memoryview(body)[len(_MARK) :])
     triples: list[Triple] = []
     terms: list[str] = []
-    for frame in stored.triples:
+    for frame in _unpacked(stored.triples):
         progress()
-        said = _triples.decode(zlib.decompress(frame))
+        said = _triples.decode(frame)
         terms += said.new_terms
         each = map(terms.__getitem__, _numbers(said.numbers))
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
     shared = SharedParts()
-    for frame in stored.entities:
+    for frame in _unpacked(stored.entities):
         progress()
-        entities += map(shared.entity, _entities.decode(zlib.decompress(frame)))
+        entities += map(shared.entity, _entities.decode(frame))
     return Checkpoint(
         seq=stored.seq, triples=tuple(triples), entities=tuple(entities), read_by=stored.read_by
     )
@@ -121,6 +122,18 @@ def _in_order(numbers: array[int]) -> array[int]:
     if sys.byteorder == "big":
         numbers.byteswap()
     return numbers
+
+
+def _unpacked(frames: Sequence[bytes]) -> Iterator[bytes]:
+    """Each frame as it was; the next one is unpacked while the last one is read."""
+    with ThreadPoolExecutor(1) as beside:
+        ahead = deque[Future[bytes]]()
+        for frame in frames:
+            ahead.append(beside.submit(zlib.decompress, frame))
+            if len(ahead) > 1:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
 
 
 def _dense(frame: bytes) -> bytes:

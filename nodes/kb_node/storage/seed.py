@@ -16,6 +16,7 @@ from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.triples.kept import forget
 from nodes.kb_node.storage import closure_cache
+from nodes.kb_node.storage.existing_map import existing_map
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import InUse
 from ontology import vocabulary as v
@@ -43,9 +44,8 @@ def seed(
     `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent with existing data untouched.
     """
     path = data / FILENAME
-    if path.exists() and not fresh:
-        Journal(path).close()  # one that cannot be read is told before anything starts
-        return f"continuing with the map in {data} (--fresh starts a new one and keeps this one)"
+    if not fresh and (told := existing_map(data)) is not None:
+        return told  # an unreadable one is reported before anything starts
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)

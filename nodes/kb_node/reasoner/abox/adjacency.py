@@ -6,7 +6,7 @@ So a room with ten thousand parts is asked for its walls without looking at the 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 NONE: Final = -1
@@ -48,14 +48,43 @@ class Adjacency:
             self.after[edge] = second
             self.before[second] = edge
 
-    def link_each(self, nodes: Iterable[int], edges: Iterable[int], predicate: int) -> None:
-        """`link` an edge to each node."""
-        heads, link = self.heads, self.link
-        for node, edge in zip(nodes, edges, strict=True):
-            if heads[node] == NONE:
+    def link_each(self, nodes: Sequence[int], edges: range, predicate: int) -> None:
+        """`link` a new edge, whose predicate is set already, to each node."""
+        if len(nodes) > 1 and nodes.count(nodes[0]) == len(nodes):
+            self._link_all(nodes[0], edges, predicate)
+            return
+        heads, column, group = self.heads, self.predicate, self.group
+        after, before = self.after, self.before
+        for node, edge in zip(nodes, edges, strict=True):  # `link` written out: this runs millions of times
+            head = first = heads[node]
+            while first != NONE and column[first] != predicate:
+                first = group[first]
+            if first == NONE:
+                if head != NONE:
+                    group[edge] = head
                 heads[node] = edge
-            else:
-                link(node, edge, predicate)
+                continue
+            second = after[first]
+            after[first], before[edge] = edge, first
+            if second != NONE:
+                after[edge] = second
+                before[second] = edge
+
+    def _link_all(self, node: int, edges: range, predicate: int) -> None:
+        """`link` each edge to one node, column by column. The lists come out as if linked one by one."""
+        self.link(node, edges[0], predicate)
+        first = self.heads[node]
+        while self.predicate[first] != predicate:
+            first = self.group[first]
+        after, before, rest = self.after, self.before, edges[1:]
+        second, newest, oldest = after[first], rest[-1], rest[0]
+        after[first], before[newest] = newest, first
+        later, earlier = rest[1:], rest[:-1]
+        after[later.start : later.stop : later.step] = array("i", earlier)
+        before[earlier.start : earlier.stop : earlier.step] = array("i", later)
+        if second != NONE:
+            after[oldest] = second
+            before[second] = oldest
 
     def unlink(self, node: int, edge: int) -> None:
         """Take an edge out of the list of a node."""

@@ -35,6 +35,18 @@ def test_what_is_together_costs_what_is_said_and_no_more(reasoner):
     proofs.check(explanation, [*triples(TBOX), *facts])
 
 
+def test_a_class_whose_members_all_have_one_value_costs_each_member_one_edge():
+    """As every arm of KnowRob's PR2 has one payload, under the `associatedWith` of DUL."""
+    arms = Reasoner(triples(TBOX + ":Arm rdfs:subClassOf [ owl:onProperty :in ; owl:hasValue :robot ] ."))
+    empty = stored(arms)
+    arms.apply(insert=triples("".join(f":arm{i} a :Arm . " for i in range(200))))
+    assert stored(arms) - empty == 200
+    assert arms.holds(triple(":arm0 :with :arm199"))
+    arms.apply(delete=triples("".join(f":arm{i} a :Arm . " for i in range(199))))
+    assert stored(arms) - empty == 1
+    assert not arms.holds(triple(":arm0 :with :arm199"))
+
+
 def test_what_a_restriction_says_goes_along_the_chain_and_back(reasoner):
     chain = triples(":a :part :b . :c :has :b . :c :part :d .".replace(":c :has :b", ":b :part :c"))
     wet = triple(":d a :Water")

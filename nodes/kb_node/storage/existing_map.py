@@ -1,0 +1,19 @@
+"""Whether a data folder already has a map; separate from `seed.py`, which takes long to import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nodes.kb_node.storage.journal import FILENAME, Journal
+
+
+def existing_map(data: Path) -> str | None:
+    """What to report of the map in folder `data`; None if there is none.
+
+    Raises InUse, or Refused if it cannot be read.
+    """
+    path = data / FILENAME
+    if not path.exists():
+        return None
+    Journal(path).close()
+    return f"continuing with the map in {data} (--fresh starts a new one and keeps this one)"
