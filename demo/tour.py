@@ -224,7 +224,7 @@ def tour(t: Tour) -> None:
     t.do("list", "--class", "Beer", "--as-of", "1")
     t.do("last-seen", "apple9", holds="remove")
     t.do("add", "Vase", "vase9", "--at", "8.3", "2.2", "0.76")
-    t.do("undo", holds="took back")
+    t.do("undo", holds="undid commit")
     t.do("get", "vase9", status=1)
 
     t.tell("Other classes at run time: a file that takes classes away that the map needs is refused")

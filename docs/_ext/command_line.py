@@ -22,7 +22,7 @@ def page() -> str:
 
 
 def _sections(command: click.Command, context: click.Context) -> Iterator[str]:
-    context.max_content_width = 100
+    context.terminal_width = 78  # as wide as it is everywhere, whatever COLUMNS says
     level = context.command_path.count(" ") + 1
     heading = "" if level == 1 else f"\n{'#' * min(level, 3)} {context.command_path}\n"
     yield f"{heading}\n```text\n{command.get_help(context).rstrip()}\n```\n"
