@@ -102,7 +102,7 @@ def test_it_goes_on_and_opens_again(data):
 
 def test_a_system_starts_on_it(data):
     with running(data, "--no-sim", "--no-record") as system:
-        assert "going on with the map" in "".join(system.said)
+        assert "continuing with the map" in "".join(system.said)
         assert "5 entities" in system.cli("list")
         assert "3 entities" in system.cli("list", "--as-of", "5")
         assert "9 commits" in system.cli("history")
