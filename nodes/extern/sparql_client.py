@@ -91,7 +91,7 @@ class StandingQuery:
         return watching
 
     def _renew(self) -> Watching | None:
-        """Go on; what it has now, if it is not known there any more and was asked anew."""
+        """Renew the lease; returns the present rows if the query had ended and was started again."""
         try:
             self._ask("renew", commands.Renew(watch=self._name), replies.Done)
         except errors.UnknownName:

@@ -14,7 +14,7 @@ from msgspec import structs
 
 from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
-from nodes.kb_node.answers import answers, questions, trials
+from nodes.kb_node.answers import answers, questions, trials, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
@@ -22,10 +22,7 @@ from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.said import denied
-from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.surroundings import Surroundings
-from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
@@ -35,7 +32,6 @@ from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
-from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -92,7 +88,7 @@ class KnowledgeBase:
         self._seq_then = 0
         self.map = SemanticMap(journal, progress=node.beat)
         self._pages = Pages(self.map)
-        self._surroundings = Surroundings(self.map.entities, self.map.find)
+        self._now, self._then = whereabouts.Now(self.map), whereabouts.Then(self.map, self._past)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._sparql = SparqlService(
@@ -171,7 +167,7 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._surroundings.touch(commit.names)
+        self._now.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
@@ -274,52 +270,21 @@ class KnowledgeBase:
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then; with `where` those that are there."""
-        where = query.where
-        if query.as_of is not None:
-            return self._aside.submit(self._then, query)
-        found = answers.entities_of(self.map, query.class_)
-        if where is None:
-            return found
-        return tuple(selected(self._surroundings.space(), found, where, self.map.entities()))
-
-    def _then(self, query: Entities) -> tuple[Entity, ...]:
-        assert query.as_of is not None
-        found = self._past.entities(query.as_of, query.class_, tuple(self.map.classes.iris))
-        if query.where is None:
-            return found
-        everyone = self._past.entities(query.as_of, None, ())
-        return tuple(selected(Space(everyone), found, query.where, everyone))
+        if query.as_of is None:
+            return self._now.entities(query)
+        return self._aside.submit(self._then.entities, query)
 
     def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
         """Where a thing is relative to others, now or as of then."""
-        if query.as_of is not None:
-            return self._aside.submit(self._relations_then, query)
-        self.map.entity(query.name)
-        return tuple(relations(self._surroundings.space(), query))
-
-    def _relations_then(self, query: Relations) -> tuple[Relation, ...]:
-        assert query.as_of is not None
-        self._past.entity(query.name, query.as_of)
-        return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
+        if query.as_of is None:
+            return self._now.relations(query)
+        return self._aside.submit(self._then.relations, query)
 
     def on_get(self, query: Get) -> Described | Future[Described]:
         """One entity, now or as of then."""
-        if query.as_of is not None:
-            return self._aside.submit(self._described_then, query)
-        entity = self.map.entity(query.name)
-        if not query.where:
-            return Described.of(entity)
-        space = self._surroundings.space()
-        wrong = denied(space, answers.said_of_place(self.map, entity))
-        return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
-
-    def _described_then(self, query: Get) -> Described:
-        assert query.as_of is not None
-        entity = self._past.entity(query.name, query.as_of)
-        if not query.where:
-            return Described.of(entity)
-        space = Space(self._past.entities(query.as_of, None, ()))
-        return Described.of(entity, tuple(whereabouts(space, entity.name)))
+        if query.as_of is None:
+            return self._now.entity(query)
+        return self._aside.submit(self._then.entity, query)
 
     def on_infer(self, query: Infer) -> Inferred:
         """What follows."""
@@ -328,19 +293,7 @@ class KnowledgeBase:
     def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
         """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
         asked = questions.of_explain(self.map, query)
-        space = self._surroundings.space() if query.predicate in SPOKEN and not query.negated else None
-        seen = space and explained(space, query.name, query.predicate, query.value)
-        if not seen:
-            return self._tried(questions.explain, asked)
-        explanation = questions.why(self.map.reasoner, asked)
-        if explanation is not None:
-            link = "; and" if seen.holds else "; but as it stands"
-            return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
-        if not seen.holds:
-            raise errors.Refused(seen.text)
-        subject, object_ = (v.iri(self.map.entity(name).iri) for name in (seen.subject, seen.object))
-        conclusion = (subject, v.dm(seen.relation), object_)
-        return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+        return self._now.explained(query, asked) or self._tried(questions.explain, asked)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""

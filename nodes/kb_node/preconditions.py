@@ -40,7 +40,7 @@ def held(
 
 
 def require(transaction: Transaction, held: Container[Triple]) -> None:
-    """Raises PreconditionFailed for a required triple that is not `held` any more."""
+    """Raises PreconditionFailed for a required triple that is no longer `held`."""
     for triple in transaction.require:
         if triple not in held:
             raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")

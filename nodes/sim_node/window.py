@@ -63,7 +63,7 @@ class Window:
             label.label = name[:_LABEL_LENGTH]
 
     def close(self) -> None:
-        """Close it, and wait until nothing draws any more: the process could not end before."""
+        """Close it, and wait until the last frame is drawn; the process cannot end before."""
         self._viewer.close()
         for thread in self._threads:
             thread.join(timeout=5.0)

@@ -1,8 +1,8 @@
 """The door: a command in, a transaction to the knowledge base, a reply out.
 
 It validates, resolves names, and leaves consistency to the knowledge base. It knows no Zenoh. Each verb is a
-talk with the knowledge base (`talking.py`): `changing.py` add, update, remove, clear; `loading.py` load;
-`undoing.py` undo. `committing.py` is what they have in common, `known_map.py` what they know of the map.
+dialogue with the knowledge base (`dialogues.py`): `changing.py` add, update, remove, clear; `loading.py`
+load; `undoing.py` undo. They share `committing.py`, and `known_map.py`, the map as the coordinator knows it.
 """
 
 from nodes.coordinator.door.door import Door as Door

@@ -245,7 +245,7 @@ class _Worker:
             self._bury()
 
     def _bury(self) -> None:
-        """Nobody waits for it any more."""
+        """Nobody is waiting for it any longer."""
         with self._lock:
             self.is_alive = False
             left = list(self._waiting.values())

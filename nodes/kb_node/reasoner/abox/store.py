@@ -83,7 +83,7 @@ class Store:
         return self.out.heads[node] == NONE and self.into.heads[node] == NONE
 
     def release(self, node: int) -> bool:
-        """Forget a node that nothing is said of any more; whether it was forgotten."""
+        """Forget a node without edges or asserted classes; returns whether it was forgotten."""
         kind = self.kind[node]
         told = kind.excluded is None and kind.given
         if told or not self.is_bare(node):

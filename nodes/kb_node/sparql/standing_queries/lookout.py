@@ -57,7 +57,7 @@ class Relief:
     reader: Reader
 
     def end(self) -> None:
-        """It is not needed any more."""
+        """It is no longer needed."""
         self.reader.end()
         self.lane.close()
 

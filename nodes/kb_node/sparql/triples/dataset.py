@@ -35,9 +35,9 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
     no_longer_inferred: tuple[Triple, ...] = ()
     newly_inferred: tuple[Triple, ...] = ()
     denied: tuple[Triple, ...] = ()
-    """Asserted, but not so any more as things stand."""
+    """Asserted, but denied by the present poses."""
     undenied: tuple[Triple, ...] = ()
-    """So again, or not asserted any more."""
+    """No longer denied, or no longer asserted."""
 
     @property
     def asserted(self) -> tuple[Triple, ...]:
