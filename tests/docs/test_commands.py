@@ -143,7 +143,8 @@ def parse(words):
     command = app.get_command(None, name)
     while isinstance(command, click.Group) and rest:
         command, rest = command.commands[rest[0]], rest[1:]
-    with command.make_context(name, [word.strip("[]") for word in rest if word != "..."]):
+    above = click.Context(app, info_name="semmap", **app.context_settings)  # click keeps the names of --help
+    with command.make_context(name, [word.strip("[]") for word in rest if word != "..."], parent=above):
         pass
 
 
