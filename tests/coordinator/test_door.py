@@ -454,7 +454,7 @@ def test_a_dry_run_says_what_would_be_and_does_nothing(door, semantic_map, comma
     (reply,) = in_their_turn(door, [command])
     assert reply.dry_run
     assert reply.commit is None
-    assert reply.text.startswith("dry run, nothing changed: ")
+    assert reply.text.startswith("dry run, nothing changed; it would be: ")
     assert (everything(semantic_map), dict(door.map.entities), door.map.seq, semantic_map.seq) == before
     done = door.change(structs.replace(command, dry_run=False))
     assert done.commit == 2

@@ -35,7 +35,9 @@ def once(change: Change[C]) -> Change[C]:
     def execute(view: KnownMap, command: C) -> Talk[Changed]:
         if getattr(command, "dry_run", False):
             tried = yield from change(view, structs.replace(command, id=new_id()))
-            return structs.replace(tried, dry_run=True, text=f"dry run, nothing changed: {tried.text}")
+            return structs.replace(
+                tried, dry_run=True, text=f"dry run, nothing changed; it would be: {tried.text}"
+            )
         if not command.id:
             return (yield from change(view, structs.replace(command, id=new_id())))
         known_seq = view.seq

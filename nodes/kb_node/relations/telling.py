@@ -28,6 +28,8 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
     else:
         yield from relations_of(space, query.name)
     viewpoint = query.viewpoint
+    if query.viewer == query.name:
+        raise errors.BadRequest(f"{query.name} cannot be seen from itself; --from takes another entity")
     if query.viewer is not None:
         x, y, z = space.solids[query.viewer].position
         viewpoint = (x, y, z, 0.0)

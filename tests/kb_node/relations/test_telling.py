@@ -59,3 +59,8 @@ def test_who_is_nowhere():
         told("cup1", other="cup9")
     with pytest.raises(errors.Refused, match="has no position"):
         list(relations(Space([TABLE]), Relations(name="ghost1")))
+
+
+def test_nothing_is_seen_from_itself():
+    with pytest.raises(errors.BadRequest, match="cannot be seen from itself"):
+        told("cup1", viewer="cup1")

@@ -69,7 +69,7 @@ def beyond(kinds: Counter[str]) -> str:
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
     axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
-    return f"{axioms} beyond OWL 2 RL, and that part has no effect ({few})"
+    return f"{axioms} beyond OWL 2 RL; that part is inert, which does no harm ({few})"
 
 
 def slow(reasoner: Reasoner) -> str:

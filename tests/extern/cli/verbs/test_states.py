@@ -78,7 +78,7 @@ def test_a_dry_run_does_nothing(system, words):
     with system.client() as client:
         client.add("Cup", at=(1, 1, 1))  # something to undo
         before = client.status().commit, client.list()
-        assert "dry run, nothing changed: " in system.cli(*words, "--dry-run")
+        assert "dry run, nothing changed; it would be: " in system.cli(*words, "--dry-run")
         assert (client.status().commit, client.list()) == before
 
 
