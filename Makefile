@@ -30,7 +30,7 @@ test: setup  ## The tests, under 5 minutes
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 -m "not long"
+	$(BIN)/pytest -n 2 --dist worksteal -m "not long"
 
 test-long: setup  ## The tests that take longer too
 	$(BIN)/pytest -n 2

@@ -52,7 +52,7 @@ def test_a_commit_that_is_told_of_in_brief_is_known_to_everybody(tmp_path):
         assert counted(client) == COUNT - COUNT // 100
 
 
-@pytest.mark.parametrize("kind", ["scene", "turtle"])
+@pytest.mark.parametrize("kind", [pytest.param("scene", marks=pytest.mark.long), "turtle"])
 def test_a_load_in_parts(tmp_path, kind):
     file = scene(tmp_path / "many.json")
     if kind == "turtle":

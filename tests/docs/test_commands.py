@@ -70,7 +70,13 @@ def programs(page):
 
 LINES = [pytest.param(page, id=page.name) for page in PAGES if any(commands(page))]
 PROGRAMS = [
-    pytest.param(text, id=f"{page.name}-{n}") for page in PAGES for n, text in enumerate(programs(page), 1)
+    pytest.param(
+        text,
+        id=f"{page.name}-{n}",
+        marks=[pytest.mark.long] if "own_system" in text and page.name != "README.md" else [],
+    )
+    for page in PAGES
+    for n, text in enumerate(programs(page), 1)
 ]
 
 
