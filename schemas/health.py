@@ -22,3 +22,6 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     last_error: str = ""
     notes: tuple[str, ...] = ()
     """What whoever runs the system should know once, and `status` goes on to show."""
+    commit: int = -1
+    """Of the knowledge base: the number of the last commit, by whose digest its followers compare."""
+    digest: str = ""

@@ -102,6 +102,7 @@ class KnowledgeBase:
         for verb in keys.OF_THE_MAP:
             node.serve_one(keys.CMD, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.head(self.map.seq, self.map.digest)
         node.note(self._notes())
         node.ready(self._summary())
 
@@ -167,6 +168,7 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
+        self._node.head(commit.seq, commit.digest)
         self._now.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))

@@ -8,6 +8,7 @@ import time
 from typing import Literal
 
 from nodes import bus
+from nodes.runtime.notify import notify
 from schemas import codec, keys
 from schemas.health import Health
 
@@ -30,6 +31,7 @@ class Heartbeat:
         self._detail = ""
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
+        self._head = (-1, "")
         self._error_shown_until_s = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
@@ -48,7 +50,10 @@ class Heartbeat:
             detail=self._detail,
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
             notes=self._notes,
+            commit=self._head[0],
+            digest=self._head[1],
         )
+        notify(health)
         self._health.put(codec.encode(health))
 
     def ready(self, detail: str) -> None:
@@ -64,6 +69,10 @@ class Heartbeat:
     def describe(self, detail: str) -> None:
         """Say this of the node's state, from the next beat on."""
         self._detail = detail
+
+    def head(self, commit: int, digest: str) -> None:
+        """Say that this is the last commit of the map, from the next beat on."""
+        self._head = (commit, digest)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Say this of what the node works with, from now on."""

@@ -164,16 +164,19 @@ class Node:
         deadline_s = time.monotonic() + patience_s
 
         def send() -> None:
-            bus.ask_later(
-                self.session,
-                prefix,
-                call.VERB,
-                call,
-                reply_type(type(call)),
-                answer,
-                timeout_s=timeout_s,
-                lifelines=self._lifelines,
-            )
+            try:
+                bus.ask_later(
+                    self.session,
+                    prefix,
+                    call.VERB,
+                    call,
+                    reply_type(type(call)),
+                    answer,
+                    timeout_s=timeout_s,
+                    lifelines=self._lifelines,
+                )
+            except Exception as error:  # whoever waits for the future would wait for ever
+                future.set_exception(error)
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
@@ -216,6 +219,10 @@ class Node:
     def describe(self, detail: str) -> None:
         """What the heartbeats say of the node's state, from the next one on."""
         self._heartbeat.describe(detail)
+
+    def head(self, commit: int, digest: str) -> None:
+        """The last commit of the map that this node owns, and its digest: heartbeats say so from now on."""
+        self._heartbeat.head(commit, digest)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """What the heartbeats say of what the node works with, from now on."""

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from nodes.supervisor.orphans import end_when_orphaned
 from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec, errors
@@ -112,6 +113,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
 def main(argv: list[str]) -> int:
     """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
     name, settings_path = argv
+    end_when_orphaned()
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     settings: Settings = codec.decode(Path(settings_path).read_bytes(), Settings)
     try:

@@ -12,6 +12,7 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.plausibility import doubts, require_same_nature
 from nodes.coordinator.scene.hands import Hand
+from nodes.coordinator.scene.settled import Settled, posed_by
 from schemas import changes, errors
 from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
 from schemas.commits import Effects, Transaction
@@ -121,18 +122,21 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | None]:
-    """The map takes over where a body came to rest."""
+def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
+    """The map takes over where a body came to rest, unless somebody has moved the entity meanwhile."""
+    if posed_by(view.entity(settled.name)) != settled.after:
+        return changed(None, f"{settled.name}: {UNCHANGED}", names=(settled.name,))
     command = Update(
         id=new_id(),
         source="scene",
         agent=hand.agent,
         reason=hand.reason,
-        name=name,
-        at=pose.position_m,
-        orientation=pose.orientation_wxyz,
+        name=settled.name,
+        at=settled.pose.position_m,
+        orientation=settled.pose.orientation_wxyz,
     )
-    return (yield from commit(view, structs.replace(transactions.update(command), verb=hand.verb)))
+    made = yield from commit(view, structs.replace(transactions.update(command), verb=hand.verb))
+    return changed(made, hand.reason, names=(settled.name,))
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
