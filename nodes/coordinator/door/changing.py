@@ -12,7 +12,7 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.plausibility import doubts, require_same_nature
 from nodes.coordinator.scene.hands import Hand
-from schemas import changes, errors
+from schemas import changes, errors, wording
 from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
 from schemas.commits import Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
@@ -58,7 +58,7 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     return changed(
         made,
         f"updated {_said(entity, made)}" if made else _said(entity, made),
-        names=(entity.name,),
+        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
         notes=(
             *(view.classes.note(command.class_ or "", found) if found else ()),
             *doubts(
@@ -97,6 +97,11 @@ def _said(was: Entity, made: Effects | None) -> str:
         return f"{was.name}: {UNCHANGED}"
     said = changes.in_words(changes.between(was, now)) if now is not None else ""
     return f"{was.name}: {said}" if said else was.name
+
+
+def _others(made: Effects | None, name: str) -> tuple[str, ...]:
+    """The other entities that a commit changes: those that were carried along."""
+    return tuple(e.name for e in made.changed if e.name != name) if made is not None else ()
 
 
 def _after(made: Effects | None, name: str) -> Entity | None:
@@ -140,7 +145,7 @@ def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entit
     if not names:
         return Changed(commit=None, text="the map is already empty")
     made = yield from commit(view, transactions.remove(command, reason, names))
-    return changed(made, f"removed {len(names)}: {_few(names)}", names=names)
+    return changed(made, f"removed {len(names)}: {wording.few(names)}", names=names)
 
 
 def _label(found: ClassInfo) -> str:
@@ -149,7 +154,3 @@ def _label(found: ClassInfo) -> str:
 
 def _metres(pose: Pose) -> str:
     return "({:g}, {:g}, {:g})".format(*pose.position_m)
-
-
-def _few(names: tuple[str, ...]) -> str:
-    return ", ".join(names) if len(names) <= 10 else f"{', '.join(names[:9])} and {len(names) - 9} more"

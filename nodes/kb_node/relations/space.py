@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
@@ -39,8 +40,7 @@ class Space:
         self.take(entity.name)
         solid = solid_of(entity)
         if solid is not None:
-            self.solids[solid.name] = solid
-            self._grid.add(solid)
+            self._add(solid)
         return solid
 
     def take(self, name: str) -> None:
@@ -48,6 +48,28 @@ class Space:
         solid = self.solids.pop(name, None)
         if solid is not None:
             self._grid.remove(solid)
+
+    @contextmanager
+    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
+        """Within, these entities are as given here, and those without are not there."""
+        entities, without = tuple(entities), tuple(without)
+        names = {*(entity.name for entity in entities), *without}
+        before = [solid for name in names if (solid := self.solids.get(name)) is not None]
+        try:
+            for name in without:
+                self.take(name)
+            for entity in entities:
+                self.put(entity)
+            yield
+        finally:
+            for name in names:
+                self.take(name)
+            for solid in before:
+                self._add(solid)
+
+    def _add(self, solid: Solid) -> None:
+        self.solids[solid.name] = solid
+        self._grid.add(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whoever may be within a margin."""

@@ -41,6 +41,7 @@ def _what(commit: LoggedCommit) -> str:
         said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
     if commit.tbox:
         said.append("another TBox")
+    said += commit.notes
     return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
