@@ -106,10 +106,10 @@ class Facts:
                 yield other
 
     def _work_out(self, solid: Solid) -> Iterator[Fact]:
-        container, support, place = self.space.whereabouts(solid)
+        container, supports, place = self.space.whereabouts(solid)
         if container is not None:
             yield (solid.name, "isInside", container[0].name)
-        if support is not None:
-            yield (solid.name, "isOn", support[0].name)
+        for support, _ in supports:
+            yield (solid.name, "isOn", support.name)
         if place is not None:
             yield (solid.name, "isLocatedIn", place[0].name)
