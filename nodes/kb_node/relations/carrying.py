@@ -12,7 +12,7 @@ from schemas import wording
 
 
 class Bearer(NamedTuple):
-    """What a thing stands on, or is inside."""
+    """What a thing is inside, or else stands on; of several supports that which counts most."""
 
     name: str
     is_inside: bool
@@ -54,10 +54,10 @@ class Loads:
     def _looked_up(self, solid: Solid) -> Bearer | None:
         if solid.is_place:
             return None
-        container, support, _ = self._space.whereabouts(solid)
+        container, supports, _ = self._space.whereabouts(solid)
         if container is not None:
             return Bearer(container[0].name, is_inside=True)
-        return Bearer(support[0].name, is_inside=False) if support is not None else None
+        return Bearer(supports[0][0].name, is_inside=False) if supports else None
 
 
 def in_words(name: str, load: Collection[str]) -> str:

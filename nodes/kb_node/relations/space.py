@@ -33,6 +33,8 @@ class Space:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self._grid = Grid()
+        self._raised: set[str] = set()
+        """The things that are above the floor or of a size of their own."""
         for entity in entities:
             self.put(entity)
 
@@ -42,13 +44,21 @@ class Space:
         solid = solid_of(entity)
         if solid is not None:
             self._add(solid)
+            if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
+                self._raised.add(solid.name)
         return solid
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
+        return not self._raised
 
     def take(self, name: str) -> None:
         """Take an entity out, if it is there."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self._grid.remove(solid)
+            self._raised.discard(name)
 
     @contextmanager
     def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
@@ -56,6 +66,7 @@ class Space:
         entities, without = tuple(entities), tuple(without)
         names = {*(entity.name for entity in entities), *without}
         before = [solid for name in names if (solid := self.solids.get(name)) is not None]
+        raised = self._raised & names
         try:
             for name in without:
                 self.take(name)
@@ -67,6 +78,7 @@ class Space:
                 self.take(name)
             for solid in before:
                 self._add(solid)
+            self._raised |= raised
 
     def _add(self, solid: Solid) -> None:
         self.solids[solid.name] = solid
