@@ -17,7 +17,7 @@ from nodes.kb_node.preconditions import subjects
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.carrying import Loads
 from nodes.kb_node.relations.said import denial, fact_of
-from nodes.kb_node.relations.sayings import Sayings
+from nodes.kb_node.relations.sayings import Sayings, of_places
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
 from ontology import stars
@@ -59,7 +59,7 @@ class Places:
         """The solids as they are now."""
         return self._surroundings.space()
 
-    def take(self, names: Iterable[str], gone: Iterable[Triple], come: Iterable[Triple]) -> None:
+    def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
         """A commit touched these entities, and triples went and came."""
         self._surroundings.touch(names)
         self._sayings.change(gone, come)
@@ -145,9 +145,10 @@ class Places:
 
     def doubts(self, commit: Commit) -> tuple[str, ...]:
         """What a commit says of places that geometry denies as things stand after it; the first of it."""
-        facts = dict.fromkeys(fact for t in commit.inserted if (fact := fact_of(t)) is not None)
-        if not facts:
+        said = of_places(commit.inserted)
+        if not said:
             return ()
+        facts = dict.fromkeys(fact for triple in said if (fact := fact_of(triple)) is not None)
         space = self.space()
         with space.supposing(commit.changed, (gone.name for gone in commit.removed)):
             relations = (denial(space, fact) for fact in facts)

@@ -8,6 +8,8 @@ from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.said import PROPERTIES, fact_of
 from schemas.explanations import Term, Triple
 
+_SAY_WHERE = frozenset(PROPERTIES)
+
 
 class Sayings:
     """An index of the asserted triples of `said.PROPERTIES`; kept in step with commits once it is built."""
@@ -30,16 +32,15 @@ class Sayings:
         """Triples of all kinds were retracted and inserted."""
         if self._about is None:
             return
-        for triple in gone:
-            if triple[1] in PROPERTIES and (fact := fact_of(triple)) is not None:
+        for triple in of_places(gone) if self._about else ():
+            if (fact := fact_of(triple)) is not None:
                 for name in _names(fact):
                     about = self._about.get(name, {})
                     about.pop(triple, None)
                     if not about:
                         self._about.pop(name, None)
-        for triple in come:
-            if triple[1] in PROPERTIES:
-                self._add(self._about, triple)
+        for triple in of_places(come):
+            self._add(self._about, triple)
 
     def _index(self) -> dict[str, dict[Triple, Fact]]:
         if self._about is None:
@@ -54,6 +55,11 @@ class Sayings:
         if (fact := fact_of(triple)) is not None:
             for name in _names(fact):
                 index.setdefault(name, {})[triple] = fact
+
+
+def of_places(triples: Iterable[Triple]) -> list[Triple]:
+    """Those that say where a thing is."""
+    return [triple for triple in triples if triple[1] in _SAY_WHERE]
 
 
 def _names(fact: Fact) -> Iterator[str]:
