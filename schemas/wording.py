@@ -39,6 +39,13 @@ def few(names: Collection[str], most: int = 10) -> str:
     return f"{', '.join(rest)} and {last}" if rest else last
 
 
+def carried(name: str, load: Collection[str]) -> str:
+    """What a thing carried along."""
+    if not load:
+        return f"nothing stands on {name} or is inside it"
+    return f"{name} carried {few(load)} along"
+
+
 def commits(seqs: Sequence[int]) -> str:
     """`commit 7`, `commits 7, 8`."""
     return f"commit{'s' * (len(seqs) > 1)} {', '.join(map(str, seqs))}"

@@ -17,12 +17,11 @@ from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.relations import carrying
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
-from schemas import errors
+from schemas import errors, wording
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
@@ -328,7 +327,7 @@ class SemanticMap:
                 load = self.places.load_of(one, edit)
                 for other in load:
                     draft.edit(self._entities[other.name], other)
-                notes.append(carrying.in_words(one.name, [other.name for other in load]))
+                notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(

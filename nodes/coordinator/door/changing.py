@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from msgspec import structs
+from collections.abc import Mapping
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
@@ -14,7 +14,7 @@ from nodes.coordinator.plausibility import doubts, require_same_nature
 from nodes.coordinator.scene.hands import Hand
 from schemas import changes, errors, wording
 from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
-from schemas.commits import Effects, Transaction
+from schemas.commits import Edit, Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -126,18 +126,20 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | None]:
-    """The map takes over where a body came to rest."""
-    command = Update(
+def follow(view: KnownMap, poses: Mapping[str, Pose], hand: Hand) -> Talk[Effects | None]:
+    """The map takes over where bodies came to rest, in one commit."""
+    moved = Transaction(
         id=new_id(),
         source="scene",
         agent=hand.agent,
+        verb=hand.verb,
         reason=hand.reason,
-        name=name,
-        at=pose.position_m,
-        orientation=pose.orientation_wxyz,
+        edit=tuple(
+            Edit(name=name, at=pose.position_m, orientation=pose.orientation_wxyz)
+            for name, pose in poses.items()
+        ),
     )
-    return (yield from commit(view, structs.replace(transactions.update(command), verb=hand.verb)))
+    return (yield from commit(view, moved))
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
-from schemas import wording
 
 
 class Bearer(NamedTuple):
@@ -58,10 +57,3 @@ class Loads:
         if container is not None:
             return Bearer(container[0].name, is_inside=True)
         return Bearer(supports[0][0].name, is_inside=False) if supports else None
-
-
-def in_words(name: str, load: Collection[str]) -> str:
-    """What a thing carried along."""
-    if not load:
-        return f"nothing stands on {name} or is inside it"
-    return f"{name} carried {wording.few(load)} along"

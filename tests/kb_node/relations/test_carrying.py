@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from nodes.kb_node.relations.carrying import Loads, in_words
+from nodes.kb_node.relations.carrying import Loads
 from nodes.kb_node.relations.space import Space
 from schemas.entities import Pose, carried, orientation_from_yaw
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
@@ -79,9 +79,3 @@ def test_carried_without_a_turn_keeps_the_orientation():
     was, now = Pose(position_m=(0.0, 0.0, 0.0)), Pose(position_m=(1.0, 0.0, 0.0))
     assert carried(cup, was, now).position_m == (1.0, 0.0, 0.0)
     assert carried(cup, was, now).orientation_wxyz == pytest.approx(cup.orientation_wxyz, abs=1e-6)
-
-
-def test_in_words():
-    assert in_words("tray1", ["cup1"]) == "tray1 carried cup1 along"
-    assert in_words("tray1", ["cup1", "bowl1", "apple1"]) == "tray1 carried cup1, bowl1 and apple1 along"
-    assert in_words("tray1", []) == "nothing stands on tray1 or is inside it"
