@@ -10,7 +10,7 @@ from nodes.coordinator.dialogues import Talk
 from nodes.coordinator.door.committing import changed, commit, new_id, once
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
-from nodes.coordinator.plausibility import doubts, require_same_nature
+from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
 from schemas import changes, errors, wording
 from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
@@ -48,6 +48,7 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
+    require_carrying(command)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     shape = (found, command.ref, command.alt, command.size)
     if any(value is not None for value in shape):

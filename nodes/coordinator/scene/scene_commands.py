@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
+from nodes.coordinator.plausibility import require_carrying
 from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
 from nodes.runtime.futures import settle, then
 from schemas import commands as c
@@ -36,6 +37,7 @@ class Running:
 
     def move(self, command: c.Move) -> Future[Moved]:
         """Take a body and put it elsewhere, as a hand would; with what it bears, if that is wanted."""
+        require_carrying(command)
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
             state = self._keeping.body_state(self._door.map.entity(command.name))
