@@ -20,7 +20,8 @@ class Whereabouts(NamedTuple):
     """What a thing is inside, what it is on, and in which place; what it is inside it is not on."""
 
     container: Found | None
-    support: Found | None
+    supports: tuple[Found, ...]
+    """Several of what bridges or leans; the one that counts most first."""
     place: Found | None
 
 
@@ -76,7 +77,7 @@ class Space:
                     support = (other, made)
         if support is not None and container is not None:
             support = None  # what lies in a bowl is not on the table, and not on the bowl
-        return Whereabouts(container, support, place)
+        return Whereabouts(container, (support,) if support else (), place)
 
 
 def _area(solid: Solid) -> tuple[float, str]:
