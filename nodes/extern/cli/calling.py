@@ -13,7 +13,7 @@ import click
 
 from nodes import bus
 from nodes.extern.client import Client, connect
-from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.extern.connection import CONNECT_VARIABLE, IDENTITY_VARIABLE
 from schemas import codec, errors
 
 TIME = (
@@ -33,18 +33,29 @@ connect_option = click.option(
 )
 """Which running system is meant."""
 
+identity_option = click.option(
+    "--identity",
+    envvar=IDENTITY_VARIABLE,
+    show_envvar=True,
+    metavar="DIR/NAME",
+    help="Who you are, to a secure system: the certificate DIR/NAME.crt with its key.",
+)
+"""Whose certificate is shown."""
+
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""
 
     @connect_option
+    @identity_option
     @functools.wraps(function)
-    def with_client(where: str | None, **arguments: Any) -> None:
+    def with_client(where: str | None, identity: str | None, **arguments: Any) -> None:
         shared = click.get_current_context().obj
         if isinstance(shared, Client):
             function(shared, **arguments)
             return
-        with connect(where, agent=f"cli/{os.environ.get('USER', 'user')}") as client:
+        agent = f"cli/{os.environ.get('USER', 'user')}"
+        with connect(where, agent=agent, identity=identity) as client:
             function(client, **arguments)
 
     return with_client

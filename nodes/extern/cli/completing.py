@@ -13,9 +13,9 @@ import click
 from click.shell_completion import CompletionItem, get_completion_class
 
 from nodes import bus
-from nodes.extern.connection import endpoint
+from nodes.extern.connection import endpoint, identity
 from nodes.supervisor import presence
-from schemas import commands, errors, keys
+from schemas import commands, errors
 from schemas.entities import ClassInfo, Entity
 
 SHELLS = ("bash", "zsh", "fish")
@@ -42,12 +42,16 @@ def _classes(where: str) -> Iterable[CompletionItem]:
 
 
 def _ask(where: str, verb: str, command: Any, kind: Any) -> Any:
-    here = presence.is_loopback(where)
+    here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
-        connect=(where,), mode="peer" if here else "client", patience_s=0.0 if here else _MEET_S
+        connect=(where if who is None else bus.over_tls(where),),
+        mode="peer" if here and who is None else "client",
+        patience_s=0.0 if here else _MEET_S,
+        identity=who,
     )
     with bus.open_session(network) as session:
-        return bus.ask(session, keys.CMD, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)
+        prefix = network.commands
+        return bus.ask(session, prefix, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)
 
 
 def _completing(
