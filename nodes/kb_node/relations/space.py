@@ -51,10 +51,8 @@ class Space:
             self._grid.remove(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Whoever may be within a margin."""
-        names = self._grid.around(solid.bounds, margin_m)
-        names.pop(solid.name, None)
-        return [self.solids[name] for name in names]
+        """Whose bounds meet its own, or are within a margin of them."""
+        return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
@@ -62,10 +60,8 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
-        bounds, least = solid.bounds, solid.bottom - limits.gap_m
+        least = solid.bottom - limits.gap_m
         for other in self.around(solid):
-            if not measures.overlap(bounds, other.bounds):
-                continue
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
@@ -94,10 +90,11 @@ class Space:
         limits = self.limits
         if container is not None:
             below = [found for found in below if self._is_within(found[0], container[0])]
-        gaps = [made.gap_m for _, made in below]
+        gaps = [made.gap_m for _, made in below if not made.holds]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         if not below:
             return ()
+        gaps += [made.gap_m for _, made in below]
         if floor_m is not None and abs(floor_m) <= limits.gap_m:
             gaps.append(floor_m)
         nearest = min(gaps, key=_nearness)
