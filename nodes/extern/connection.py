@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from nodes import bus
 from nodes.supervisor import presence, registry
 from schemas import errors
+from schemas.endpoints import CONNECT_VARIABLE
 
-CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1
