@@ -7,3 +7,5 @@ from typing import Final
 DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 CONNECT_VARIABLE: Final = "SEMMAP_CONNECT"
 """The environment variable with another endpoint."""
+IDENTITY_VARIABLE: Final = "SEMMAP_IDENTITY"
+"""The environment variable with who somebody is."""

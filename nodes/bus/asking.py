@@ -156,7 +156,7 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def _nobody(key: str) -> NoReturn:
-    node = keys.SERVED_BY.get(key.rpartition("/")[0])
+    node = keys.SERVED_BY.get(keys.served(key.rpartition("/")[0]))
     why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
         f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"

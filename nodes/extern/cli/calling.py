@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from schemas import errors
-from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT
+from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
@@ -33,19 +33,30 @@ connect_option = click.option(
 )
 """Which running system is meant."""
 
+identity_option = click.option(
+    "--identity",
+    envvar=IDENTITY_VARIABLE,
+    show_envvar=True,
+    metavar="DIR/NAME",
+    help="Who you are, to a secure system: the certificate DIR/NAME.crt with its key.",
+)
+"""Whose certificate is shown."""
+
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""
 
     @connect_option
+    @identity_option
     @functools.wraps(function)
-    def with_client(where: str | None, **arguments: Any) -> None:
+    def with_client(where: str | None, identity: str | None, **arguments: Any) -> None:
         if (shared := click.get_current_context().obj) is not None:
             function(shared, **arguments)
             return
         from nodes.extern.client import connect  # not needed for what only prints help or completes a word
 
-        with connect(where, agent=f"cli/{os.environ.get('USER', 'user')}") as client:
+        agent = f"cli/{os.environ.get('USER', 'user')}"
+        with connect(where, agent=agent, identity=identity) as client:
             function(client, **arguments)
 
     return with_client

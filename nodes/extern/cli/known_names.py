@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from nodes import bus
-from nodes.extern.connection import endpoint
+from nodes.extern.connection import endpoint, identity
 from nodes.supervisor import presence
-from schemas import commands, keys
+from schemas import commands
 from schemas.entities import ClassInfo, Entity
 
 _MEET_S = 0.5
@@ -34,9 +34,13 @@ KINDS: Mapping[str, Callable[[str | None], Named]] = {"entities": _entities, "cl
 
 def _ask(where: str | None, verb: str, command: Any, kind: Any) -> Any:
     where = where or endpoint()
-    here = presence.is_loopback(where)
+    here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
-        connect=(where,), mode="peer" if here else "client", patience_s=0.0 if here else _MEET_S
+        connect=(where if who is None else bus.over_tls(where),),
+        mode="peer" if here and who is None else "client",
+        patience_s=0.0 if here else _MEET_S,
+        identity=who,
     )
     with bus.open_session(network) as session:
-        return bus.ask(session, keys.CMD, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)
+        prefix = network.commands
+        return bus.ask(session, prefix, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)

@@ -14,6 +14,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from nodes.extern.cli.output import plain
+from schemas import agents
 from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
 from schemas.replies import LoggedCommit
@@ -106,8 +107,11 @@ def provenance_text(p: Provenance) -> str:
 
 
 def author(p: Provenance | Commit | LoggedCommit) -> str:
-    """The source with the agent."""
-    return f"{p.source}/{p.agent}" if p.agent else p.source
+    """The source with the agent: `@bob` if a certificate has proved the name, `bob` if it was claimed."""
+    if not p.agent:
+        return p.source
+    proved = not isinstance(p, Provenance) and p.authenticated
+    return f"{p.source}/{agents.proved(p.agent) if proved else p.agent}"
 
 
 def moment(stamp_ns: int) -> str:
