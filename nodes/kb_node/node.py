@@ -100,7 +100,8 @@ class KnowledgeBase:
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
-            node.serve_one(keys.CMD, handlers[verb])
+            for prefix in (keys.CMD, keys.commands_as()):
+                node.serve_one(prefix, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.note(self._notes())
         node.ready(self._summary())
