@@ -24,6 +24,8 @@ _EVERY_MESSAGE: Final = (
 )
 _EVERYTHING: Final = f"{keys.ROOT}/**"
 _PRESENCE: Final = keys.live_key("*")
+_BRANCHES: Final = sorted({f"{'/'.join(grant.key.split('/')[:2])}/**" for grant in roles.GRANTS})
+"""Every branch of keys but the one where commands are asked under a name."""
 _LOSSLESS: Final = frozenset(topic.key for topic in keys.TOPICS if topic.qos == "lossless")
 
 
@@ -79,9 +81,15 @@ def _of_outsider(role: Role) -> list[Rule]:
 
 
 def _of_node() -> list[Rule]:
-    """A node does everything but speak in another's name."""
-    keys_of_all = [_EVERYTHING, _PRESENCE, keys.recovery(_EVERYTHING)]
-    return [("ingress", _EVERY_MESSAGE, keys_of_all), ("egress", _EVERY_MESSAGE, keys_of_all)]
+    """A node does everything but ask in another's name."""
+    recovered = keys.recovery(_EVERYTHING)
+    everything = [_EVERYTHING, _PRESENCE, recovered]
+    but_queries = tuple(message for message in _EVERY_MESSAGE if message != "query")
+    return [
+        ("ingress", but_queries, everything),
+        ("ingress", ("query",), [*_BRANCHES, recovered]),
+        ("egress", _EVERY_MESSAGE, everything),
+    ]
 
 
 def _declared(asked: Iterable[str]) -> list[str]:

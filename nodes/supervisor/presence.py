@@ -11,7 +11,6 @@ import contextlib
 import fcntl
 import os
 import re
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -63,5 +62,7 @@ def is_loopback(endpoint: str) -> bool:
 
 def _lock_of(endpoint: str) -> Path | None:
     """The file of the lock: one for a port, whoever uses it."""
+    import tempfile
+
     match = _LOOPBACK.fullmatch(endpoint)
     return Path(tempfile.gettempdir(), f"semmap-{match[1]}.lock") if match else None
