@@ -90,7 +90,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     is_borne = bool(carrier.supports) or carrier.container is not None
     if not other.supports or not (is_borne or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may hang or lean there
-    made = measures.on(solid, other, limits, far=True)
+    made = measures.over(solid, other, limits)
     return "it is over no surface of it" if made is None else why(relation, solid, other, made)
 
 
