@@ -18,6 +18,7 @@ from typing import Any
 from msgspec import structs
 
 from nodes import bus
+from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.notices import Notices
@@ -51,7 +52,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         if supervisor.end_leftovers():
             say(f"{'before':<{_COLUMN}} ended what an earlier semmap up had left running")
         _require_free(settings.listen)
-        if settings.record:
+        if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
             settings = structs.replace(settings, live_view=_live_view())
         with presence.announced(settings.reachable):
             say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
@@ -184,6 +185,11 @@ class _Foreground:
             words = self._supervisor.last_words(node)
             raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
 
+    def _network(self) -> bus.Network:
+        secure = self._settings.secure
+        identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
+        return bus.Network(connect=(self._settings.reachable,), identity=identity)
+
     def _replace_what_hangs(self) -> None:
         for hang in self._watchdog.hanging():
             self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
@@ -191,8 +197,10 @@ class _Foreground:
 
     def _introduce(self) -> None:
         """Let the coordinator have heard of every node before anybody is told that the system is ready."""
-        network = bus.Network(connect=(self._settings.reachable,))
-        with contextlib.suppress(errors.SemmapError, OSError), bus.open_session(network) as session:
+        with (
+            contextlib.suppress(errors.SemmapError, OSError),
+            bus.open_session(self._network()) as session,
+        ):
             deadline_s = time.monotonic() + _INTRODUCED_S
             while time.monotonic() < deadline_s:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
@@ -214,14 +222,14 @@ class _Foreground:
                 self._say(f"{'models':<{_COLUMN}} {said}")
 
     def _greet(self) -> None:
-        connect = (
-            ""
-            if self._settings.reachable == bus.DEFAULT_ENDPOINT
-            else f" --connect {self._settings.reachable}"
-        )
+        usual = self._settings.reachable == bus.DEFAULT_ENDPOINT
+        connect = "" if usual else f" --connect {self._settings.reachable}"
+        if self._settings.secure is not None:
+            connect += f" --identity {shlex.quote(self._settings.secure)}/NAME"
         lines = {"zenoh": self._settings.reachable, "data": self._settings.data}
         if self._settings.record:
             lines["recording"] = f"{self._settings.data}/recordings"
+        if self._settings.live_view is not None:
             lines["live view"] = f"rerun --connect rerun+http://{self._settings.live_view}/proxy"
         lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
         self._say("")
@@ -231,7 +239,7 @@ class _Foreground:
 
 def _require_free(endpoint: str) -> None:
     """Refuse an endpoint that another system of this machine listens on, rather than take it for ours."""
-    match = re.fullmatch(r"tcp/(.+):(\d+)", endpoint)
+    match = re.fullmatch(r"(?:tcp|tls)/(.+):(\d+)", endpoint)
     if match is None:
         return
     host, port = match[1].strip("[]"), int(match[2])

@@ -185,7 +185,7 @@ def test_loading_a_name_twice_is_refused(door):
 
 def follow(door, name, pose):
     """The map takes over where a body came to rest."""
-    return door.change(Settled.of(door.map.entity(name), pose))
+    return door.change(Settled.of(door.map.entities, {name: pose}))
 
 
 def test_a_body_that_came_to_rest_changes_only_the_pose(door):

@@ -53,6 +53,6 @@ class Door:
         return _CHANGING[type(command)](self.map, command)
 
     def _settled(self, settled: Settled) -> Talk[Changed]:
-        """The map takes over where a body came to rest."""
-        with self.hands.that_moved(settled.name) as hand:
+        """The map takes over where bodies came to rest: one, or those that a hand carried together."""
+        with self.hands.that_moved(*settled.poses) as hand:
             return (yield from changing.follow(self.map, settled, hand))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
@@ -19,7 +19,7 @@ from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.scene.spawn_batches import batches
-from schemas import errors
+from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
@@ -111,8 +111,8 @@ class Keeping:
         if self._busy or not self.scene.known:
             return
         actions = self.wanted(names)
-        for placement in actions.follow:
-            self._follow(placement)
+        for group in self._to_follow(actions.follow):
+            self._follow(group)
         for body in actions.adopt:
             self._adopt(body)
         refused, self._put_back = self._put_back, {}
@@ -254,23 +254,40 @@ class Keeping:
             gone = Delete(names=tuple(order.name for order in anew))
             self._steps.extendleft([self._spawning(anew), Step(gone, lambda _: None)])
 
-    def _follow(self, placement: Placement) -> None:
-        """Let the map follow a body; if the map refuses, the body has to go back."""
-        name = placement.name
-        if name in self._following or name in self._put_back:
+    def _to_follow(self, placements: Sequence[Placement]) -> Iterator[tuple[Placement, ...]]:
+        """Each by itself, or together with what a hand carried along with it, once all of that rests."""
+        done: set[str] = set()
+        for placement in placements:
+            if placement.name in done or placement.name in self._following:
+                continue
+            party = self._door.hands.party_of(placement.name)
+            done |= party
+            there = _only(party, self.scene.bodies).values()
+            if not party:
+                yield (placement,)
+            elif all(body.resting for body in there):
+                yield self.wanted(party).follow
+
+    def _follow(self, placements: Sequence[Placement]) -> None:
+        """Let the map follow bodies; if the map refuses, they have to go back."""
+        poses = {placement.name: rounded(placement.pose) for placement in placements}
+        if any(name in self._put_back for name in poses):
             return
 
-        def followed(error: BaseException) -> None:
-            entity = self._door.map.entities.get(name)
-            if isinstance(error, errors.Refused) and entity is not None and entity.pose is not None:
-                self._report(f"{name} was put back, because the map rejected its new pose: {error}")
-                commit = entity.pose_provenance.commit
-                self._put_back[name] = Placement(name=name, pose=entity.pose, commit=commit)
-            elif not isinstance(error, errors.UnknownName):
-                self._report(f"the map cannot follow {name} yet: {error}")
+        def failed(error: BaseException) -> None:
+            if not isinstance(error, errors.Refused):
+                self._report(f"the map cannot follow {wording.few(poses)} yet: {error}")
+                return
+            told = "its new pose" if len(poses) == 1 else "their new poses"
+            were = "was" if len(poses) == 1 else "were"
+            self._report(f"{wording.few(poses)} {were} put back, because the map rejected {told}: {error}")
+            for name in poses:
+                entity = self._door.map.entities.get(name)
+                if entity is not None and entity.pose is not None:
+                    commit = entity.pose_provenance.commit
+                    self._put_back[name] = Placement(name=name, pose=entity.pose, commit=commit)
 
-        entity = self._door.map.entities[name]
-        self._change_about(name, Settled.of(entity, rounded(placement.pose)), followed)
+        self._change_about(poses, Settled.of(self._door.map.entities, poses), failed)
 
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""
@@ -303,17 +320,17 @@ class Keeping:
             orientation=pose.orientation_wxyz,
             size=body.size_m,
         )
-        self._change_about(name, add, adopted)
+        self._change_about((name,), add, adopted)
 
     def _change_about(
-        self, name: str, change: Add | Settled, failed: Callable[[BaseException], None]
+        self, names: Collection[str], change: Add | Settled, failed: Callable[[BaseException], None]
     ) -> None:
-        """Change the map in its turn; what concerns the body `name` is looked at again when that is done."""
-        self._following.add(name)
+        """Change the map in its turn; what concerns these bodies is looked at again when that is done."""
+        self._following.update(names)
 
         def on_done(done: Future[Changed]) -> None:
-            self._following.discard(name)
-            self._later.add(name)
+            self._following.difference_update(names)
+            self._later.update(names)
             if (error := done.exception()) is not None:
                 failed(error)
 

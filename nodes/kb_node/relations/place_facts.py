@@ -1,16 +1,16 @@
-"""What everything is on, inside and in, kept in step with a map for whoever a change concerns.
+"""Which relations hold in a map, kept in step with it for whoever a change concerns.
 
-What is kept is a function of the poses alone (`Space`), so that a restart, another order of commits and a
+What is kept is a function of the poses alone (`rules`), so that a restart, another order of commits and a
 past moment give the same.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.relations.rules import RULES, About, Rule
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -19,6 +19,8 @@ from schemas.relations import RelationName
 
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
+_BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
+"""Along these `upward` goes."""
 
 
 class Changed(NamedTuple):
@@ -31,85 +33,123 @@ class Changed(NamedTuple):
 class Facts:
     """The facts that hold in a map, by their subject, and whom else they speak of."""
 
-    def __init__(self, limits: Thresholds | None = None) -> None:
+    def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
-        self._facts: dict[str, tuple[Fact, ...]] = {}
-        self._about: dict[str, dict[str, None]] = {}
-        """Whose facts speak of a thing."""
+        self._kept = [_Kept(rule) for rule in rules]
 
     def __iter__(self) -> Iterator[Fact]:
         """All that hold."""
-        for facts in self._facts.values():
-            yield from facts
+        for kept in self._kept:
+            yield from kept.all()
 
     def upward(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
         found = set(names)
         waiting = list(found)
+        bearing = [kept for kept in self._kept if not _BEARING.isdisjoint(kept.rule.relations)]
         while waiting:
-            for above in self._about.get(waiting.pop(), ()):
-                if above not in found:
-                    found.add(above)
-                    waiting.append(above)
+            name = waiting.pop()
+            for kept in bearing:
+                for above in kept.about.get(name, ()):
+                    if above not in found:
+                        found.add(above)
+                        waiting.append(above)
         return found
 
     def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
         space = self.space
-        concerned: dict[str, None] = {}
+        moved: dict[str, None] = {}
+        left: list[Solid] = []
         fresh: list[Solid] = []
         for name in removed:
-            concerned.update(dict.fromkeys(self._about.get(name, ())))
-            concerned[name] = None
+            moved[name] = None
+            left += filter(None, (space.solids.get(name),))
             space.take(name)
         for entity in changed:
-            concerned.update(dict.fromkeys(self._about.get(entity.name, ())))
-            concerned[entity.name] = None
-            if (solid := space.put(entity)) is not None:
-                fresh.append(solid)
-        for solid in fresh:
-            for other in self._whom_it_concerns(solid):
-                concerned[other.name] = None
-        before: set[Fact] = set()
-        after: set[Fact] = set()
-        for name in concerned:
-            before.update(self._facts.pop(name, ()))
-            solid_now = space.solids.get(name)
-            if solid_now is None or solid_now.is_place:
-                continue
-            if found := tuple(self._work_out(solid_now)):
-                self._facts[name] = found
-                after.update(found)
-        gone, come = before - after, after - before
-        for subject, _, other_name in gone:
-            self._forget(subject, other_name)
-        for subject, _, other_name in come:
-            self._about.setdefault(other_name, {})[subject] = None
+            moved[entity.name] = None
+            left += filter(None, (space.solids.get(entity.name),))
+            fresh += filter(None, (space.put(entity),))
+        gone: set[Fact] = set()
+        come: set[Fact] = set()
+        for kept in self._kept:
+            kept.update(space, moved, left, fresh, gone, come)
         return Changed(gone, come)
 
-    def _forget(self, subject: str, other: str) -> None:
-        """A fact about two went; another one about them may hold."""
-        if any(o == other for _, _, o in self._facts.get(subject, ())):
-            return
-        about = self._about.get(other, {})
-        about.pop(subject, None)
-        if not about:
-            self._about.pop(other, None)
 
-    def _whom_it_concerns(self, solid: Solid) -> Iterator[Solid]:
-        """Who may be on it, inside it or in it now, of those who were not."""
-        space, gap = self.space, self.space.limits.gap_m
-        for other in space.around(solid):
-            if other.is_place or not measures.overlap(solid.bounds, other.bounds):
-                continue
-            if solid.is_place or (other.bottom <= solid.top + gap and other.top >= solid.bottom - gap):
-                yield other
+class _Kept:
+    """The facts of one rule."""
 
-    def _work_out(self, solid: Solid) -> Iterator[Fact]:
-        container, support, place = self.space.whereabouts(solid)
-        if container is not None:
-            yield (solid.name, "isInside", container[0].name)
-        if support is not None:
-            yield (solid.name, "isOn", support[0].name)
-        if place is not None:
-            yield (solid.name, "isLocatedIn", place[0].name)
+    def __init__(self, rule: Rule) -> None:
+        self.rule = rule
+        self.of: dict[str, tuple[About, ...]] = {}
+        """What holds of a thing."""
+        self.about: dict[str, dict[str, None]] = {}
+        """Of whom a fact holds that speaks of a thing."""
+
+    def all(self) -> Iterator[Fact]:
+        for name, found in self.of.items():
+            for relation, other in found:
+                yield name, relation, other
+
+    def update(
+        self,
+        space: Space,
+        moved: Iterable[str],
+        left: Iterable[Solid],
+        fresh: Iterable[Solid],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        """Work out again what may be otherwise, and add what is to `gone` and `come`."""
+        concerned: dict[str, None] = {}
+        for name in moved:
+            concerned.update(dict.fromkeys(self.about.get(name, ())))
+            concerned[name] = None
+        for solid in fresh:
+            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
+        for solid in left if self.rule.when_gone else ():
+            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
+        for name in concerned:
+            before = self.of.get(name, ())
+            now = self._work_out(space, name)
+            if now != before:
+                self._replace(name, before, now, gone, come)
+
+    def _whom_it_concerns(self, space: Space, solid: Solid) -> Iterator[str]:
+        concerns = self.rule.concerns
+        for other in space.around(solid, self.rule.margin_m(space.limits)):
+            if not other.is_place and concerns(space, solid, other):
+                yield other.name
+
+    def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
+        solid = space.solids.get(name)
+        if solid is None or solid.is_place:
+            return ()
+        return tuple(self.rule.facts(space, solid))
+
+    def _replace(
+        self,
+        name: str,
+        before: tuple[About, ...],
+        now: tuple[About, ...],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        if now:
+            self.of[name] = now
+        else:
+            del self.of[name]
+        others = {other for _, other in now}
+        for relation, other in before:
+            if (relation, other) not in now:
+                gone.add((name, relation, other))
+            if other not in others:
+                about = self.about.get(other, {})
+                about.pop(name, None)
+                if not about:
+                    self.about.pop(other, None)
+        for relation, other in now:
+            if (relation, other) not in before:
+                come.add((name, relation, other))
+                self.about.setdefault(other, {})[name] = None

@@ -17,7 +17,7 @@ from typing import Final
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.said import PROPERTIES
+from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.sparql.triples.computed import Computed, Step
 from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
 from ontology import vocabulary as v
@@ -235,7 +235,7 @@ class Consequences:
 
 def _declared(triples: Iterable[Triple]) -> frozenset[Term]:
     """The properties of where things are that a TBox has."""
-    return frozenset(s for s, p, _ in triples if p == v.RDF_TYPE and s in PROPERTIES)
+    return frozenset(s for s, p, _ in triples if p == v.RDF_TYPE and s in COMPUTED)
 
 
 def _chains(reasoner: Reasoner) -> Iterator[list[Term]]:
