@@ -14,6 +14,8 @@ from schemas import errors
 
 CONNECT_VARIABLE = "SEMMAP_CONNECT"
 IDENTITY_VARIABLE = "SEMMAP_IDENTITY"
+CONFIG_VARIABLE = "SEMMAP_ZENOH_CONFIG"
+"""A Zenoh configuration file for clients, where a system was started with one of its own."""
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1
@@ -52,10 +54,11 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
     With an identity it is a client of the router, and the endpoint one of TLS. Raises NoAnswer when nothing
     answers there, the system takes too long to start, or it wants to know who this is.
     """
+    own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
         identity.require_valid()
         where = bus.over_tls(where)
-    elif where.startswith(bus.TLS):
+    elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
             f"the system at {where} only answers those who show a certificate; say who you are:"
             f" --identity DIR/NAME or {IDENTITY_VARIABLE}"
@@ -67,6 +70,7 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
         namespace=namespace,
         patience_s=0.0 if here else bus.PATIENCE_S,
         identity=identity,
+        own_config=own_config,
     )
     deadline_s = time.monotonic() + _START_S
     with contextlib.ExitStack() as stack:
@@ -74,8 +78,11 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
             try:
                 session = stack.enter_context(bus.open_session(network))
                 break
-            except errors.NoAnswer:
-                if not presence.is_announced(where):
+            except errors.NoAnswer as error:
+                turned_away = isinstance(error, bus.HungUp) or (
+                    identity is not None and presence.is_listening(where)
+                )
+                if turned_away or not presence.is_announced(where):
                     raise
                 if time.monotonic() > deadline_s:
                     raise errors.NoAnswer(f"the system at {where} has not started yet") from None

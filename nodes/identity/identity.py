@@ -9,6 +9,7 @@ from typing import Final
 
 from nodes.identity import certificate
 from schemas import errors
+from schemas.roles import ROLES
 
 AUTHORITY: Final = "ca.crt"
 SUPERVISOR: Final = "supervisor"
@@ -48,6 +49,8 @@ class Identity:
             raise errors.BadFile(f"{crt} cannot be read: {error}") from None
         except OSError as error:
             raise errors.BadFile(f"{error.filename} cannot be read: {error.strerror}") from None
+        if said.role not in ROLES:
+            raise errors.BadFile(f"{crt} is not an identity: it says no role")
         return cls(str(authority.resolve()), str(crt.resolve()), str(key.resolve()), *said)
 
     def require_valid(self) -> None:

@@ -11,6 +11,7 @@ import contextlib
 import fcntl
 import os
 import re
+import socket
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,6 +60,16 @@ def is_announced(endpoint: str) -> bool:
 def is_loopback(endpoint: str) -> bool:
     """Is it a port of loopback? Then a system that is run there is announced."""
     return _LOOPBACK.fullmatch(endpoint) is not None
+
+
+def is_listening(endpoint: str) -> bool:
+    """Does anybody listen at this port of loopback just now?"""
+    if (match := _LOOPBACK.fullmatch(endpoint)) is None:
+        return False
+    host = endpoint.partition("/")[2].rpartition(":")[0].strip("[]")
+    with contextlib.suppress(OSError), socket.create_connection((host, int(match[1])), timeout=1.0):
+        return True
+    return False
 
 
 def _lock_of(endpoint: str) -> Path | None:

@@ -19,7 +19,7 @@ from nodes.extern.cli.output import show, sparql_formats
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, roles
 from schemas.entities import Entity
 
 _format = functools.partial(click.option, "--format", "format")
@@ -269,6 +269,13 @@ def _watch_key(client: Client, keyexpr: str) -> None:
         with client.commits() as commits:
             for commit in commits:
                 print(show.commit_line(commit), flush=True)
+    if client.identity is not None:
+        followed = roles.followed(client.identity.role)
+        if not bus.includes(followed, keyexpr):
+            raise errors.Refused(
+                f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
+                f" {', '.join(followed)}"
+            )
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
 
