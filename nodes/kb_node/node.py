@@ -37,6 +37,7 @@ from schemas.bridge import (
     Entities,
     LoadDocument,
     Loaded,
+    LoadOf,
     LoadTBox,
     MadeBy,
     Outcome,
@@ -114,6 +115,7 @@ class KnowledgeBase:
             SnapshotQuery.answered_by(self.on_snapshot),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
+            LoadOf.answered_by(self.on_load_of),
             MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
@@ -168,7 +170,6 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._now.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
@@ -256,6 +257,10 @@ class KnowledgeBase:
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
         return self.map.stars(query.names)
+
+    def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
+        """What a thing bears."""
+        return tuple(self.map.places.borne_by(query.name, query.leave))
 
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
         """The commits that some commands have made."""
