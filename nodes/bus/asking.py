@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import zenoh
+from msgspec import Struct
 
 from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
@@ -28,8 +28,7 @@ _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
-@dataclass(frozen=True)
-class Encoded:
+class Encoded(Struct, frozen=True):
     """A message as it came: to be decoded, or passed on."""
 
     payload: zenoh.ZBytes

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any
 
 import zenoh
+from msgspec import Struct, field
 
 from nodes.bus.asking import Encoded
 from nodes.bus.pubsub import publisher
@@ -16,8 +16,11 @@ from schemas.replies import Ack, Document
 _JSON = "application/json"
 
 
-@dataclass(frozen=True)
-class Request:
+def _send_nowhere(message: Any, ok: bool) -> None:
+    """Of a request that nobody waits for an answer to."""
+
+
+class Request(Struct, frozen=True):
     """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
 
     `plain`: the reply may be a message that is `Encoded` already. `who` asks, by the key; whether that is
@@ -27,7 +30,7 @@ class Request:
     verb: str
     payload: bytes
     parameters: dict[str, str] = field(default_factory=dict)
-    send: Callable[[Any, bool], None] = field(default=lambda message, ok: None)
+    send: Callable[[Any, bool], None] = _send_nowhere
     plain: bool = False
     who: str = ""
 

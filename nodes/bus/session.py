@@ -11,17 +11,17 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import zenoh
+from msgspec import Struct
 from zenoh import Session as Session
 
 from nodes.bus import own_config
 from nodes.identity import Identity
 from schemas import errors, keys
+from schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 TLS = "tls/"
 PATIENCE_S = 3.0
 RESTART_S = 30.0
@@ -36,8 +36,7 @@ _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elaps
 _HUNG_UP = "Read error on T"
 
 
-@dataclass(frozen=True)
-class Network:
+class Network(Struct, frozen=True):
     """How a process joins the system: a node listens, a client does not.
 
     A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`

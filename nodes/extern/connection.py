@@ -11,11 +11,8 @@ from nodes import bus
 from nodes.identity import Identity
 from nodes.supervisor import presence, registry
 from schemas import errors
+from schemas.endpoints import CONFIG_VARIABLE, CONNECT_VARIABLE, IDENTITY_VARIABLE
 
-CONNECT_VARIABLE = "SEMMAP_CONNECT"
-IDENTITY_VARIABLE = "SEMMAP_IDENTITY"
-CONFIG_VARIABLE = "SEMMAP_ZENOH_CONFIG"
-"""A Zenoh configuration file for clients, where a system was started with one of its own."""
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1

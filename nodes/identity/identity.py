@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
+
+from msgspec import Struct
 
 from nodes.identity import certificate
 from schemas import errors
@@ -16,8 +17,7 @@ SUPERVISOR: Final = "supervisor"
 """The name of `semmap up` itself."""
 
 
-@dataclass(frozen=True)
-class Identity:
+class Identity(Struct, frozen=True):
     """Paths of the files, and what the certificate says: a name, a role, and until when."""
 
     authority: str

@@ -11,8 +11,6 @@ import contextlib
 import fcntl
 import os
 import re
-import socket
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -66,6 +64,8 @@ def is_listening(endpoint: str) -> bool:
     """Does anybody listen at this port of loopback just now?"""
     if (match := _LOOPBACK.fullmatch(endpoint)) is None:
         return False
+    import socket
+
     host = endpoint.partition("/")[2].rpartition(":")[0].strip("[]")
     with contextlib.suppress(OSError), socket.create_connection((host, int(match[1])), timeout=1.0):
         return True
@@ -74,5 +74,7 @@ def is_listening(endpoint: str) -> bool:
 
 def _lock_of(endpoint: str) -> Path | None:
     """The file of the lock: one for a port, whoever uses it."""
+    import tempfile
+
     match = _LOOPBACK.fullmatch(endpoint)
     return Path(tempfile.gettempdir(), f"semmap-{match[1]}.lock") if match else None

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from pathlib import Path
 from typing import Annotated, Literal
 
 import platformdirs
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
 from nodes.identity import Identity
@@ -101,7 +100,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         In a secure system the router listens, and all others are its clients.
         """
-        return dataclasses.replace(self._place(node), own_config=self.zenoh_config)
+        return structs.replace(self._place(node), own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
         if self.secure is not None:

@@ -16,13 +16,13 @@ from msgspec import structs
 from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.connection import CONNECT_VARIABLE
 from nodes.identity import SUPERVISOR, Identity
 from nodes.identity.register import Register
 from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
+from schemas.endpoints import CONNECT_VARIABLE
 from schemas.keys import NODES, ROUTER
 
 _path = click.Path(path_type=Path)

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from nodes.extern.cli.calling import complain, connect_option, identity_option, print_lines, run_words
-from nodes.extern.cli.output import show
+from nodes.extern.cli.output import lines
 from nodes.extern.client import Client, connect
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
@@ -63,7 +63,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
         complain(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
     if isinstance(reply, replies.Changed):
-        print_lines(show.changed(reply))
+        print_lines(lines.changed(reply))
     else:
         print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0
