@@ -103,9 +103,7 @@ def measured(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         if best[0] is other:
             return best[1]
     made = (
-        measures.on(solid, other, limits, far=True)
-        if relation == "isOn"
-        else measures.inside(solid, other, limits)
+        measures.over(solid, other, limits) if relation == "isOn" else measures.inside(solid, other, limits)
     )
     return None if made is None else made._replace(holds=False)
 

@@ -170,6 +170,7 @@ def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
         stamp_ns=commit.stamp_ns,
         source=commit.source,
         agent=commit.agent,
+        authenticated=commit.authenticated,
         verb=commit.verb,
         reason=commit.reason,
         confidence=commit.confidence,
@@ -180,4 +181,5 @@ def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
         changed=tuple(entity.name for entity in commit.changed),
         removed=tuple(gone.name for gone in commit.removed),
         changes=changes,
+        notes=commit.notes,
     )

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import given, talks, vector_option
+from nodes.extern.cli.calling import carrying, given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from nodes.runtime import extras
 from schemas import errors
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 
 @click.command()
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
 @click.option("--yaw", type=float, metavar="RAD")
+@carrying
 @talks
-def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
+def move(client: Client, **fields: Any) -> None:
     """Move the body of an entity by hand; the map follows when it comes to rest."""
-    print(client.move(**given({"name": name, "at": at, "yaw": yaw})).text)
+    print(client.move(**given(fields)).text)
 
 
 @click.command()
