@@ -358,9 +358,10 @@ class KnowledgeBase:
         said = tuple(answers.said_of_place(self.map))
         entities = tuple(self.map.entities()) if said else ()
         triples = [*self.map.tbox, *self.map.abox()]
+        limits = self.map.classes.limits
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(triples, query.engine), denied=tuple(denied(Space(entities), said))
+                answers.check(triples, query.engine), denied=tuple(denied(Space(entities, limits), said))
             )
         )
 
