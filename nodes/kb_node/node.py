@@ -74,6 +74,8 @@ from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Pos
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+CHECKPOINT_DELAY_S = 3.0
+"""After a very large commit, which others fetch first."""
 _FEW = 1000
 """Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
@@ -93,6 +95,9 @@ class KnowledgeBase:
         self._now, self._then = whereabouts.Now(self.map), whereabouts.Then(self.map, self._past)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
+        self._writing: Future[int] | None = None
+        """While a checkpoint is written: the number of its last commit."""
         self._sparql = SparqlService(
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
@@ -179,6 +184,8 @@ class KnowledgeBase:
         self._node.afterwards(lambda: self._node.describe(self._summary()))
         if commit.tbox:
             self._node.note(self._notes())
+        if self.map.checkpoint_is_urgent:
+            self._node.later(CHECKPOINT_DELAY_S, self._checkpoint_if_urgent)
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -362,9 +369,10 @@ class KnowledgeBase:
         said = tuple(answers.said_of_place(self.map))
         entities = tuple(self.map.entities()) if said else ()
         triples = [*self.map.tbox, *self.map.abox()]
+        limits = self.map.classes.limits
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(triples, query.engine), denied=tuple(denied(Space(entities), said))
+                answers.check(triples, query.engine), denied=tuple(denied(Space(entities, limits), said))
             )
         )
 
@@ -395,17 +403,39 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
-        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
-            return
         with suppress(errors.Refused):
-            self.map.checkpoint()
+            if self._writing is not None:
+                self.map.written(self._writing.result())
+            if not self.map.is_large or self.map.checkpoint_is_due(quiet=True):
+                self.map.checkpoint()
 
     def _checkpoint(self) -> None:
-        """In a quiet moment, if there is one: nobody is answered meanwhile."""
+        """In a quiet moment, if there is one."""
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
-            self.map.checkpoint()
+            self._begin_checkpoint()
+
+    def _checkpoint_if_urgent(self) -> None:
+        if self.map.checkpoint_is_urgent:
+            self._begin_checkpoint()
+
+    def _begin_checkpoint(self) -> None:
+        """Write the map down as it is now, beside the node's other work."""
+        if self._writing is not None:
+            return
+        picture = self.map.picture()
+
+        def write() -> int:
+            self._journal.checkpoint(picture)
+            return picture.seq
+
+        def end(done: Future[int]) -> None:
+            self._writing = None
             heap.trim()
+            self.map.written(done.result())
+
+        self._writing = self._beside.submit(write)
+        self._writing.add_done_callback(lambda done: self._node.soon(lambda: end(done)))
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)

@@ -18,7 +18,7 @@ from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, roles
 from schemas.entities import Entity
 
 if TYPE_CHECKING:
@@ -288,6 +288,13 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 print(output.show.commit_line(commit), flush=True)
     from nodes import bus
 
+    if client.identity is not None:
+        followed = roles.followed(client.identity.role)
+        if not bus.includes(followed, keyexpr):
+            raise errors.Refused(
+                f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
+                f" {', '.join(followed)}"
+            )
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
 
