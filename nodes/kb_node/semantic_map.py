@@ -77,7 +77,12 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
-        self.places = Places(self._entities, self.entities, lambda p: self.reasoner.asserted(None, p, None))
+        self.places = Places(
+            self._entities,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+        )
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None

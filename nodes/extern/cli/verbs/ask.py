@@ -252,16 +252,29 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
 @click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
+@click.option("--on", metavar="THING", shell_complete=entity_names, help="Watch what comes to be on it.")
+@click.option("--in", "in_", metavar="PLACE", shell_complete=entity_names, help="... in it, or inside it.")
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="... near it.")
+@click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
+@click.option(
+    "--class", "class_", metavar="CLASS", shell_complete=class_names, help="With these: only this class."
+)
 @talks
-def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
-    """Print messages on a Zenoh key expression as they are published; by default, the commits."""
-    if query is not None and keyexpr != keys.COMMIT.key:
-        raise errors.BadRequest("give a key expression or --sparql, not both")
+def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **where: Any) -> None:
+    """Print messages on a Zenoh key expression as they are published; by default, the commits.
+
+    THING and PLACE are a name, a reference or a class, as for list; what comes (+) and goes (-) is told.
+    """
+    asks_where = any(word is not None for word in where.values())
+    if (query is not None) + (keyexpr != keys.COMMIT.key) + asks_where > 1:
+        raise errors.BadRequest("give one of: a key expression, --sparql, or --on, --in and --near")
     from nodes.extern import availability
 
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
+        elif asks_where:
+            sparql_answers.watch_places(client, inferred=inferred, **where)
         else:
             _watch_key(client, keyexpr)
 
