@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 @click.option("--yaw", type=float, metavar="RAD")
 @talks
 def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
-    """Move the body of an entity by hand; the map follows when it comes to rest."""
+    """Move the body of an entity by hand.
+
+    The map follows when it comes to rest.
+    """
     print(client.move(**given({"name": name, "at": at, "yaw": yaw})).text)
 
 
@@ -47,7 +50,10 @@ def step(client: Client, seconds: float) -> None:
 @click.command()
 @talks
 def reset(client: Client) -> None:
-    """Put every body where the map says; bodies that could not be created are tried again."""
+    """Put every body where the map says it stands.
+
+    Bodies that could not be created are tried again.
+    """
     print(client.reset().text)
 
 
