@@ -32,6 +32,12 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
+def few(names: Sequence[str], most: int = 3) -> str:
+    """`a, b, c and 7 more`."""
+    more = len(names) - most
+    return f"{', '.join(names[:most])} and {more} more" if more > 0 else ", ".join(names)
+
+
 def commits(seqs: Sequence[int]) -> str:
     """`commit 7`, `commits 7, 8`."""
     return f"commit{'s' * (len(seqs) > 1)} {', '.join(map(str, seqs))}"
