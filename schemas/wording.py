@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from msgspec import DecodeError, ValidationError, inspect
@@ -32,10 +32,18 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
-def few(names: Sequence[str], most: int = 3) -> str:
-    """`a, b, c and 7 more`."""
-    more = len(names) - most
-    return f"{', '.join(names[:most])} and {more} more" if more > 0 else ", ".join(names)
+def few(names: Collection[str], most: int = 10) -> str:
+    """`cup1, plate1 and spoon1`; of more than `most` the first, and the number of the others."""
+    shown = list(names) if len(names) <= most else [*list(names)[: most - 1], f"{len(names) - most + 1} more"]
+    *rest, last = shown or ["nothing"]
+    return f"{', '.join(rest)} and {last}" if rest else last
+
+
+def carried(name: str, load: Collection[str]) -> str:
+    """What a thing carried along."""
+    if not load:
+        return f"nothing stands on {name} or is inside it"
+    return f"{name} carried {few(load)} along"
 
 
 def commits(seqs: Sequence[int]) -> str:

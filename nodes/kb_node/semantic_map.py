@@ -14,13 +14,14 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
+from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
-from schemas import agents, errors
+from schemas import agents, errors, wording
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
@@ -28,6 +29,7 @@ from schemas.explanations import Term, Triple
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
 CHECKPOINT_EVERY_TRIPLES = 100_000
+"""Triples that changed; at once if they are half of the map."""
 LARGE = 1_000_000
 """Triples."""
 PART = 250_000
@@ -75,14 +77,22 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
+        self.places = Places(
+            self._entities,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+        )
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
         self._checkpointed = 0
-        self._changed_since = 0
-        """Triples that changed since the checkpoint."""
+        self._changed = self._changed_then = 0
+        """Triples that changed, and those of them that are in the checkpoint."""
+        self._pictured = (0, 0)
+        """The number of the last commit in the last picture, and how many triples had changed."""
         self._replay(start)
 
     # Asking
@@ -172,7 +182,7 @@ class SemanticMap:
         return made or self._journal.commit_of(transaction.id)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        transaction = self._spelled_out(transaction)
+        transaction, notes = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
@@ -180,15 +190,22 @@ class SemanticMap:
         inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
         if not retracted and not inserted:
             return None
+        denied = self.places.taken_back(self.reasoner, self.classes, retracted, inserted)
+        retracted += tuple(t for t in denied.triples if t not in self.tbox and t not in wanted)
         for triple in retracted:
             if triple in self.tbox:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
         with gc_pause.uncollected():
-            commit = self._signed(transaction, retracted, inserted)
+            commit = self._signed(transaction, retracted, inserted, notes=(*notes, *denied.notes))
             begun = commit_encoding.early(commit) if self._look is None else None
-            return self._apply(commit, lambda whole: self._write(whole, begun=begun))
+            return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+
+    def _with_doubts(self, commit: Commit) -> Commit:
+        """With a word on what it says of places and is not so."""
+        doubts = self.places.doubts(commit)
+        return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
     def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
         """What `look(commit)` sees once `change` would be durable; then all is taken back.
@@ -265,6 +282,7 @@ class SemanticMap:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
         self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+        self.places.take(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
                 self._entities.pop(name, None)
@@ -274,58 +292,80 @@ class SemanticMap:
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
-        if quiet and self._changed_since > CHECKPOINT_EVERY_TRIPLES:
+        if quiet and self._changed - self._changed_then > CHECKPOINT_EVERY_TRIPLES:
             return True
         if quiet and self._journal.tbox_changes(after=self._checkpointed):
             return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     @property
+    def checkpoint_is_urgent(self) -> bool:
+        """Would the next start have to replay most of the map?"""
+        changed = self._changed - self._changed_then
+        return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= len(self.reasoner)
+
+    @property
     def is_large(self) -> bool:
-        """Does a checkpoint take longer than a node has to stop?"""
+        """Does a checkpoint take so long that nobody should wait for it without need?"""
         return len(self.reasoner) > LARGE
+
+    def picture(self) -> Checkpoint:
+        """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        self._pictured = self.seq, self._changed
+        columns = self.reasoner.columns()
+        return Checkpoint(
+            seq=self.seq,
+            triples=() if columns is not None else tuple(self.abox()),
+            columns=columns,
+            entities=tuple(self._entities.values()),
+            read_by=conclusions_format.mark(),
+        )
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.
 
         Raises Refused when the disk does not take it; then the history is replayed.
         """
-        if self.seq == self._checkpointed:
-            return
-        self._journal.checkpoint(
-            Checkpoint(
-                seq=self.seq,
-                triples=tuple(self.abox()),
-                entities=tuple(self._entities.values()),
-                read_by=conclusions_format.mark(),
-            ),
-            self._progress,
-        )
-        self._checkpointed, self._changed_since = self.seq, 0
+        if self.seq != self._checkpointed:
+            self._journal.checkpoint(self.picture(), self._progress)
+            self.written(self.seq)
 
-    def _spelled_out(self, transaction: Transaction) -> Transaction:
-        """The transaction with its intents said in triples, too."""
+    def written(self, seq: int) -> None:
+        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
+        self._checkpointed, self._changed_then = seq, self._pictured[1]
+
+    def _spelled_out(self, transaction: Transaction) -> tuple[Transaction, tuple[str, ...]]:
+        """The transaction with its intents said in triples, too; and what is to be known of them."""
         remove, edit, add = transaction.remove, transaction.edit, transaction.add
         if not (remove or edit or add):
-            return transaction
+            return transaction, ()
         draft = entity_writing.Draft(self.reasoner, self.classes, self.tbox, self._entities)
         draft.remove([self.entity(name) for name in self.steadily(remove)])
+        notes = list(self.places.left_behind(remove)) if remove else []
         for one in self.steadily(edit):
             draft.edit(self.entity(one.name), one)
+            if one.carry:
+                load = self.places.load_of(one, edit)
+                for other in load:
+                    draft.edit(self._entities[other.name], other)
+                notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
-        return structs.replace(
+        spelled_out = structs.replace(
             transaction,
             retract=(*transaction.retract, *draft.retract),
             insert=(*transaction.insert, *draft.insert),
         )
+        return spelled_out, tuple(notes)
 
     def _replay(self, start: Checkpoint) -> None:
-        self._change(insert=start.triples)
+        is_ours = start.read_by == conclusions_format.mark()
+        if start.columns is None or not is_ours or not self.reasoner.fill(start.columns):
+            self._change(insert=tuple(start.said()))
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == conclusions_format.mark():
+        elif is_ours:
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
@@ -346,6 +386,7 @@ class SemanticMap:
         inserted: tuple[Triple, ...],
         *,
         tbox: bool = False,
+        notes: tuple[str, ...] = (),
     ) -> Commit:
         """The next commit, by the transaction's author."""
         return Commit(
@@ -362,6 +403,7 @@ class SemanticMap:
             tbox=tbox,
             retracted=retracted,
             inserted=inserted,
+            notes=notes,
         )
 
     def _switch(
@@ -383,7 +425,12 @@ class SemanticMap:
             raise
         return self._taken(commit)
 
-    def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
+    def _apply(
+        self,
+        commit: Commit,
+        make_durable: Callable[[Commit], None],
+        noted: Callable[[Commit], Commit] = lambda commit: commit,
+    ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
@@ -392,7 +439,7 @@ class SemanticMap:
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change, subjects - known)
+            commit = noted(self._with_effects(commit, owners, change, subjects - known))
             make_durable(commit)
         except BaseException:
             self._change(delete=commit.inserted, insert=commit.retracted)
@@ -426,7 +473,8 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
-        self._changed_since += len(commit.inserted) + len(commit.retracted)
+        self.places.take(commit.names, commit.retracted, commit.inserted)
+        self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
             before = {name: self._entities.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))

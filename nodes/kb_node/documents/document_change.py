@@ -64,7 +64,7 @@ def refused_tbox(
         return refusal
     return errors.BadFile(
         f"{load.filename or 'the file'} cannot be the TBox: it describes {wording.entities(len(described))}"
-        f" ({wording.few(described)}), and with the map that is a contradiction; load a map without --tbox"
+        f" ({wording.few(described, 4)}), and with the map that is a contradiction; load a map without --tbox"
     )
 
 

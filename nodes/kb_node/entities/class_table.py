@@ -13,6 +13,7 @@ from nodes.kb_node.entities.alignments import Alignment
 from nodes.kb_node.entities.property_names import PropertyNames
 from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.relations import thresholds
 from ontology import prefixes, stars
 from ontology import vocabulary as v
 from ontology.name_index import Named, NameIndex
@@ -85,6 +86,8 @@ class ClassTable:
         self.fixed: frozenset[Term] = frozenset(
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
+        self.limits = thresholds.of_tbox(lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None)))
+        """When the spatial relations hold."""
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     @cached_property

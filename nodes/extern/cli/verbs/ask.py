@@ -18,7 +18,7 @@ from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, roles
 from schemas.entities import Entity
 
 if TYPE_CHECKING:
@@ -255,19 +255,30 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
 @click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
+@click.option("--on", metavar="THING", shell_complete=entity_names, help="Watch what comes to be on it.")
+@click.option("--in", "in_", metavar="PLACE", shell_complete=entity_names, help="... in it, or inside it.")
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="... near it.")
+@click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
+@click.option(
+    "--class", "class_", metavar="CLASS", shell_complete=class_names, help="With these: only this class."
+)
 @talks
-def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
+def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **where: Any) -> None:
     """Print the commits, or other messages, as they are published.
 
-    KEYEXPR is a Zenoh key expression.
+    KEYEXPR is a Zenoh key expression. THING and PLACE are a name, a reference or a class, as for list; what
+    comes (+) and goes (-) is told.
     """
-    if query is not None and keyexpr != keys.COMMIT.key:
-        raise errors.BadRequest("give a key expression or --sparql, not both")
+    asks_where = any(word is not None for word in where.values())
+    if (query is not None) + (keyexpr != keys.COMMIT.key) + asks_where > 1:
+        raise errors.BadRequest("give one of: a key expression, --sparql, or --on, --in and --near")
     from nodes.extern import availability
 
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
+        elif asks_where:
+            sparql_answers.watch_places(client, inferred=inferred, **where)
         else:
             _watch_key(client, keyexpr)
 
@@ -281,6 +292,13 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 print(output.show.commit_line(commit), flush=True)
     from nodes import bus
 
+    if client.identity is not None:
+        followed = roles.followed(client.identity.role)
+        if not bus.includes(followed, keyexpr):
+            raise errors.Refused(
+                f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
+                f" {', '.join(followed)}"
+            )
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
 

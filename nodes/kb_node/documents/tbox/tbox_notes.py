@@ -91,7 +91,7 @@ def described(names: list[str]) -> str:
     if not names:
         return ""
     are = f"{wording.entities(len(names))} {'is' if len(names) == 1 else 'are'}"
-    return f"{are} described by the TBox itself, so no command changes them: {wording.few(names)}"
+    return f"{are} described by the TBox itself, so no command changes them: {wording.few(names, 4)}"
 
 
 def slow(reasoner: Reasoner) -> str:

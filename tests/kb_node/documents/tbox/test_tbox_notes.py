@@ -58,7 +58,7 @@ def test_what_is_inert_in_the_shipped_tbox_is_not_told_but_what_is_added_is():
 def test_entities_that_the_tbox_describes_are_counted():
     (said,) = notes(":chair1 a dm:Chair . :a a dm:Seat . :kitchen1 a dm:Kitchen . :b a dm:Seat .")
     assert said == (
-        "4 entities are described by the TBox itself, so no command changes them: a, b, chair1 and 1 more"
+        "4 entities are described by the TBox itself, so no command changes them: a, b, chair1 and kitchen1"
     )
 
 
