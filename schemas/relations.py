@@ -65,3 +65,8 @@ class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     within: float | None = None
     nearest: int | None = None
     to: Text | None = None
+
+    @property
+    def words(self) -> tuple[str | None, str | None, str | None, str | None]:
+        """What is meant by name, reference or class: on, in, near, to."""
+        return self.on, self.in_, self.near, self.to
