@@ -363,6 +363,8 @@ class KnowledgeBase:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
+        except errors.Inconsistent as error:
+            raise document_change.refused_tbox(self.map, load, tbox, error) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

@@ -348,7 +348,8 @@ class SemanticMap:
                 load = self.places.load_of(one, edit)
                 for other in load:
                     draft.edit(self._entities[other.name], other)
-                notes.append(wording.carried(one.name, [other.name for other in load]))
+                if load or transaction.source == "operator":
+                    notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(

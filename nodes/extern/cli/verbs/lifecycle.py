@@ -169,7 +169,10 @@ def down(data: Path | None, connect: str | None) -> None:
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
-    """Repair a damaged map: restore the last good commit; the damaged file is kept."""
+    """Restore the last good commit of a damaged map.
+
+    The damaged file is kept.
+    """
     extras.require("semmap repair", "kb")
     from nodes.kb_node.storage.repair import repair as repair_journal
 
