@@ -22,6 +22,7 @@ from supervisor.xmlrpc import SupervisorTransport
 
 from nodes.runtime.notify import NOTIFY_VARIABLE
 from nodes.supervisor import orphans, registry
+from nodes.supervisor.privacy import UMASK, make_private
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
@@ -31,6 +32,10 @@ _STOP_WAIT_S = 3
 _ANSWER_S = 3.0
 """Seconds: supervisord answers within milliseconds, or it hangs."""
 _NO_ANSWER = (OSError, HTTPException, xmlrpc.client.Error)
+_STOP_WAITS_S = {"kb_node": 30}
+"""Longer for those who may be writing: a checkpoint of a million entities takes some time."""
+LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
+"""Until supervisord itself has ended."""
 _WONT_MEND = "0,1,2"
 """Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
 
@@ -72,6 +77,7 @@ class Supervisor:
         command = [sys.executable, "-P", "-m", "nodes.supervisor.daemon", "-n", "-c", str(self._conf_path)]
         environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
         with (self.logs / "supervisord.out").open("wb") as out:
+            make_private(self.data)
             return subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
@@ -79,17 +85,18 @@ class Supervisor:
                 stderr=out,
                 start_new_session=True,
                 env=environment,
+                umask=UMASK,
             )
 
     def seed(self, settings: Settings) -> str:
         """Make the journal; what was done, in words. Raises the reason why it could not be made."""
         try:
-            self.data.mkdir(parents=True, exist_ok=True)
+            make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
-        run = subprocess.run(command, capture_output=True, text=True)
+        run = subprocess.run(command, capture_output=True, text=True, umask=UMASK)
         if run.returncode != 0:
             reason = (
                 run.stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
@@ -133,7 +140,7 @@ class Supervisor:
             others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
             hint = f"; running systems: {others}" if others else ""
             raise errors.NoAnswer(f"no system is running on {self.data}{hint}") from None
-        deadline = time.monotonic() + 2 * _STOP_WAIT_S
+        deadline = time.monotonic() + LONGEST_STOP_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)
         self.end_leftovers()
@@ -168,6 +175,7 @@ class Supervisor:
             "pidfile": str(self.data / "supervisord.pid"),
             "childlogdir": str(self.logs),
             "identifier": GROUP,
+            "umask": f"{UMASK:03o}",
         }
         conf["rpcinterface:supervisor"] = {
             "supervisor.rpcinterface_factory": "supervisor.rpcinterface:make_main_rpcinterface"
@@ -182,7 +190,7 @@ class Supervisor:
                 "startretries": "10",
                 "autorestart": "unexpected",
                 "exitcodes": _WONT_MEND,
-                "stopwaitsecs": str(_STOP_WAIT_S),
+                "stopwaitsecs": str(_STOP_WAITS_S.get(node, _STOP_WAIT_S)),
                 "stopasgroup": "true",
                 "killasgroup": "true",
                 "redirect_stderr": "true",

@@ -18,7 +18,9 @@ import psutil  # type: ignore[import-untyped]
 
 _LOOK_S = 0.25
 _STOP_S = 5.0
-"""Seconds in which a process stops by itself; then it is ended."""
+"""Seconds for what was left behind to stop; then it is killed, which loses nothing that was acknowledged."""
+_STOP_ALONE_S = 40.0
+"""Seconds for an orphan to stop by itself: it may be writing a checkpoint."""
 
 
 def end_when_orphaned() -> None:
@@ -29,7 +31,7 @@ def end_when_orphaned() -> None:
         while os.getppid() == parent:
             time.sleep(_LOOK_S)
         os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(_STOP_S)
+        time.sleep(_STOP_ALONE_S)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True, name="end-when-orphaned").start()
