@@ -103,6 +103,7 @@ class KnowledgeBase:
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.entities,
         )
+        self.map.foretell = self._sparql.foretell
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
