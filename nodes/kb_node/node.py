@@ -16,6 +16,7 @@ from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import answers, questions, trials, whereabouts
 from nodes.kb_node.answers.pages import Pages
+from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
@@ -104,12 +105,14 @@ class KnowledgeBase:
             self.map.entities,
         )
         self.map.foretell = self._sparql.foretell
+        self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
         node.ready(self._summary())
 
@@ -178,6 +181,7 @@ class KnowledgeBase:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
         if commit.tbox:
             self._node.note(self._notes())
@@ -360,15 +364,18 @@ class KnowledgeBase:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
+        except errors.Inconsistent as error:
+            raise document_change.refused_tbox(self.map, load, tbox, error) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         said = tuple(answers.said_of_place(self.map))
         entities = tuple(self.map.entities()) if said else ()
         triples = [*self.map.tbox, *self.map.abox()]
+        limits = self.map.classes.limits
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(triples, query.engine), denied=tuple(denied(Space(entities), said))
+                answers.check(triples, query.engine), denied=tuple(denied(Space(entities, limits), said))
             )
         )
 
@@ -376,13 +383,24 @@ class KnowledgeBase:
         """A query, evaluated beside the node's own work."""
         return self._sparql.ask(query, self.map.seq)
 
-    def on_watch(self, query: Watch) -> Future[Watching]:
-        """A standing query."""
-        return self._sparql.ask(query, self.map.seq)
+    def on_watch(self, query: Watch) -> Watching | Future[Watching]:
+        """A standing query, or a standing question of where things are."""
+        asks_where = query.where is not None or query.class_ is not None
+        if (query.query is None) != asks_where:
+            raise errors.BadRequest(
+                "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
+            )
+        if not asks_where:
+            return self._sparql.ask(query, self.map.seq)
+        if query.where is None or query.inferred:
+            raise errors.BadRequest(
+                "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
+            )
+        return self._standing_places.watch(query)
 
-    def on_renew(self, renewal: Renew) -> Future[Done]:
+    def on_renew(self, renewal: Renew) -> Done | Future[Done]:
         """A standing query goes on, or ends."""
-        return self._sparql.ask(renewal, self.map.seq)
+        return self._standing_places.renew(renewal) or self._sparql.ask(renewal, self.map.seq)
 
     def close(self) -> None:
         """Leave a checkpoint for a quick start, if the disk takes it."""

@@ -77,7 +77,12 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
-        self.places = Places(self._entities, self.entities, lambda p: self.reasoner.asserted(None, p, None))
+        self.places = Places(
+            self._entities,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+        )
         self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
         """Told of each commit before it is checked; what it returns is called if that is not made."""
         self._look: Callable[[Commit], Any] | None = None
@@ -351,7 +356,8 @@ class SemanticMap:
                 load = self.places.load_of(one, edit)
                 for other in load:
                     draft.edit(self._entities[other.name], other)
-                notes.append(wording.carried(one.name, [other.name for other in load]))
+                if load or transaction.source == "operator":
+                    notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(

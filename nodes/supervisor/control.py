@@ -18,6 +18,7 @@ from typing import Any
 from supervisor.xmlrpc import SupervisorTransport
 
 from nodes.supervisor import registry
+from nodes.supervisor.privacy import UMASK, make_private
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
@@ -59,19 +60,25 @@ class Supervisor:
         self._conf_path.write_text(self._conf(settings))
         command = [sys.executable, "-P", "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
         with (self.logs / "supervisord.out").open("wb") as out:
+            make_private(self.data)
             return subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=out,
+                start_new_session=True,
+                umask=UMASK,
             )
 
     def seed(self, settings: Settings) -> str:
         """Make the journal; what was done, in words. Raises the reason why it could not be made."""
         try:
-            self.data.mkdir(parents=True, exist_ok=True)
+            make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
-        run = subprocess.run(command, capture_output=True, text=True)
+        run = subprocess.run(command, capture_output=True, text=True, umask=UMASK)
         if run.returncode != 0:
             reason = (
                 run.stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
@@ -135,6 +142,7 @@ class Supervisor:
             "pidfile": str(self.data / "supervisord.pid"),
             "childlogdir": str(self.logs),
             "identifier": GROUP,
+            "umask": f"{UMASK:03o}",
         }
         conf["rpcinterface:supervisor"] = {
             "supervisor.rpcinterface_factory": "supervisor.rpcinterface:make_main_rpcinterface"

@@ -111,7 +111,8 @@ class _Foreground:
     def _network(self) -> bus.Network:
         secure = self._settings.secure
         identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
-        return bus.Network(connect=(self._settings.reachable,), identity=identity)
+        own_config = self._settings.zenoh_config
+        return bus.Network(connect=(self._settings.reachable,), identity=identity, own_config=own_config)
 
     def _hear(self) -> None:
         with contextlib.suppress(queue.Empty):
