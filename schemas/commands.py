@@ -102,7 +102,9 @@ class Update(Command[Changed], frozen=True, tag="update"):
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
     `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
-    that would make an object a place, or a place an object, is refused without `force`.
+    that would make an object a place, or a place an object, is refused without `force`. With `carry`, what
+    stands on the entity or is inside it moves with it as one rigid body, in the same commit; not what `leave`
+    names, and what stands on that.
     """
 
     name: str
@@ -119,6 +121,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     set: tuple[Text, ...] = ()
     unset: tuple[Text, ...] = ()
     force: bool = False
+    carry: bool = False
+    leave: tuple[str, ...] = ()
     dry_run: bool = False
 
 
@@ -375,11 +379,17 @@ class Renew(Command[Done], frozen=True, tag="renew"):
 
 
 class Move(Command[Moved], frozen=True, tag="move"):
-    """Move the body of an entity by hand; the map follows when it comes to rest."""
+    """Move the body of an entity by hand; the map follows when it comes to rest.
+
+    With `carry`, the bodies of what stands on it or is inside it (as the map has it) are moved with it as one
+    rigid body, and the map follows all of them in one commit; not those that `leave` names.
+    """
 
     name: str
     at: Vector
     yaw: Angle | None = None
+    carry: bool = False
+    leave: tuple[str, ...] = ()
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):

@@ -59,7 +59,7 @@ class Coordinator:
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
-        running = Running(config.truth, door, self._keeping, self._ask_sim)
+        running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),

@@ -62,6 +62,8 @@ def update(command: Update, found: ClassInfo | None = None) -> Transaction:
         conflict=command.conflict,
         unset=tuple(map(_unassignment, command.unset)),
         set=tuple(map(_assignment, command.set)),
+        carry=command.carry,
+        leave=command.leave,
     )
     return transaction(command, f"update {command.name}", edit=[edit])
 

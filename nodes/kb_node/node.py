@@ -19,7 +19,7 @@ from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
-from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.said import denied
 from nodes.kb_node.relations.space import Space
@@ -37,6 +37,7 @@ from schemas.bridge import (
     Entities,
     LoadDocument,
     Loaded,
+    LoadOf,
     LoadTBox,
     MadeBy,
     Outcome,
@@ -65,7 +66,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, PropertyInfo
-from schemas.explanations import Explanation
+from schemas.explanations import Explanation, Triple
 from schemas.health import LOADING
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
@@ -114,6 +115,7 @@ class KnowledgeBase:
             SnapshotQuery.answered_by(self.on_snapshot),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
+            LoadOf.answered_by(self.on_load_of),
             MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
@@ -168,7 +170,6 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._now.touch(commit.names)
         self._announcer.announce(commit)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
@@ -257,6 +258,10 @@ class KnowledgeBase:
         """The triples about some entities."""
         return self.map.stars(query.names)
 
+    def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
+        """What a thing bears."""
+        return tuple(self.map.places.borne_by(query.name, query.leave))
+
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
         """The commits that some commands have made."""
         return tuple(_effects(self._journal.commit_of(id_)) for id_ in query.ids)
@@ -302,12 +307,17 @@ class KnowledgeBase:
 
     def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
-        reasoner = self.map.reasoner
+        reasoner, names = self.map.reasoner, self.map.classes.prefixed
+        needed: list[Triple] | None = None
         if questions.is_quick(reasoner, asked):
-            with suppress(NotCompilable):
+            try:
                 return answer(reasoner, asked, anew=False)
-        asserted = list(reasoner.asserted())
-        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
+            except questions.Undecided:
+                needed = nearby(reasoner, asked.terms)
+            except NotCompilable:
+                pass
+        triples = list(reasoner.asserted()) if needed is None else needed
+        return self._aside.submit(lambda: answer(questions.copy_of(triples, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

@@ -14,13 +14,14 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
+from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
-from schemas import agents, errors
+from schemas import agents, errors, wording
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
@@ -75,6 +76,7 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
+        self.places = Places(self._entities, self.entities, lambda p: self.reasoner.asserted(None, p, None))
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
@@ -172,7 +174,7 @@ class SemanticMap:
         return made or self._journal.commit_of(transaction.id)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        transaction = self._spelled_out(transaction)
+        transaction, notes = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
@@ -180,15 +182,22 @@ class SemanticMap:
         inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
         if not retracted and not inserted:
             return None
+        denied = self.places.taken_back(self.reasoner, self.classes, retracted, inserted)
+        retracted += tuple(t for t in denied.triples if t not in self.tbox and t not in wanted)
         for triple in retracted:
             if triple in self.tbox:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
         with gc_pause.uncollected():
-            commit = self._signed(transaction, retracted, inserted)
+            commit = self._signed(transaction, retracted, inserted, notes=(*notes, *denied.notes))
             begun = commit_encoding.early(commit) if self._look is None else None
-            return self._apply(commit, lambda whole: self._write(whole, begun=begun))
+            return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+
+    def _with_doubts(self, commit: Commit) -> Commit:
+        """With a word on what it says of places and is not so."""
+        doubts = self.places.doubts(commit)
+        return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
     def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
         """What `look(commit)` sees once `change` would be durable; then all is taken back.
@@ -265,6 +274,7 @@ class SemanticMap:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
         self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+        self.places.take(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
                 self._entities.pop(name, None)
@@ -303,22 +313,29 @@ class SemanticMap:
         )
         self._checkpointed, self._changed_since = self.seq, 0
 
-    def _spelled_out(self, transaction: Transaction) -> Transaction:
-        """The transaction with its intents said in triples, too."""
+    def _spelled_out(self, transaction: Transaction) -> tuple[Transaction, tuple[str, ...]]:
+        """The transaction with its intents said in triples, too; and what is to be known of them."""
         remove, edit, add = transaction.remove, transaction.edit, transaction.add
         if not (remove or edit or add):
-            return transaction
+            return transaction, ()
         draft = entity_writing.Draft(self.reasoner, self.classes, self.tbox, self._entities)
         draft.remove([self.entity(name) for name in self.steadily(remove)])
+        notes = list(self.places.left_behind(remove)) if remove else []
         for one in self.steadily(edit):
             draft.edit(self.entity(one.name), one)
+            if one.carry:
+                load = self.places.load_of(one, edit)
+                for other in load:
+                    draft.edit(self._entities[other.name], other)
+                notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
-        return structs.replace(
+        spelled_out = structs.replace(
             transaction,
             retract=(*transaction.retract, *draft.retract),
             insert=(*transaction.insert, *draft.insert),
         )
+        return spelled_out, tuple(notes)
 
     def _replay(self, start: Checkpoint) -> None:
         self._change(insert=start.triples)
@@ -346,6 +363,7 @@ class SemanticMap:
         inserted: tuple[Triple, ...],
         *,
         tbox: bool = False,
+        notes: tuple[str, ...] = (),
     ) -> Commit:
         """The next commit, by the transaction's author."""
         return Commit(
@@ -362,6 +380,7 @@ class SemanticMap:
             tbox=tbox,
             retracted=retracted,
             inserted=inserted,
+            notes=notes,
         )
 
     def _switch(
@@ -383,7 +402,12 @@ class SemanticMap:
             raise
         return self._taken(commit)
 
-    def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
+    def _apply(
+        self,
+        commit: Commit,
+        make_durable: Callable[[Commit], None],
+        noted: Callable[[Commit], Commit] = lambda commit: commit,
+    ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
@@ -392,7 +416,7 @@ class SemanticMap:
         )
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
-            commit = self._with_effects(commit, owners, change, subjects - known)
+            commit = noted(self._with_effects(commit, owners, change, subjects - known))
             make_durable(commit)
         except BaseException:
             self._change(delete=commit.inserted, insert=commit.retracted)
@@ -426,6 +450,7 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
+        self.places.take(commit.names, commit.retracted, commit.inserted)
         self._changed_since += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
             before = {name: self._entities.get(name) for name in commit.names}

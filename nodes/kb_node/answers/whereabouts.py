@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
 from nodes.kb_node.relations.said import denied
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
@@ -28,32 +25,27 @@ class Now:
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
-        self._surroundings = Surroundings(semantic_map.entities, semantic_map.find)
-
-    def touch(self, names: Iterable[str]) -> None:
-        """These entities came, went or changed."""
-        self._surroundings.touch(names)
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """The entities of a class; with `where` those that are there. Raises UnknownClass, UnknownName."""
         found = answers.entities_of(self._map, query.class_)
         if query.where is None:
             return found
-        return tuple(selected(self._surroundings.space(), found, query.where, self._map.entities()))
+        return tuple(selected(self._map.places.space(), found, query.where, self._map.entities()))
 
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
         entity = self._map.entity(query.name)
         if not query.where:
             return Described.of(entity)
-        space = self._surroundings.space()
+        space = self._map.places.space()
         wrong = denied(space, answers.said_of_place(self._map, entity))
         return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName."""
         self._map.entity(query.name)
-        return tuple(relations(self._surroundings.space(), query))
+        return tuple(relations(self._map.places.space(), query))
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """What was measured of where a thing is, and what follows besides; None for any other question.
@@ -62,7 +54,7 @@ class Now:
         """
         if query.negated or query.predicate not in SPOKEN:
             return None
-        seen = explained(self._surroundings.space(), query.name, query.predicate, query.value)
+        seen = explained(self._map.places.space(), query.name, query.predicate, query.value)
         if not seen:
             return None
         explanation = questions.why(self._map.reasoner, asked)

@@ -89,6 +89,11 @@ class Solid:
         return self.position[2] + max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
 
     @cached_property
+    def lowest_top(self) -> float:
+        """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
+        return min([part.high[2] for part in self.parts], default=self.top)
+
+    @cached_property
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
         if not self.is_level:

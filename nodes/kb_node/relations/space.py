@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
@@ -32,6 +33,8 @@ class Space:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self._grid = Grid()
+        self._raised: set[str] = set()
+        """The things that are above the floor or of a size of their own."""
         for entity in entities:
             self.put(entity)
 
@@ -40,21 +43,50 @@ class Space:
         self.take(entity.name)
         solid = solid_of(entity)
         if solid is not None:
-            self.solids[solid.name] = solid
-            self._grid.add(solid)
+            self._add(solid)
+            if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
+                self._raised.add(solid.name)
         return solid
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
+        return not self._raised
 
     def take(self, name: str) -> None:
         """Take an entity out, if it is there."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self._grid.remove(solid)
+            self._raised.discard(name)
+
+    @contextmanager
+    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
+        """Within, these entities are as given here, and those without are not there."""
+        entities, without = tuple(entities), tuple(without)
+        names = {*(entity.name for entity in entities), *without}
+        before = [solid for name in names if (solid := self.solids.get(name)) is not None]
+        raised = self._raised & names
+        try:
+            for name in without:
+                self.take(name)
+            for entity in entities:
+                self.put(entity)
+            yield
+        finally:
+            for name in names:
+                self.take(name)
+            for solid in before:
+                self._add(solid)
+            self._raised |= raised
+
+    def _add(self, solid: Solid) -> None:
+        self.solids[solid.name] = solid
+        self._grid.add(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Whoever may be within a margin."""
-        names = self._grid.around(solid.bounds, margin_m)
-        names.pop(solid.name, None)
-        return [self.solids[name] for name in names]
+        """Whose bounds meet its own, or are within a margin of them."""
+        return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
@@ -62,10 +94,8 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
-        bounds, least = solid.bounds, solid.bottom - limits.gap_m
+        least = solid.bottom - limits.gap_m
         for other in self.around(solid):
-            if not measures.overlap(bounds, other.bounds):
-                continue
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
@@ -94,10 +124,11 @@ class Space:
         limits = self.limits
         if container is not None:
             below = [found for found in below if self._is_within(found[0], container[0])]
-        gaps = [made.gap_m for _, made in below]
+        gaps = [made.gap_m for _, made in below if not made.holds]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         if not below:
             return ()
+        gaps += [made.gap_m for _, made in below]
         if floor_m is not None and abs(floor_m) <= limits.gap_m:
             gaps.append(floor_m)
         nearest = min(gaps, key=_nearness)

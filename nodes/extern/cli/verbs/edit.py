@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import given, print_lines, talks, vector_option
+from nodes.extern.cli.calling import carrying, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
@@ -79,6 +79,7 @@ def add(client: Client, **fields: Any) -> None:
     "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Remove a property; may be repeated."
 )
 @click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
+@carrying
 @_dry_run
 @talks
 def update(client: Client, **fields: Any) -> None:
