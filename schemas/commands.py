@@ -356,16 +356,30 @@ class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
 
 
 class Watch(Command[Watching], frozen=True, tag="watch"):
-    """A standing SELECT: its current rows, and their changes on `semmap/jena/query/<watch>`.
+    """A standing question: its current rows, and their changes on `semmap/jena/query/<watch>`.
+
+    A SELECT; or, instead of a `query`, who is `on`, `in` or `near` something (`within` so many metres), as
+    for `List`: then a row is an entity's IRI.
 
     `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
     evaluated again when a commit may touch it, and ends `lease` seconds after the last `renew`.
     """
 
-    query: QueryText
+    query: QueryText | None = None
     inferred: bool = False
+    class_: ClassName | None = field(name="class", default=None)
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
+    near: Text | None = None
+    within: Annotated[float, Meta(gt=0.0, le=20_000.0)] | None = None
     watch: Name | None = None
     lease: Annotated[float, Meta(ge=1.0, le=3600.0)] = 30.0
+
+    @property
+    def where(self) -> Where | None:
+        """What it asks of where things are, if it does."""
+        where = Where(on=self.on, in_=self.in_, near=self.near, within=self.within)
+        return None if where == Where() else where
 
 
 class Renew(Command[Done], frozen=True, tag="renew"):

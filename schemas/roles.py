@@ -91,6 +91,11 @@ def granted(role: Role, may: Literal["ask", "follow", "publish"]) -> tuple[str, 
     return tuple(grant.key for grant in GRANTS if grant.may == may and role in grant.roles)
 
 
+def followed(role: str) -> tuple[str, ...]:
+    """The key expressions that somebody may follow; nothing for a role that there is not."""
+    return tuple(grant.key for grant in GRANTS if grant.may == "follow" and role in grant.roles)
+
+
 def default_source(role: str) -> Source:
     """What a client of this role signs as, unless it says otherwise."""
     return "perception" if role == "perception" else "operator"

@@ -158,6 +158,11 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 def _nobody(key: str) -> NoReturn:
     node = keys.SERVED_BY.get(keys.served(key.rpartition("/")[0]))
+    if name := keys.asked_as(key):
+        raise errors.NoAnswer(
+            f"no answer on {key}: not permitted, or not there: {name}'s certificate may have been revoked,"
+            f" or {node} is not running, or is starting"
+        )
     why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
         f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"

@@ -31,7 +31,7 @@ from nodes.identity import Identity
 from nodes.runtime import version
 from schemas import codec, errors, keys, roles
 from schemas.calls import reply_type
-from schemas.commands import Command, Status
+from schemas.commands import Command, Status, Watch
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
@@ -122,9 +122,25 @@ class Client(Verbs):
         return reply if read is None else read(reply)
 
     @contextlib.contextmanager
-    def watch(self, query: str, *, inferred: bool = False) -> Iterator[StandingQuery]:
-        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news."""
-        standing = StandingQuery(self.session, self._ask, query, inferred)
+    def watch(
+        self,
+        query: str | None = None,
+        *,
+        inferred: bool = False,
+        class_: str | None = None,
+        on: str | None = None,
+        in_: str | None = None,
+        near: str | None = None,
+        within: float | None = None,
+    ) -> Iterator[StandingQuery]:
+        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news.
+
+        Or, instead of a query, `on`, `in_` and `near` as for `list`: a row is an entity's IRI.
+        """
+        wanted = Watch(
+            query=query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
+        )
+        standing = StandingQuery(self.session, self._ask, _checked(wanted, {}))
         try:
             yield standing
         finally:

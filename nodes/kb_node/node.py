@@ -16,6 +16,7 @@ from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import answers, questions, trials, whereabouts
 from nodes.kb_node.answers.pages import Pages
+from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
@@ -73,6 +74,8 @@ from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Pos
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+CHECKPOINT_DELAY_S = 3.0
+"""After a very large commit, which others fetch first."""
 _FEW = 1000
 """Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
@@ -92,18 +95,23 @@ class KnowledgeBase:
         self._now, self._then = whereabouts.Now(self.map), whereabouts.Then(self.map, self._past)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
+        self._writing: Future[int] | None = None
+        """While a checkpoint is written: the number of its last commit."""
         self._sparql = SparqlService(
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.entities,
         )
+        self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
         node.count(lambda: self.map.seq)
         node.ready(self._summary())
@@ -181,9 +189,12 @@ class KnowledgeBase:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit, told=told)
         self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
         self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
+        if self.map.checkpoint_is_urgent:
+            self._node.later(CHECKPOINT_DELAY_S, self._checkpoint_if_urgent)
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -362,15 +373,18 @@ class KnowledgeBase:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
+        except errors.Inconsistent as error:
+            raise document_change.refused_tbox(self.map, load, tbox, error) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         said = tuple(answers.said_of_place(self.map))
         entities = tuple(self.map.entities()) if said else ()
         triples = [*self.map.tbox, *self.map.abox()]
+        limits = self.map.classes.limits
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(triples, query.engine), denied=tuple(denied(Space(entities), said))
+                answers.check(triples, query.engine), denied=tuple(denied(Space(entities, limits), said))
             )
         )
 
@@ -378,29 +392,62 @@ class KnowledgeBase:
         """A query, evaluated beside the node's own work."""
         return self._sparql.ask(query, self.map.seq)
 
-    def on_watch(self, query: Watch) -> Future[Watching]:
-        """A standing query."""
-        return self._sparql.ask(query, self.map.seq)
+    def on_watch(self, query: Watch) -> Watching | Future[Watching]:
+        """A standing query, or a standing question of where things are."""
+        asks_where = query.where is not None or query.class_ is not None
+        if (query.query is None) != asks_where:
+            raise errors.BadRequest(
+                "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
+            )
+        if not asks_where:
+            return self._sparql.ask(query, self.map.seq)
+        if query.where is None or query.inferred:
+            raise errors.BadRequest(
+                "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
+            )
+        return self._standing_places.watch(query)
 
-    def on_renew(self, renewal: Renew) -> Future[Done]:
+    def on_renew(self, renewal: Renew) -> Done | Future[Done]:
         """A standing query goes on, or ends."""
-        return self._sparql.ask(renewal, self.map.seq)
+        return self._standing_places.renew(renewal) or self._sparql.ask(renewal, self.map.seq)
 
     def close(self) -> None:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
-        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
-            return
         with suppress(errors.Refused):
-            self.map.checkpoint()
+            if self._writing is not None:
+                self.map.written(self._writing.result())
+            if not self.map.is_large or self.map.checkpoint_is_due(quiet=True):
+                self.map.checkpoint()
 
     def _checkpoint(self) -> None:
-        """In a quiet moment, if there is one: nobody is answered meanwhile."""
+        """In a quiet moment, if there is one."""
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
-            self.map.checkpoint()
+            self._begin_checkpoint()
+
+    def _checkpoint_if_urgent(self) -> None:
+        if self.map.checkpoint_is_urgent:
+            self._begin_checkpoint()
+
+    def _begin_checkpoint(self) -> None:
+        """Write the map down as it is now, beside the node's other work."""
+        if self._writing is not None:
+            return
+        picture = self.map.picture()
+
+        def write() -> int:
+            self._journal.checkpoint(picture)
+            return picture.seq
+
+        def end(done: Future[int]) -> None:
+            self._writing = None
             heap.trim()
+            self.map.written(done.result())
+
+        self._writing = self._beside.submit(write)
+        self._writing.add_done_callback(lambda done: self._node.soon(lambda: end(done)))
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)

@@ -20,6 +20,7 @@ from nodes.kb_node.relations.said import denial, fact_of
 from nodes.kb_node.relations.sayings import Sayings, of_places
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.surroundings import Surroundings
+from nodes.kb_node.relations.thresholds import Thresholds
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors, wording
@@ -49,10 +50,14 @@ class Places:
         entities: Mapping[str, Entity],
         in_order: Callable[[], Iterable[Entity]],
         asserted: Callable[[Term], Iterable[Triple]],
+        limits: Callable[[], Thresholds],
     ) -> None:
-        """`entities` by name, as they change; `asserted(property)` are the triples of one."""
+        """`entities` by name, as they change; `asserted(property)` are the triples of one.
+
+        `limits()` are the thresholds of the TBox.
+        """
         self._entities = entities
-        self._surroundings = Surroundings(in_order, entities.get)
+        self._surroundings = Surroundings(in_order, entities.get, limits)
         self._sayings = Sayings(asserted)
 
     def space(self) -> Space:

@@ -29,6 +29,7 @@ from schemas.explanations import Term, Triple
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
 CHECKPOINT_EVERY_TRIPLES = 100_000
+"""Triples that changed; at once if they are half of the map."""
 LARGE = 1_000_000
 """Triples."""
 PART = 250_000
@@ -76,15 +77,22 @@ class SemanticMap:
         self.classes = ClassTable(self.reasoner)
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
-        self.places = Places(self._entities, self.entities, lambda p: self.reasoner.asserted(None, p, None))
+        self.places = Places(
+            self._entities,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+        )
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
         self._checkpointed = 0
-        self._changed_since = 0
-        """Triples that changed since the checkpoint."""
+        self._changed = self._changed_then = 0
+        """Triples that changed, and those of them that are in the checkpoint."""
+        self._pictured = (0, 0)
+        """The number of the last commit in the last picture, and how many triples had changed."""
         self._replay(start)
 
     # Asking
@@ -284,34 +292,47 @@ class SemanticMap:
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
-        if quiet and self._changed_since > CHECKPOINT_EVERY_TRIPLES:
+        if quiet and self._changed - self._changed_then > CHECKPOINT_EVERY_TRIPLES:
             return True
         if quiet and self._journal.tbox_changes(after=self._checkpointed):
             return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     @property
+    def checkpoint_is_urgent(self) -> bool:
+        """Would the next start have to replay most of the map?"""
+        changed = self._changed - self._changed_then
+        return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= len(self.reasoner)
+
+    @property
     def is_large(self) -> bool:
-        """Does a checkpoint take longer than a node has to stop?"""
+        """Does a checkpoint take so long that nobody should wait for it without need?"""
         return len(self.reasoner) > LARGE
+
+    def picture(self) -> Checkpoint:
+        """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        self._pictured = self.seq, self._changed
+        columns = self.reasoner.columns()
+        return Checkpoint(
+            seq=self.seq,
+            triples=() if columns is not None else tuple(self.abox()),
+            columns=columns,
+            entities=tuple(self._entities.values()),
+            read_by=conclusions_format.mark(),
+        )
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.
 
         Raises Refused when the disk does not take it; then the history is replayed.
         """
-        if self.seq == self._checkpointed:
-            return
-        self._journal.checkpoint(
-            Checkpoint(
-                seq=self.seq,
-                triples=tuple(self.abox()),
-                entities=tuple(self._entities.values()),
-                read_by=conclusions_format.mark(),
-            ),
-            self._progress,
-        )
-        self._checkpointed, self._changed_since = self.seq, 0
+        if self.seq != self._checkpointed:
+            self._journal.checkpoint(self.picture(), self._progress)
+            self.written(self.seq)
+
+    def written(self, seq: int) -> None:
+        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
+        self._checkpointed, self._changed_then = seq, self._pictured[1]
 
     def _spelled_out(self, transaction: Transaction) -> tuple[Transaction, tuple[str, ...]]:
         """The transaction with its intents said in triples, too; and what is to be known of them."""
@@ -327,7 +348,8 @@ class SemanticMap:
                 load = self.places.load_of(one, edit)
                 for other in load:
                     draft.edit(self._entities[other.name], other)
-                notes.append(wording.carried(one.name, [other.name for other in load]))
+                if load or transaction.source == "operator":
+                    notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(
@@ -338,11 +360,13 @@ class SemanticMap:
         return spelled_out, tuple(notes)
 
     def _replay(self, start: Checkpoint) -> None:
-        self._change(insert=start.triples)
+        is_ours = start.read_by == conclusions_format.mark()
+        if start.columns is None or not is_ours or not self.reasoner.fill(start.columns):
+            self._change(insert=tuple(start.said()))
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == conclusions_format.mark():
+        elif is_ours:
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
@@ -451,7 +475,7 @@ class SemanticMap:
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
         self.places.take(commit.names, commit.retracted, commit.inserted)
-        self._changed_since += len(commit.inserted) + len(commit.retracted)
+        self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
             before = {name: self._entities.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))

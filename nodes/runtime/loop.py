@@ -126,6 +126,10 @@ class Node:
 
         self._at(due_s, repeat)
 
+    def later(self, delay_s: float, handle: Callable[[], None]) -> None:
+        """Call `handle()` once, after that time, as well as the load allows."""
+        self._at(time.monotonic() + delay_s, handle)
+
     def _at(self, due_s: float, handle: Callable[[], None]) -> None:
         heapq.heappush(self._timers, (due_s, next(self._timer_numbers), handle))
 

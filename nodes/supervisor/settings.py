@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import platformdirs
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
 from nodes.identity import Identity
@@ -62,6 +62,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
     """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener."""
+    zenoh_config: str | None = None
+    """A Zenoh configuration file of one's own, for every process of the system."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
@@ -98,6 +100,9 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         In a secure system the router listens, and all others are its clients.
         """
+        return structs.replace(self._place(node), own_config=self.zenoh_config)
+
+    def _place(self, node: str) -> Network:
         if self.secure is not None:
             identity = Identity.read(Path(self.secure) / node)
             if node == ROUTER:

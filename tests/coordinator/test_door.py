@@ -397,7 +397,13 @@ def test_a_property_is_set_and_unset(door):
     reply = door.change(c.Set(name="chair1", property="isOpen", values=(True,)))
     assert (reply.text, reply.commit) == ("chair1: isOpen: false → true", 2)
     again = door.change(c.Set(name="chair1", property="isOpen", values=("yes",)))
-    assert (again.text, again.commit) == ("chair1: unchanged: already up to date", None)
+    assert (again.text, again.commit) == ("chair1: unchanged: isOpen is true", None)
+    for value, word in ((False, "isOpen"), (False, "is open")):
+        left = door.change(c.Unset(name="chair1", property=word, value=value))
+        assert (left.text, left.commit) == ("chair1: unchanged: isOpen is true", None)
+    add(door, name="chair2")
+    none = door.change(c.Unset(name="chair2", property="isOpen"))
+    assert none.text == "chair2: unchanged: isOpen is not set"
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
         door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):

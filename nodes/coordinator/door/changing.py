@@ -6,14 +6,15 @@ from collections.abc import Mapping
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
-from nodes.coordinator.dialogues import Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
+from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
-from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
+from schemas.commands import Add, Clear, Command, Properties, Remove, Set, Unset, Update
 from schemas.commits import Edit, Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
@@ -88,7 +89,22 @@ def unset(view: KnownMap, command: Unset) -> Talk[Changed]:
 def _stated(view: KnownMap, command: Set | Unset, transaction: Transaction) -> Talk[Changed]:
     entity = view.entity(command.name)
     made = yield from commit(view, transaction)
-    return changed(made, _said(entity, made), names=(entity.name,))
+    text = _said(entity, made) if made else f"{entity.name}: {(yield from _as_it_is(entity, command))}"
+    return changed(made, text, names=(entity.name,))
+
+
+def _as_it_is(entity: Entity, command: Set | Unset) -> Talk[str]:
+    """What is stated by a property that a command did not change."""
+    known = NameIndex(
+        Named(p.name, p.iri, labels=tuple(p.labels.values())) for p in (yield from ask(Properties()))
+    )
+    try:
+        name = known.find(command.property) or command.property
+    except Ambiguous:
+        return UNCHANGED
+    stated = entity.properties.get(name)
+    is_ = "not set" if stated is None else changes.stated_in_words(stated)
+    return f"unchanged: {name} is {is_}"
 
 
 def _said(was: Entity, made: Effects | None) -> str:

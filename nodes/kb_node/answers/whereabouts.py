@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
@@ -82,7 +84,7 @@ class Then:
         if query.where is None:
             return found
         everyone = self._past.entities(query.as_of, None, ())
-        return tuple(selected(Space(everyone), found, query.where, everyone))
+        return tuple(selected(self._space(everyone), found, query.where, everyone))
 
     def entity(self, query: Get) -> Described:
         """See `Now.entity`; what was wrongly said is not looked for."""
@@ -90,11 +92,14 @@ class Then:
         entity = self._past.entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
-        space = Space(self._past.entities(query.as_of, None, ()))
+        space = self._space(self._past.entities(query.as_of, None, ()))
         return Described.of(entity, tuple(whereabouts(space, entity.name)))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
         assert query.as_of is not None
         self._past.entity(query.name, query.as_of)
-        return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
+        return tuple(relations(self._space(self._past.entities(query.as_of, None, ())), query))
+
+    def _space(self, entities: Iterable[Entity]) -> Space:
+        return Space(entities, self._map.classes.limits)

@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 @carrying
 @talks
 def move(client: Client, **fields: Any) -> None:
-    """Move the body of an entity by hand; the map follows when it comes to rest."""
+    """Move the body of an entity by hand.
+
+    The map follows when it comes to rest.
+    """
     print(client.move(**given(fields)).text)
 
 
@@ -48,7 +51,10 @@ def step(client: Client, seconds: float) -> None:
 @click.command()
 @talks
 def reset(client: Client) -> None:
-    """Put every body where the map says; bodies that could not be created are tried again."""
+    """Put every body where the map says it stands.
+
+    Bodies that could not be created are tried again.
+    """
     print(client.reset().text)
 
 
