@@ -83,10 +83,9 @@ def test_whoever_has_asked_before_is_answered_as_for_the_first_time(seed):
 
 def test_another_question_does_not_look_at_everything_again(monkeypatch):
     """A hundred adds in a crowd try few spots, though the first of them tries thousands."""
-    crowd = {
-        f"box{i}-{j}": standing(2 + i / 2, 2 + j / 2, None) for i in range(-20, 20) for j in range(-20, 20)
-    }
-    tried = []
+    steps = [step / 2 for step in range(-20, 20)]
+    crowd = {f"box{x}-{y}": standing(2 + x, 2 + y, None) for x in steps for y in steps}
+    tried, is_free = [], FreePlaces._is_free
     monkeypatch.setattr(FreePlaces, "_is_free", lambda *spot: tried.append(spot) or is_free(*spot))
     places = FreePlaces()
     places.touch(crowd)

@@ -20,6 +20,8 @@ class KnownMap(map_replica.MapReplica[Effects]):
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
+        self.touched: set[str] = set()
+        """The names of the entities that commits touched, for whoever looks after them to take."""
         self._places: dict[str, Entity] | None = None
         self._names = FreeNames()
         self._floor: FreePlaces | None = None
@@ -61,9 +63,10 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self._names, self._floor = FreeNames(), None
         return super().begin(snapshot)
 
-    def take(self, commit: Effects) -> bool:
-        """See `MapReplica.take`."""
-        taken = super().take(commit)
+    def _apply(self, commit: Effects) -> None:
+        """See `MapReplica._apply`."""
+        super()._apply(commit)
+        self.touched.update(commit.names)
         self._names.freed(gone.name for gone in commit.removed)
         if self._floor is not None:
             self._floor.touch(commit.names)
@@ -74,4 +77,3 @@ class KnownMap(map_replica.MapReplica[Effects]):
                     self._places[name] = entity
                 else:
                     self._places.pop(name, None)
-        return taken

@@ -10,7 +10,7 @@ from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.grid import Grid
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.solids import Solid, solid_of
+from nodes.kb_node.relations.solids import Bounds, Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
 
@@ -87,6 +87,10 @@ class Space:
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
         return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
+
+    def within(self, bounds: Bounds) -> list[Solid]:
+        """Whose bounds meet these."""
+        return self._grid.around(bounds)
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""

@@ -70,17 +70,18 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
 
 @keys.command()
 @click.argument("name")
+@click.option("--role", type=click.Choice(ROLES), help="What NAME may do from now on. Default: as before.")
 @_host
 @_folder
 @_days
-def renew(name: str, hosts: tuple[str, ...], folder: Path, days: int) -> None:
+def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, days: int) -> None:
     """Make NAME a new key and certificate.
 
     The old one stays valid until it expires.
     """
     from nodes.identity import authority
 
-    _told("renewed", folder, authority.renew(folder, name, hosts, days))
+    _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
 
 @keys.command()
