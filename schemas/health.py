@@ -20,8 +20,9 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     state: Literal["starting", "ready"]
     detail: str = ""
     last_error: str = ""
+    commit: int | None = None
+    """Of the knowledge base: the number of the last commit, so that a follower notices what it has missed."""
+    digest: str = ""
+    """That of the last commit, so that a follower notices one that was never made."""
     notes: tuple[str, ...] = ()
     """What whoever runs the system should know once, and `status` goes on to show."""
-    commit: int = -1
-    """Of the knowledge base: the number of the last commit, by whose digest its followers compare."""
-    digest: str = ""

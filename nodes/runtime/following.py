@@ -61,6 +61,8 @@ class Follower(Generic[C]):
         self._kb_started_ns = 0
         self._ahead: tuple[int, float] | None = None
         """A commit that the replica has and the knowledge base had not, and since when."""
+        self._there = -1
+        """The last commit, as of the knowledge base's last beat but one."""
         node.follow(topic, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(_LOOK_S, self._look)
@@ -76,6 +78,7 @@ class Follower(Generic[C]):
         if health.node != "kb_node":
             return
         if health.started_ns == self._kb_started_ns:
+            self._notice(health.commit)
             self._compare(health)
             return
         is_another = self._kb_started_ns or health.started_ns > self._begun_ns
@@ -87,7 +90,7 @@ class Follower(Generic[C]):
     def _compare(self, health: Health) -> None:
         """What the knowledge base says of its last commit, with what was heard of it."""
         replica = self._replica
-        if health.commit < 0 or replica.seq < 0:
+        if health.commit is None or replica.seq < 0:
             return
         replica.confirm(health.commit, health.digest)
         now_s = time.monotonic()
@@ -96,6 +99,13 @@ class Follower(Generic[C]):
         elif now_s - self._ahead[1] > _BEHIND_S:
             self._ahead = None
             replica.doubt()
+
+    def _notice(self, commit: int | None) -> None:
+        """What the knowledge base had at its last beat and is not here by now has been missed."""
+        missed = 0 <= self._replica.seq < self._there
+        self._there = -1 if commit is None else commit
+        if missed:
+            self._fetch()
 
     def _look(self) -> None:
         if not self._replica.is_current:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import time
+from collections.abc import Callable
 from typing import Literal
 
 from nodes import bus
@@ -28,10 +29,10 @@ class Heartbeat:
         self._session = session
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
-        self._detail = ""
+        self._detail: Callable[[], str] = str
+        self._head: Callable[[], tuple[int | None, str]] = lambda: (None, "")
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
-        self._head = (-1, "")
         self._error_shown_until_s = 0.0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
@@ -41,17 +42,18 @@ class Heartbeat:
         if now_s < self.due_s:
             return
         self.due_s = now_s + _PERIOD_S
+        commit, digest = self._head()
         health = Health(
             node=self._name,
             pid=os.getpid(),
             started_ns=self._started_ns,
             stamp_ns=time.time_ns(),
             state=self._state,
-            detail=self._detail,
+            detail=self._detail(),
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
             notes=self._notes,
-            commit=self._head[0],
-            digest=self._head[1],
+            commit=commit,
+            digest=digest,
         )
         notify(health)
         self._health.put(codec.encode(health))
@@ -66,13 +68,13 @@ class Heartbeat:
         self.describe(detail)
         self.beat()
 
-    def describe(self, detail: str) -> None:
-        """Say this of the node's state, from the next beat on."""
-        self._detail = detail
+    def describe(self, detail: str | Callable[[], str]) -> None:
+        """Say this of the node's state, from the next beat on; a function is asked at each beat."""
+        self._detail = detail if callable(detail) else lambda: detail
 
-    def head(self, commit: int, digest: str) -> None:
-        """Say that this is the last commit of the map, from the next beat on."""
-        self._head = (commit, digest)
+    def head(self, head: Callable[[], tuple[int, str]]) -> None:
+        """Tell the number and the digest of the last commit with each beat, from the next one on."""
+        self._head = head
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Say this of what the node works with, from now on."""

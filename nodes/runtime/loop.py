@@ -233,13 +233,13 @@ class Node:
         """Tell the others: the liveliness token appears and the next heartbeat says so."""
         self._heartbeat.ready(detail)
 
-    def describe(self, detail: str) -> None:
-        """What the heartbeats say of the node's state, from the next one on."""
+    def describe(self, detail: str | Callable[[], str]) -> None:
+        """What the heartbeats say of the node's state, from the next one on; a function is asked by each."""
         self._heartbeat.describe(detail)
 
-    def head(self, commit: int, digest: str) -> None:
-        """The last commit of the map that this node owns, and its digest: heartbeats say so from now on."""
-        self._heartbeat.head(commit, digest)
+    def head(self, head: Callable[[], tuple[int, str]]) -> None:
+        """Let the heartbeats tell the number and the digest of the last commit."""
+        self._heartbeat.head(head)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """What the heartbeats say of what the node works with, from now on."""

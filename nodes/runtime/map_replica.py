@@ -15,6 +15,10 @@ _DIGESTS: Final = 1000
 """Commits whose digests are remembered."""
 
 
+_MOST_AHEAD: Final = 100
+"""Commits that are kept for when those before them have come."""
+
+
 class SnapshotPages:
     """A snapshot that is fetched page by page."""
 
@@ -63,6 +67,8 @@ class MapReplica(Generic[C]):
         self._heard = -1
         self._lacking = -1
         self._doubted = False
+        self._ahead: dict[int, C] = {}
+        """Commits that came before those they follow: a reply may be read while others wait to be."""
         self._during_pages: dict[int, C] | None = None
         self._digests: dict[int, str] = {}
         self._confirmed = -1
@@ -98,7 +104,8 @@ class MapReplica(Generic[C]):
         self._digests = {snapshot.seq: snapshot.digest}
         self.entities = {entity.name: entity for entity in snapshot.entities}
         self._forget_what_never_was(snapshot.seq)
-        since, self._during_pages = self._during_pages or {}, None
+        since, self._during_pages = {**self._ahead, **(self._during_pages or {})}, None
+        self._ahead.clear()
         for _, commit in sorted(since.items()):
             self.take(commit)
         return True
@@ -107,6 +114,7 @@ class MapReplica(Generic[C]):
         """A commit that was heard of and that two snapshots lack was never made."""
         if self._heard > seq and self._heard == self._lacking:
             self._heard = seq
+            self._ahead.clear()
         self._lacking = self._heard
 
     def take(self, commit: C) -> bool:
@@ -119,21 +127,28 @@ class MapReplica(Generic[C]):
         self._heard = max(self._heard, commit.seq)
         if self._during_pages is not None:
             self._during_pages[commit.seq] = commit
-        if commit.seq == self.seq + 1 and commit.abridged is None:
-            self.seq = commit.seq
-            self._digests[commit.seq] = commit.digest
-            self._digests.pop(commit.seq - _DIGESTS, None)
-            for gone in commit.removed:
-                self.entities.pop(gone.name, None)
-            self.entities.update({entity.name: entity for entity in commit.changed})
+        following: C | None = commit
+        if commit.seq > self.seq + 1 and len(self._ahead) < _MOST_AHEAD:
+            self._ahead[commit.seq] = commit
+        while following is not None and following.seq == self.seq + 1 and following.abridged is None:
+            self._apply(following)
+            following = self._ahead.pop(self.seq + 1, None)
         return commit.seq <= self.seq and not self._doubted
+
+    def _apply(self, commit: C) -> None:
+        """Let the entities be as the next commit leaves them."""
+        self.seq = commit.seq
+        self._digests[commit.seq] = commit.digest
+        self._digests.pop(commit.seq - _DIGESTS, None)
+        for gone in commit.removed:
+            self.entities.pop(gone.name, None)
+        for entity in commit.changed:
+            self.entities[entity.name] = entity
 
     def confirm(self, seq: int, digest: str) -> None:
         """The knowledge base itself says that this is commit `seq`, and with it all that came before."""
         if self._compare(seq, digest):
             self._confirmed = max(self._confirmed, seq)
-        elif seq > self.seq:
-            self._heard = max(self._heard, seq)
 
     def _compare(self, seq: int, digest: str) -> bool:
         """Is it known that this is commit `seq`? All is in doubt if another one is known."""
@@ -149,3 +164,4 @@ class MapReplica(Generic[C]):
         """
         self._heard = -1
         self._doubted = True
+        self._ahead.clear()

@@ -37,7 +37,7 @@ class KnowledgeBase:
         for made in commits:
             self._commits.put(codec.encode(made))
 
-    def beat(self, started_ns, commit=-1, digest=""):
+    def beat(self, started_ns, commit=None, digest=""):
         health = Health(
             node="kb_node",
             pid=1,
@@ -151,3 +151,16 @@ def test_a_forged_commit_with_the_next_number_hides_none(both):
     )
     until(lambda: set(follower.map.entities) == {"cup1", "cup2"}, "what is true is known")
     assert follower.map.is_confirmed
+
+
+def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):
+    kb, follower = both
+    kb.beat(0, commit=1)
+    kb.snapshot = Snapshot(seq=2, entities=(entity("cup2"),))
+    kb.beat(0, commit=2)
+    kb.publish(commit(1))  # comes after the beat: what is on its way has its time until the next one
+    until(lambda: follower.heard == [(1, True)], "the first beat was heard")
+    assert kb.asked == 1
+    kb.beat(0, commit=2)
+    until(lambda: follower.map.seq == 2, "it was fetched")
+    assert kb.asked == 2
