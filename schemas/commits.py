@@ -245,6 +245,8 @@ class Transaction(
     insert: tuple[Triple, ...] = ()
     dry_run: bool = False
     """Answered with what it would do, and not done."""
+    told: bool = False
+    """The coordinator asks: it takes the commit from the reply, and need not hear of it a second time."""
 
 
 MANY_ENTITIES = 10_000

@@ -68,6 +68,7 @@ def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = _NODE
 
 GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.COMMIT),
+    *_topic(keys.UNTOLD, follow=_NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES),

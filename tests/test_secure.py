@@ -237,6 +237,22 @@ def test_who_is_revoked_is_shut_out_and_who_is_added_let_in(as_, folder, raw):
         assert vera.history("kims1")[0].agent == "kim"
 
 
+def test_changes_are_done_once_while_the_router_begins_anew(as_, folder):
+    """A question that is cut off may have been executed; it is asked again, and known by its id."""
+    made = []
+    with as_("bob") as bob:
+        before = bob.status().commit
+        for n in range(45):
+            if n % 15 == 7:
+                authority.add(folder, f"guest{n}", "viewer")
+            made.append(bob.add("Cup", f"once{n}", at=(5.0, 2.0 + n / 20, 0.75)).commit)
+            time.sleep(0.02)
+        until(lambda: bob.status().in_agreement, "rest")
+        commits = [c for c in bob.history(since=before + 1, limit=1000) if c.verb == "add"]
+    assert [c.seq for c in commits] == made
+    assert [c.changed[0] for c in commits] == [f"once{n}" for n in range(45)]
+
+
 def _answered(client):
     try:
         client.get("fridge1")

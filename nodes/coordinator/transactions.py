@@ -31,6 +31,7 @@ def transaction(
         edit=tuple(edit),
         add=tuple(add),
         dry_run=getattr(command, "dry_run", False),
+        told=True,
     )
 
 

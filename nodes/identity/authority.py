@@ -34,6 +34,7 @@ _AUTHORITY_DAYS: Final = 3650
 _AUTHORITY_NAME: Final = "semmap"
 _AUTHORITY_KEY: Final = "ca.key"
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_HOST: Final = re.compile(r"(?=.{1,253}$)[A-Za-z0-9-]{1,63}(\.[A-Za-z0-9-]{1,63})*\.?")
 _EARLY: Final = timedelta(minutes=5)
 """Clocks differ."""
 
@@ -54,9 +55,15 @@ def _alone(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatena
 
 
 def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Register:
-    """Make the authority and the system's own certificates in `folder`. Raises Refused where there is one."""
+    """Make the authority and the system's own certificates in `folder`.
+
+    Raises Refused where there is one, BadRequest for what is no host, BadFile where it cannot be written.
+    """
     if (folder / FILE).exists() or (folder / AUTHORITY).exists():
         raise errors.Refused(f"there are keys in {folder} already; add to them with: semmap keys add NAME")
+    hosts = tuple(dict.fromkeys((*HOSTS, *hosts)))
+    for host in hosts:
+        _host(host)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         folder.chmod(0o700)
@@ -73,7 +80,7 @@ def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Registe
     )
     _write(folder, AUTHORITY, certificate.public_bytes(serialization.Encoding.PEM))
     _write(folder, _AUTHORITY_KEY, _key_bytes(key))
-    register = Register(hosts=tuple(dict.fromkeys((*HOSTS, *hosts))))
+    register = Register(hosts=hosts)
     for own in OWN:
         register = _issued(folder, register, own, "node", days)
     register.write(folder)
@@ -103,10 +110,13 @@ def add(folder: Path, name: str, role: Role, days: int = DAYS) -> Member:
 
 
 @_alone
-def renew(folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS) -> Member:
-    """A new key and certificate for somebody; `hosts` are added to the router's.
+def renew(
+    folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS, role: Role | None = None
+) -> Member:
+    """A new key and certificate for somebody, in another role if one is given.
 
-    Raises UnknownName, Refused for one who was revoked.
+    `hosts` are added to the router's. Raises UnknownName, and Refused for one who was revoked and for another
+    role of the system's own.
     """
     register = Register.read(folder)
     member = _member(register, name)
@@ -116,8 +126,10 @@ def renew(folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS
         raise errors.BadRequest(
             f"only the router's certificate carries hosts: semmap keys renew {ROUTER} --host"
         )
+    if name in OWN and role not in (None, member.role):
+        raise errors.Refused(f"{name} is the system's own and stays a {member.role}")
     register = structs.replace(register, hosts=tuple(dict.fromkeys((*register.hosts, *hosts))))
-    return _in_register(folder, register, name, member.role, days)
+    return _in_register(folder, register, name, role or member.role, days)
 
 
 @_alone
@@ -216,10 +228,8 @@ def _host(host: str) -> x509.GeneralName:
     try:
         return x509.IPAddress(ipaddress.ip_address(host.strip("[]")))
     except ValueError:
-        pass
-    try:
-        return x509.DNSName(host)
-    except ValueError:
+        if _HOST.fullmatch(host):
+            return x509.DNSName(host)
         raise errors.BadRequest(f"'{host}' is neither a host name nor an address") from None
 
 

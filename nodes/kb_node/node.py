@@ -104,6 +104,7 @@ class KnowledgeBase:
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.entities,
         )
+        self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
@@ -113,6 +114,7 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
+        node.count(lambda: self.map.seq)
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -148,19 +150,27 @@ class KnowledgeBase:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
         if len(transaction.add) <= _FEW:
-            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+            return self._changed(
+                lambda: self.map.commit(transaction), transaction.dry_run, told=transaction.told
+            )
         with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
             tell(f"{len(transaction.add):,} entities to check and write")
-            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+            return self._changed(
+                lambda: self.map.commit(transaction), transaction.dry_run, told=transaction.told
+            )
 
-    def _changed(self, change: Callable[[], Commit | None], dry_run: bool) -> Effects | None:
+    def _changed(
+        self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
+    ) -> Effects | None:
         """What `change` commits, and publishes; or would commit, in a dry run."""
-        return trials.of(self.map, change) if dry_run else _effects(self._published_if_new(change))
+        if dry_run:
+            return trials.of(self.map, change)
+        return _effects(self._published_if_new(change, told=told))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
 
-    def _published_if_new(self, change: Callable[[], C]) -> C:
+    def _published_if_new(self, change: Callable[[], C], *, told: bool = False) -> C:
         """What `change` commits; published unless it is the answer to an old command."""
         before = self.map.seq
         try:
@@ -169,19 +179,19 @@ class KnowledgeBase:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit)
+            self._spread(commit, told=told)
         return commit
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
-    def _spread(self, commit: Commit) -> None:
+    def _spread(self, commit: Commit, *, told: bool) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._announcer.announce(commit)
+        self._announcer.announce(commit, told=told)
         self._node.afterwards(partial(self._sparql.follow, commit))
         self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
-        self._node.afterwards(lambda: self._node.describe(self._summary()))
+        self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
         if self.map.checkpoint_is_urgent:
@@ -201,9 +211,10 @@ class KnowledgeBase:
         for error in results:
             if isinstance(error, NotWritten):
                 self._not_written(error)
-        new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
-        for commit in new.values():
-            self._spread(commit)
+        for transaction, result in zip(several.transactions, results, strict=True):
+            if isinstance(result, Commit) and result.seq > before:
+                before = result.seq
+                self._spread(result, told=transaction.told)
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
@@ -255,7 +266,7 @@ class KnowledgeBase:
                 yield tell
         finally:
             self._node.afterwards(heap.trim)
-            self._node.describe(self._summary())
+            self._node.describe(self._summary)
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""

@@ -83,6 +83,8 @@ class SemanticMap:
             lambda p: self.reasoner.asserted(None, p, None),
             lambda: self.classes.limits,
         )
+        self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
+        """Told of each commit before it is checked; what it returns is called if that is not made."""
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
@@ -199,8 +201,14 @@ class SemanticMap:
                 )
         with gc_pause.uncollected():
             commit = self._signed(transaction, retracted, inserted, notes=(*notes, *denied.notes))
-            begun = commit_encoding.early(commit) if self._look is None else None
-            return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+            if self._look is not None:
+                return self._apply(commit, self._write, self._with_doubts)
+            give_up, begun = self.foretell(commit), commit_encoding.early(commit)
+            try:
+                return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+            except BaseException:
+                give_up()
+                raise
 
     def _with_doubts(self, commit: Commit) -> Commit:
         """With a word on what it says of places and is not so."""
@@ -348,7 +356,8 @@ class SemanticMap:
                 load = self.places.load_of(one, edit)
                 for other in load:
                     draft.edit(self._entities[other.name], other)
-                notes.append(wording.carried(one.name, [other.name for other in load]))
+                if load or transaction.source == "operator":
+                    notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(

@@ -87,7 +87,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The nodes to run, in the order of starting."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
-        router = (ROUTER,) if self.secure is not None else ()
+        router = (ROUTER,) if self.secure is not None and not self.connect else ()
         return router + tuple(node for node in order if optional.get(node, True))
 
     @property
@@ -98,7 +98,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def network(self, node: str) -> Network:
         """The coordinator listens where the world expects it; the others connect to it and mesh by gossip.
 
-        In a secure system the router listens, and all others are its clients.
+        In a secure system the router listens, and all others are its clients; or of one elsewhere.
         """
         return structs.replace(self._place(node), own_config=self.zenoh_config)
 
@@ -107,7 +107,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
             identity = Identity.read(Path(self.secure) / node)
             if node == ROUTER:
                 return Network(mode="router", listen=(self.listen,), connect=(), identity=identity)
-            return Network(connect=(self.reachable,), identity=identity, patience_s=FOREVER_S)
+            where = self.connect or (self.reachable,)
+            return Network(connect=where, identity=identity, patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)
         return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))

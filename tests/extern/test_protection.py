@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from nodes import bus
@@ -86,7 +88,7 @@ def test_what_the_certificate_is_not_for_is_told(starting, keys, capsys):
     ("words", "told"),
     [
         (("--insecure",), "either --secure or --insecure"),
-        (("--connect", "tcp/10.0.0.1:1"), "cannot be combined"),
+        (("--connect", "tcp/10.0.0.1:1"), "--connect is for single nodes"),
     ],
 )
 def test_what_does_not_go_together_is_told(starting, keys, capsys, words, told):
@@ -112,3 +114,37 @@ def test_an_identity_that_is_none_is_told(keys, capsys, identity, told):
     said = capsys.readouterr().err
     assert told in said
     assert str(keys / identity) in said
+
+
+def test_an_expired_certificate_of_the_systems_own_is_told_before_the_start(starting, tmp_path, capsys):
+    authority.init(tmp_path / "K", days=0)
+    assert execute(["up", "--secure", str(tmp_path / "K")]) == 3
+    assert "semmap keys renew supervisor" in capsys.readouterr().err
+    assert starting == []
+
+
+def test_a_node_may_join_a_router_elsewhere(keys, tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(
+        "nodes.supervisor.launch.run_node", lambda name, settings: ran.append((name, settings))
+    )
+    words = ["--secure", str(keys), "--connect", "tcp/robot1.local:7447", "--data", str(tmp_path)]
+    mask = os.umask(0o022)
+    try:
+        assert execute(["node", "recorder", *words]) == 0
+    finally:
+        os.umask(mask)
+    ((name, settings),) = ran
+    network = settings.network(name)
+    assert (network.connect, network.listen) == (("tls/robot1.local:7447",), ())
+    assert network.identity.name == "recorder"
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["udp/0.0.0.0:7447", "unixsock-stream//tmp/x", "tls/localhost:1#enable_mtls=false"]
+)
+def test_certificates_are_shown_over_tls_only(starting, keys, capsys, endpoint):
+    assert execute(["up", "--secure", str(keys), "--listen", endpoint]) == 2
+    assert "at endpoints of TLS only" in capsys.readouterr().err
+    assert execute(["list", "--identity", str(keys / "recorder"), "--connect", endpoint]) == 2
+    assert "at endpoints of TLS only" in capsys.readouterr().err

@@ -61,6 +61,13 @@ def test_a_folder_of_keys_is_not_made_anew(folder):
     assert (folder / "ca.key").read_bytes() == before
 
 
+@pytest.mark.parametrize("host", ["", "a b", "robot_1", "tls/robot1", "röbot"])
+def test_what_is_no_host_leaves_no_keys_behind(tmp_path, host):
+    with pytest.raises(errors.BadRequest, match="neither a host name nor an address"):
+        authority.init(tmp_path / "K", (host,))
+    assert not (tmp_path / "K").exists()
+
+
 @pytest.mark.parametrize("name", ["", "a/b", "a*", "@bob", "..", "-x", "a b", "x" * 65, "Zoë", "ca"])
 def test_what_is_no_name_gets_no_certificate(folder, name):
     before = sorted(folder.iterdir())
@@ -100,6 +107,15 @@ def test_a_renewed_certificate_is_another_one_of_the_same_name_and_role(folder):
     assert (folder / "vera.key").read_bytes() != key
     left = after.not_valid_after_utc - datetime.now(UTC)
     assert timedelta(days=6, hours=23) < left <= timedelta(days=7)
+
+
+def test_a_role_is_changed_with_the_certificate(folder):
+    assert authority.renew(folder, "vera", role="operator").role == "operator"
+    assert Register.read(folder).members["vera"].role == "operator"
+    (unit,) = loaded(folder, "vera").subject.get_attributes_for_oid(NameOID.ORGANIZATIONAL_UNIT_NAME)
+    assert unit.value == "operator"
+    with pytest.raises(errors.Refused, match="stays a node"):
+        authority.renew(folder, "router", role="viewer")
 
 
 def test_hosts_are_added_to_the_routers_certificate_only(folder):

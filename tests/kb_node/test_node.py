@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager, suppress
 
 import pytest
+from msgspec import structs
 
 from nodes import bus
 from nodes.kb_node.documents import rdf
@@ -14,7 +15,16 @@ from nodes.supervisor.settings import Settings
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import (
+    BRIDGE,
+    Entities,
+    LoadDocument,
+    LoadTBox,
+    Recall,
+    SnapshotQuery,
+    StarQuery,
+    Transactions,
+)
 from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
 from schemas.commits import Effects, NewEntity
@@ -112,6 +122,24 @@ def test_a_commit_is_replied_and_published(session):
     assert [Effects.of(message) for _, message in until(commits, 3)] == [first, second, third]
     assert third.seq == second.seq + 1 == first.seq + 2
     subscriber.undeclare()
+
+
+def test_the_coordinator_is_not_told_again_of_what_a_reply_tells_it(session):
+    untold, subscriber = followed(session, keys.UNTOLD)
+    commits, other = followed(session, keys.COMMIT)
+    told = ask(session, "commit", structs.replace(transaction("t1", chair("t1")), told=True))
+    several = Transactions(
+        transactions=(
+            structs.replace(transaction("t2", chair("t2")), told=True),
+            transaction("t3", chair("t3")),
+        )
+    )
+    _, third = ask(session, "commits", several)
+    fourth = ask(session, "commit", transaction("t4", chair("t4")))
+    assert [message for _, message in until(untold, 2)] == [third.commit, fourth]
+    assert [message.seq for _, message in until(commits, 4)] == list(range(told.seq, fourth.seq + 1))
+    subscriber.undeclare()
+    other.undeclare()
 
 
 def test_entities_are_published_under_each_class_and_deleted_at_their_end(session):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import click
@@ -70,17 +71,18 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
 
 @keys.command()
 @click.argument("name")
+@click.option("--role", type=click.Choice(ROLES), help="What NAME may do from now on. Default: as before.")
 @_host
 @_folder
 @_days
-def renew(name: str, hosts: tuple[str, ...], folder: Path, days: int) -> None:
+def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, days: int) -> None:
     """Make NAME a new key and certificate.
 
     The old one stays valid until it expires.
     """
     from nodes.identity import authority
 
-    _told("renewed", folder, authority.renew(folder, name, hosts, days))
+    _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
 
 @keys.command()
@@ -103,7 +105,8 @@ def list_(folder: Path) -> None:
     """Show who has a certificate, in which role and until when."""
     rows = table("name", "role", "valid until", "state", fold=())
     for member in Register.read(folder).members.values():
-        state = "revoked" if member.revoked else "admitted"
+        expired = member.expires < datetime.now(UTC)
+        state = "revoked" if member.revoked else "expired" if expired else "admitted"
         rows.add(member.name, member.role, f"{member.expires:%Y-%m-%d}", state)
     show.console().print(rows)
 

@@ -132,6 +132,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 @settings_options
 def up(settings: Settings) -> None:
     """Start the system in the foreground; Ctrl-C stops it."""
+    if settings.secure is not None:
+        if settings.connect:
+            raise errors.BadRequest(
+                "with --secure a system has its own router; --connect is for single nodes: semmap node NAME"
+            )
+        for name in (SUPERVISOR, *settings.nodes):
+            Identity.read(Path(settings.secure) / name).require_valid()
     extras.require_nodes(settings.nodes)
     from nodes.supervisor.up import up as run_up
 
@@ -173,12 +180,13 @@ def repair(data: Path | None, tbox: Path | None) -> None:
 
 
 @click.command()
-@click.argument("name", type=click.Choice(NODES))
+@click.argument("name", type=click.Choice((*NODES, ROUTER)))
 @settings_options
 def node(name: str, settings: Settings) -> None:
     """Run a single node in the foreground.
 
-    The coordinator listens on --listen; the other nodes connect to it there.
+    The coordinator (with --secure the router) listens on --listen; the other nodes connect to it there, or
+    to the router at --connect.
     """
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
@@ -229,7 +237,7 @@ def _settings(
         "threshold_m": threshold,
         "angle_threshold_deg": angle_threshold,
         "listen": listen if secure is None else bus.over_tls(listen),
-        "connect": connect,
+        "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
@@ -259,6 +267,10 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
+        for endpoint in (listen, *values["connect"]):
+            bus.require_tls(endpoint)
+        if values["connect"]:
+            return  # the router is elsewhere
         register = Register.read(Path(secure))
         host = bus.host_of(listen)
         if host not in ("0.0.0.0", "::", *register.hosts):
@@ -266,12 +278,6 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
                 f"the router's certificate is for {', '.join(register.hosts)}, not for {host}; add it:"
                 f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
             )
-        if values["connect"]:
-            raise errors.BadRequest(
-                "--secure and --connect cannot be combined: the router is the one listener"
-            )
-        for name in (ROUTER, SUPERVISOR, *NODES):
-            Identity.read(Path(secure) / name).require_valid()
     elif not bus.is_local(listen) and not (config is not None and bus.own_config.is_protected(config)):
         if not insecure:
             raise errors.BadRequest(
