@@ -17,7 +17,7 @@ from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.abox.steps import Steps
 from nodes.kb_node.reasoner.abox.store import DERIVED, Store
 from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.explanations import Term
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.terms import is_literal
@@ -54,6 +54,8 @@ class ABox:
         self.spellings: dict[datatypes.Value, list[int]] = {}
         self.is_mixed = False
         """Whether a literal without a known value was ever the same as another: all spellings matter then."""
+        self.overlaid: list[Triple] = []
+        """What was computed, and was asserted since `settle`."""
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
         for term in schema.nominals:
@@ -208,6 +210,7 @@ class ABox:
             if before.excluded is None:
                 self.store.file(node, before, self.store.kind[node])
         self.moved.clear()
+        self.overlaid.clear()
 
     def forget_spelling(self, literal: int) -> None:
         """A literal that nothing has any more is no spelling of its value."""

@@ -8,7 +8,7 @@ from itertools import chain
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
-from nodes.kb_node.reasoner.abox.store import ASSERTED
+from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
@@ -36,6 +36,24 @@ class View:
         if p != TYPE:
             for edge in self._asserted_edges(s, p, o):
                 yield self._triple(edge)
+
+    def computed(self) -> Iterator[Triple]:
+        """The computed triples."""
+        source, edge = self._store.source, -1
+        while (edge := source.find(COMPUTED, edge + 1)) >= 0:
+            yield self._triple(edge)
+
+    def is_computed(self, triple: Triple) -> bool:
+        """Whether a triple is computed, and not asserted."""
+        s, o, predicate = (
+            self._store.find(triple[0]),
+            self._store.find(triple[2]),
+            self._schema.find_property(triple[1]),
+        )
+        if s is None or o is None or predicate is None:
+            return False
+        edge = self._store.edge(s, predicate, o)
+        return edge != NONE and self._store.source[edge] == COMPUTED
 
     def by_subject(self) -> Iterator[list[Triple]]:
         """The asserted triples, subject by subject. The ABox may change between two of them.

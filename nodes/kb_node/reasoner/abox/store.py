@@ -18,8 +18,13 @@ from nodes.kb_node.reasoner.terms import is_literal
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
-ASSERTED, VALUE, DERIVED = 0, 1, 2
-"""Where an edge comes from: asserted, a class that comes with a value (cls-hv1), or another rule."""
+ASSERTED, VALUE, DERIVED, COMPUTED = 0, 1, 2, 3
+"""Where an edge comes from: asserted, a class that comes with a value (cls-hv1), another rule, or computed.
+
+A computed one is given like an asserted one, and was not said.
+"""
+GIVEN: Final = frozenset((ASSERTED, COMPUTED))
+"""Edges that rest on no other."""
 
 
 Terms = tuple[Term, ...]
