@@ -95,7 +95,7 @@ class KnowledgeBase:
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
-            self.map.entities,
+            self.map.all_believed,
         )
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
@@ -169,7 +169,7 @@ class KnowledgeBase:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._now.touch(commit.names)
         self._announcer.announce(commit)
-        self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(partial(self._sparql.follow, commit, self.map.believed_of(commit)))
         self._node.afterwards(lambda: self._node.describe(self._summary()))
         if commit.tbox:
             self._node.note(self._notes())

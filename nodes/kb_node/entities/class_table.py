@@ -79,6 +79,7 @@ class ClassTable:
         self.fixed: frozenset[Term] = frozenset(
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
+        self._spoken: dict[frozenset[Term], tuple[str, ...]] = {}
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     @cached_property
@@ -123,6 +124,13 @@ class ClassTable:
         except KeyError:
             found = self._kinds[types, asserted] = self._kind(types, asserted)
             return found
+
+    def spoken_types(self, types: frozenset[Term]) -> tuple[str, ...]:
+        """The names of an individual's classes, the most special ones first."""
+        known = self._spoken.get(types)
+        if known is None:
+            known = self._spoken[types] = tuple(self.names[t] for t in self.special_first(types))
+        return known
 
     def _kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
         named = self.special_first(types)

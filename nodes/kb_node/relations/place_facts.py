@@ -42,6 +42,11 @@ class Facts:
         for kept in self._kept:
             yield from kept.all()
 
+    def holds(self, fact: Fact) -> bool:
+        """Whether one of them does."""
+        name, relation, other = fact
+        return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
+
     def upward(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
         found = set(names)
