@@ -38,12 +38,27 @@ class Interior(Struct, frozen=True, kw_only=True):
     open: bool = True
 
 
+class ConvexPart(Struct, frozen=True, kw_only=True):
+    """One convex part that collides, in the model's frame [m]: the Minkowski sum of what it names.
+
+    Segments from -v to v (`straight`), an ellipsoid or a disc with these semi-axes (`round`), and the hull of
+    some points (`points`), all around `centre`. A box is three segments, a cylinder a disc and a segment, a
+    capsule a ball and a segment. However it is turned or stretched, it is one again.
+    """
+
+    centre: Corner
+    straight: tuple[Corner, ...] = ()
+    round: tuple[Corner, ...] = ()
+    points: tuple[Corner, ...] = ()
+
+
 class ModelShape(Struct, frozen=True, kw_only=True):
     """A model at the size `size_m`; an entity of another size has it stretched along each axis."""
 
     size_m: Size
     surfaces: tuple[Surface, ...] = ()
     interiors: tuple[Interior, ...] = ()
+    parts: tuple[ConvexPart, ...] = ()
 
 
 def own_size_m(model: str) -> Size | None:

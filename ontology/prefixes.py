@@ -143,6 +143,14 @@ def names(iris: Collection[Term], prefixes: Prefixes) -> dict[Term, str]:
     return {iri: name(iri) for iri in iris}
 
 
+def told_apart(iris: Collection[Term], prefixes: Prefixes) -> dict[str, dict[str, Term]]:
+    """Each local name that several IRIs share, to their names with prefixes, and these to the IRIs."""
+    sharing: dict[str, dict[str, Term]] = {}
+    for iri in sorted(iris):
+        sharing.setdefault(v.local_name(iri), {})[prefixed(iri, prefixes)] = iri
+    return {local: dict(sorted(found.items())) for local, found in sorted(sharing.items()) if len(found) > 1}
+
+
 def _made_from(namespace: str) -> str:
     """A prefix from the last telling word of a namespace: `http://x.org/onto/lab.owl#` is `lab`."""
     parts = urlsplit(namespace)

@@ -103,6 +103,8 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     id: str
     source: Source
     agent: str = ""
+    authenticated: bool = False
+    """A certificate has proved the agent's name; else it is as somebody said."""
     verb: str = ""
     reason: str = ""
     confidence: Probability | None = None

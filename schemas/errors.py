@@ -11,7 +11,6 @@ SemmapError
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
@@ -165,6 +164,8 @@ def nearest(word: str, known: Iterable[str]) -> list[str]:
     try:
         from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
     except ImportError:
+        import difflib
+
         return difflib.get_close_matches(word, list(known))
     near = process.extract(
         word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60

@@ -27,6 +27,8 @@ BRIDGE = f"{ROOT}/bridge"
 SIM = f"{ROOT}/sim"
 SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node"}
 
+_AS = f"{ROOT}/as"
+
 OF_THE_MAP = frozenset({"sparql"})
 """Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
 
@@ -34,6 +36,9 @@ PERCEPTION = f"{ROOT}/perception"
 
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""
+
+ROUTER = "router"
+"""The process that everybody, nodes included, is connected to under `semmap up --secure`."""
 
 
 class Topic(NamedTuple):
@@ -100,8 +105,30 @@ def live_key(node: str, instance: str = "*") -> str:
 @cache
 def servers(prefix: str, verb: str) -> tuple[str, ...]:
     """The nodes that may answer `prefix/verb`."""
+    prefix = served(prefix)
     first_hand = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()
     return first_hand + tuple(node for served, node in SERVED_BY.items() if served == prefix)
+
+
+def commands_as(name: str = "*") -> str:
+    """The prefix under which `name`, and nobody else, asks for commands when the system is secure."""
+    return f"{_AS}/{name}/cmd"
+
+
+def served(prefix: str) -> str:
+    """`prefix` as one of `SERVED_BY`, whoever asks."""
+    return CMD if prefix.startswith(f"{_AS}/") else prefix
+
+
+def asked_as(key: str) -> str:
+    """Who asks, by the key of a command: a name, or nothing where the key does not say."""
+    chunks = key.split("/")
+    return chunks[2] if len(chunks) > 2 and f"{chunks[0]}/{chunks[1]}" == _AS else ""
+
+
+def recovery(key: str) -> str:
+    """Where the two ends of a lossless topic find one another, and what was missed is recovered."""
+    return f"{key}/@adv/**"
 
 
 def live_node(key: str) -> str:

@@ -118,6 +118,8 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     removed: tuple[str, ...]
     changes: tuple[Change, ...] = ()
     """What was and what is, of the first entities that it touched."""
+    authenticated: bool = False
+    """A certificate has proved the agent's name; else it is as somebody said."""
 
 
 class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

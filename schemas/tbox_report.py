@@ -49,8 +49,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     unsatisfiable: tuple[Unsatisfiable, ...] = ()
     untried: int = 0
     """How many classes were not tried, because it takes too long."""
-    ambiguous: dict[str, tuple[str, ...]] = {}
-    """Local name that several classes share, to their IRIs."""
+    ambiguous: dict[str, dict[str, str]] = {}
+    """Local name that several classes share, to the names that tell them apart (`soma:Joint`), with IRIs."""
     quickness: Quickness | None = None
     """None for an ontology that contradicts itself."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,11 @@ from schemas.entities import Entity, Pose, Provenance
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 _SAMPLES = 4000
+_ROOM = Entity(
+    name="room", class_="", iri="urn:room", types=(), pose=Pose(position_m=(2.0, 0.0, 0.0)), place=True,
+    size_m=(20.0, 20.0, 3.0), provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
+    reference_provenance=_NOBODY,
+)  # fmt: skip
 
 
 class Counts(NamedTuple):
@@ -50,17 +56,35 @@ class Counts(NamedTuple):
         return cls(*map(sum, zip(*counts, strict=True)))
 
 
-def on_against_contacts(scenes: int) -> Counts:
-    """`isOn` against resting contacts in random settled scenes."""
-    return Counts.together(_on_in_scene(seed) for seed in range(scenes))
+class Contacts(NamedTuple):
+    """How many of the pairs in contact were found."""
+
+    on: Counts
+    touches: Counts
 
 
-def _on_in_scene(seed: int) -> Counts:
+def against_contacts(scenes: int) -> Contacts:
+    """`isOn` against resting contacts in random settled scenes, and `touches` against all contacts."""
+    found = [_in_scene(seed) for seed in range(scenes)]
+    return Contacts(*(Counts.together(counts) for counts in zip(*found, strict=True)))
+
+
+def _in_scene(seed: int) -> Contacts:
+    """What rests on the bottom of what it is inside is inside it, not on it: that counts as found."""
     scene = settled_scene(seed)
     facts = Facts()
-    facts.update(scene.entities)
-    found = {(upper, lower) for upper, relation, lower in facts if relation in ("isOn", "isInside")}
-    return Counts.of(found, scene.on)
+    facts.update([_ROOM, *scene.entities])
+    on = {(upper, lower) for upper, relation, lower in facts if relation == "isOn"}
+    on |= {(inner, outer) for inner, relation, outer in facts if relation == "isInside"} & scene.on
+    names = [entity.name for entity in scene.entities]
+    solids, limits = facts.space.solids, facts.space.limits
+    touching = {
+        (one, other)
+        for one, other in combinations(sorted(names), 2)
+        if measures.touches(solids[one], solids[other], limits) is not None
+    }
+    true = {tuple(sorted(pair)) for pair in scene.touching}
+    return Contacts(Counts.of(on, scene.on), Counts.of(touching, true))  # type: ignore[arg-type]
 
 
 def inside_against_samples(pairs: int) -> Counts:

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import zenoh
+from msgspec import Struct
 
 from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
@@ -28,8 +28,7 @@ _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
-@dataclass(frozen=True)
-class Encoded:
+class Encoded(Struct, frozen=True):
     """A message as it came: to be decoded, or passed on."""
 
     payload: zenoh.ZBytes
@@ -157,7 +156,7 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
 
 
 def _nobody(key: str) -> NoReturn:
-    node = keys.SERVED_BY.get(key.rpartition("/")[0])
+    node = keys.SERVED_BY.get(keys.served(key.rpartition("/")[0]))
     why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
         f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any
 
 import zenoh
+from msgspec import Struct, field
 
 from nodes.bus.asking import Encoded
 from nodes.bus.pubsub import publisher
@@ -16,18 +16,23 @@ from schemas.replies import Ack, Document
 _JSON = "application/json"
 
 
-@dataclass(frozen=True)
-class Request:
+def _send_nowhere(message: Any, ok: bool) -> None:
+    """Of a request that nobody waits for an answer to."""
+
+
+class Request(Struct, frozen=True):
     """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
 
-    `plain`: the reply may be a message that is `Encoded` already.
+    `plain`: the reply may be a message that is `Encoded` already. `who` asks, by the key; whether that is
+    proof is for those to say who serve `semmap/as/*/cmd`.
     """
 
     verb: str
     payload: bytes
     parameters: dict[str, str] = field(default_factory=dict)
-    send: Callable[[Any, bool], None] = field(default=lambda message, ok: None)
+    send: Callable[[Any, bool], None] = _send_nowhere
     plain: bool = False
+    who: str = ""
 
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
@@ -48,11 +53,12 @@ class Request:
 
 
 def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
-    verb = keys.last_chunk(str(query.key_expr))
+    asked = str(query.key_expr)
+    verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
     payload = query.payload.to_bytes() if query.payload is not None else b""
     parameters = dict(query.parameters)  # type: ignore[call-overload]
     as_json = "format" in parameters or codec.looks_like_json(payload)
-    key = f"{prefix}/{verb}" if "*" not in verb else prefix
+    key = asked if who else f"{prefix}/{verb}" if "*" not in verb else prefix
 
     def send(message: Any, ok: bool) -> None:
         content: Any
@@ -71,7 +77,7 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
             else:
                 query.reply_err(content, encoding=encoding)
 
-    return Request(verb, payload, parameters, send, plain=not as_json)
+    return Request(verb, payload, parameters, send, plain=not as_json, who=who)
 
 
 def serve(

@@ -7,20 +7,26 @@ sessions are context managers.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import zenoh
+from msgspec import Struct
 from zenoh import Session as Session
 
-from schemas import errors
+from nodes.identity import Identity
+from schemas import errors, keys
+from schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+TLS = "tls/"
 PATIENCE_S = 3.0
 RESTART_S = 30.0
 """Seconds: as long as a node takes to be back after a kill, on a busy machine and with a large map."""
+FOREVER_S = math.inf
+"""As patience: a node goes on trying to connect."""
 _MEET_MS = 100
 """Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
@@ -28,14 +34,15 @@ often Zenoh 1.10.2 does not notice that it is done, and would wait for half a se
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 
 
-@dataclass(frozen=True)
-class Network:
+class Network(Struct, frozen=True):
     """How a process joins the system: a node listens, a client does not.
 
     A "peer" reaches each node by itself, a "client" all of them by the one that it connects to. `namespace`
     prefixes every key (one robot of many).
 
     A client whose connection is refused tries again for `patience_s`; 0 is once.
+
+    With an `identity` all links are mutual TLS. `access` is Zenoh's access control, of a router.
     """
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
@@ -43,10 +50,17 @@ class Network:
     mode: str = "client"
     namespace: str = ""
     patience_s: float = PATIENCE_S
+    identity: Identity | None = None
+    access: Mapping[str, Any] | None = None
+
+    @property
+    def commands(self) -> str:
+        """The prefix under which this process asks for commands: its own, where it has a name."""
+        return keys.CMD if self.identity is None else keys.commands_as(self.identity.name)
 
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
-        node = bool(self.listen)
+        node = bool(self.listen) or self.patience_s == FOREVER_S
         retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
@@ -63,10 +77,47 @@ class Network:
         }
         if self.namespace:
             values["namespace"] = self.namespace
+        if self.identity is not None:
+            values |= _tls(self.identity, listens=bool(self.listen))
+        if self.access is not None:
+            values["access_control"] = self.access
         config = zenoh.Config()
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config
+
+
+def host_of(endpoint: str) -> str:
+    """The host of an endpoint `protocol/host:port`."""
+    return endpoint.partition("/")[2].partition("#")[0].partition("?")[0].rpartition(":")[0].strip("[]")
+
+
+def is_local(endpoint: str) -> bool:
+    """Can only programs of this machine reach it? A port of loopback, or a socket in the file system."""
+    if endpoint.startswith(("unixsock-stream/", "unixpipe/")):
+        return True
+    host = host_of(endpoint)
+    return host in ("localhost", "::1") or re.fullmatch(r"127(\.\d{1,3}){3}", host) is not None
+
+
+def over_tls(endpoint: str) -> str:
+    """The endpoint by TLS, where it was given by plain TCP."""
+    return TLS + endpoint.removeprefix("tcp/") if endpoint.startswith("tcp/") else endpoint
+
+
+def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
+    """Both ends show a certificate, and a link ends when that of either expires."""
+    values: dict[str, Any] = {
+        "root_ca_certificate": identity.authority,
+        "enable_mtls": True,
+        "connect_certificate": identity.certificate,
+        "connect_private_key": identity.key,
+        "verify_name_on_connect": True,
+        "close_link_on_expiration": True,
+    }
+    if listens:
+        values |= {"listen_certificate": identity.certificate, "listen_private_key": identity.key}
+    return {f"transport/link/tls/{key}": value for key, value in values.items()}
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 from nodes.bus import Network
@@ -29,3 +30,5 @@ class CoordinatorConfig:
     truth: Truth = "map"
     thresholds: Thresholds = field(default_factory=Thresholds)
     network: Network = field(default_factory=Network)
+    keys: Path | None = None
+    """The folder of keys of a secure system: then names are proved, and roles hold."""

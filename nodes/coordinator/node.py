@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from msgspec import structs
 
 from nodes import bus
-from nodes.coordinator import authority
+from nodes.coordinator import admission, authority
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
@@ -98,7 +98,10 @@ class Coordinator:
         Follower(node, door.map, keys.EFFECTS, heard=self._on_commit, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
-        node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map)
+        node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map, admit=admission.claimed)
+        if config.keys is not None:
+            proved = admission.Admission(config.keys).proved
+            node.serve(keys.commands_as(), handlers, leave=self._is_left_to_the_map, admit=proved)
         node.every(0.2, self._tick)
         node.when_idle(self._catch_up)
 

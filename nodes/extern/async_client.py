@@ -38,11 +38,16 @@ _CALLS_AT_ONCE: Final = 32
 
 @contextlib.asynccontextmanager
 async def connect(
-    where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
+    where: str | None = None,
+    *,
+    source: Source | None = None,
+    agent: str = "",
+    namespace: str = "",
+    identity: str | None = None,
 ) -> AsyncIterator[AsyncClient]:
-    """A client of the system at `where`. Raises NoAnswer when nothing answers there."""
+    """A client of the system at `where`; see `semmap.connect`. Raises NoAnswer when nothing answers there."""
     threads = ThreadPoolExecutor(_CALLS_AT_ONCE, thread_name_prefix="semmap")
-    connection = connect_blocking(where, source=source, agent=agent, namespace=namespace)
+    connection = connect_blocking(where, source=source, agent=agent, namespace=namespace, identity=identity)
     loop = asyncio.get_running_loop()
     try:
         client = await loop.run_in_executor(threads, connection.__enter__)

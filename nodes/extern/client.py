@@ -25,9 +25,11 @@ import msgspec
 from nodes import bus
 from nodes.extern.client_verbs import Verbs
 from nodes.extern.connection import endpoint, open_session
+from nodes.extern.connection import identity as identify
 from nodes.extern.sparql_client import StandingQuery
+from nodes.identity import Identity
 from nodes.runtime import version
-from schemas import codec, errors, keys
+from schemas import codec, errors, keys, roles
 from schemas.calls import reply_type
 from schemas.commands import Command, Status
 from schemas.commits import Commit
@@ -45,31 +47,52 @@ _VERSION_S = 2.0
 
 @contextlib.contextmanager
 def connect(
-    where: str | None = None, *, source: Source = "operator", agent: str = "", namespace: str = ""
+    where: str | None = None,
+    *,
+    source: Source | None = None,
+    agent: str = "",
+    namespace: str = "",
+    identity: str | None = None,
 ) -> Iterator[Client]:
     """A client of the system at `where`. Raises NoAnswer when nothing answers there.
 
-    That is said at once where this machine refuses the connection and no system is starting.
+    That is said at once where this machine refuses the connection and no system is starting. `identity` is
+    `DIR/NAME` of a certificate, for a secure system. Changes are signed as `source`: unless it is given,
+    "perception" for a certificate of that role, else "operator".
     """
-    with open_session(where or endpoint(), namespace) as session:
-        yield Client(session, source=source, agent=agent)
+    who = identify(identity)
+    with open_session(where or endpoint(), namespace, who) as session:
+        yield Client(session, source=source, agent=agent, identity=who)
 
 
 class Client(Verbs):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
-    def __init__(self, session: bus.Session, *, source: Source = "operator", agent: str = "") -> None:
+    def __init__(
+        self,
+        session: bus.Session,
+        *,
+        source: Source | None = None,
+        agent: str = "",
+        identity: Identity | None = None,
+    ) -> None:
         self.session = session
+        self.identity = identity
         self._lifelines = bus.Lifelines(session)
-        self._signature: dict[str, Any] = {"source": source, "agent": agent}
+        self._prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
+        role = "" if identity is None else identity.role
+        self._signature: dict[str, Any] = {"source": source or roles.default_source(role), "agent": agent}
 
     def send(self, command: Command[R], *, timeout_s: float = LONG_S) -> R:
         """Send any command and return its reply; raises the error that it is answered with.
 
-        Raises BadRequest, before anything is sent, for a field that is not of its type, and NoAnswer when the
-        reply takes longer than `timeout_s` [s].
+        Raises BadRequest, before anything is sent, for a field that is not of its type, Refused for what the
+        role of this client's certificate does not permit, and NoAnswer when the reply takes longer than
+        `timeout_s` [s].
         """
         signed, first_hand = _checked(command, self._signature), command.VERB in keys.OF_THE_MAP
+        if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
+            raise errors.Refused(refusal)
         reply: R = self._ask(
             command.VERB, signed, reply_type(type(command)), timeout_s=timeout_s, first_hand=first_hand
         )
@@ -78,7 +101,7 @@ class Client(Verbs):
     def _ask(self, verb: str, command: Command, kind: Any, **how: Any) -> Any:
         """As `bus.ask`; a misunderstanding between versions is told as one."""
         try:
-            return bus.ask(self.session, keys.CMD, verb, command, kind, lifelines=self._lifelines, **how)
+            return bus.ask(self.session, self._prefix, verb, command, kind, lifelines=self._lifelines, **how)
         except errors.SemmapError as error:
             if _may_be_of_versions(error) and (difference := version.difference(self._version_of_system())):
                 raise type(error)(f"{error.text}; {difference}", explanation=error.explanation) from None
@@ -88,7 +111,7 @@ class Client(Verbs):
         """What its status says; this client's own where nobody says."""
         ask = functools.partial(bus.ask, timeout_s=_VERSION_S, patience_s=0.0)
         try:
-            said = ask(self.session, keys.CMD, Status.VERB, Status(), dict[str, Any])
+            said = ask(self.session, self._prefix, Status.VERB, Status(), dict[str, Any])
         except errors.SemmapError:
             return version.version()
         return str(said.get("version", ""))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Coroutine, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType, MethodType
 from typing import (
@@ -56,15 +56,20 @@ class Verb(Generic[P, U]):
         self._make, self._read = make, read
 
     def __set_name__(self, owner: type[Any], name: str) -> None:
+        self._owner, self._name = owner.__name__, name
+
+    @cached_property
+    def _method(self) -> Callable[..., Any]:
+        """Made for the verbs that are used: their signatures take longer than the rest of an import."""
         make, read = self._make, self._read
 
         def method(client: Any, *args: Any, **fields: Any) -> Any:
             return client.request(partial(make, *args, **fields), read)
 
-        method.__name__, method.__qualname__ = name, f"{owner.__name__}.{name}"
+        method.__name__, method.__qualname__ = self._name, f"{self._owner}.{self._name}"
         method.__doc__, method.__module__ = make.__doc__, make.__module__
         method.__signature__ = _signature(make, read)  # type: ignore[attr-defined]
-        self._method = method
+        return method
 
     @overload
     def __get__(self, client: Client, owner: type[Client]) -> Callable[P, U]: ...

@@ -8,10 +8,11 @@ import time
 from collections.abc import Iterator
 
 from nodes import bus
+from nodes.identity import Identity
 from nodes.supervisor import presence, registry
 from schemas import errors
+from schemas.endpoints import CONNECT_VARIABLE, IDENTITY_VARIABLE
 
-CONNECT_VARIABLE = "SEMMAP_CONNECT"
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
 _AGAIN_S = 0.1
@@ -36,19 +37,35 @@ def endpoint() -> str:
     return running[0].reachable
 
 
+def identity(path: str | None) -> Identity | None:
+    """Who the client is: `DIR/NAME`, or else what `SEMMAP_IDENTITY` says; None without. Raises BadFile."""
+    path = path or os.environ.get(IDENTITY_VARIABLE)
+    return Identity.read(path) if path else None
+
+
 @contextlib.contextmanager
-def open_session(where: str, namespace: str) -> Iterator[bus.Session]:
+def open_session(where: str, namespace: str, identity: Identity | None = None) -> Iterator[bus.Session]:
     """A session with whoever listens at `where`, or will do so when the system has started.
 
     On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
-    Raises NoAnswer when nothing answers there, or the system takes too long to start.
+    With an identity it is a client of the router, and the endpoint one of TLS. Raises NoAnswer when nothing
+    answers there, the system takes too long to start, or it wants to know who this is.
     """
+    if identity is not None:
+        identity.require_valid()
+        where = bus.over_tls(where)
+    elif where.startswith(bus.TLS):
+        raise errors.NoAnswer(
+            f"the system at {where} only answers those who show a certificate; say who you are:"
+            f" --identity DIR/NAME or {IDENTITY_VARIABLE}"
+        )
     here = presence.is_loopback(where)
     network = bus.Network(
         connect=(where,),
-        mode="peer" if here else "client",
+        mode="peer" if here and identity is None else "client",
         namespace=namespace,
         patience_s=0.0 if here else bus.PATIENCE_S,
+        identity=identity,
     )
     deadline_s = time.monotonic() + _START_S
     with contextlib.ExitStack() as stack:

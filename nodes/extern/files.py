@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
 from pathlib import Path
 
 from schemas import errors
@@ -34,6 +33,8 @@ def write_atomically(file: Path, content: bytes) -> None:
 
     Raises BadFile.
     """
+    import tempfile
+
     file = file.resolve()
     try:
         if file.exists() and not file.is_file():

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from nodes.extern.files import read_file
 from nodes.runtime import extras
-from ontology.prefixes import declarations
 
 
 def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
@@ -21,6 +20,7 @@ def ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]
         return read_file(path), path.name
     extras.require("finding imports", "kb")
     from nodes.kb_node.documents import ontology_files, rdf
+    from ontology.prefixes import declarations
 
     gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
     further = len(gathered.files) - 1

@@ -19,7 +19,7 @@ from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
-from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.relations.said import denied
 from nodes.kb_node.relations.space import Space
@@ -65,7 +65,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity, PropertyInfo
-from schemas.explanations import Explanation
+from schemas.explanations import Explanation, Triple
 from schemas.health import LOADING
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
@@ -100,7 +100,8 @@ class KnowledgeBase:
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
-            node.serve_one(keys.CMD, handlers[verb])
+            for prefix in (keys.CMD, keys.commands_as()):
+                node.serve_one(prefix, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.note(self._notes())
         node.ready(self._summary())
@@ -301,12 +302,17 @@ class KnowledgeBase:
 
     def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
-        reasoner = self.map.reasoner
+        reasoner, names = self.map.reasoner, self.map.classes.prefixed
+        needed: list[Triple] | None = None
         if questions.is_quick(reasoner, asked):
-            with suppress(NotCompilable):
+            try:
                 return answer(reasoner, asked, anew=False)
-        asserted = list(reasoner.asserted())
-        return self._aside.submit(lambda: answer(Reasoner(asserted), asked))
+            except questions.Undecided:
+                needed = nearby(reasoner, asked.terms)
+            except NotCompilable:
+                pass
+        triples = list(reasoner.asserted()) if needed is None else needed
+        return self._aside.submit(lambda: answer(questions.copy_of(triples, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

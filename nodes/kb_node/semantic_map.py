@@ -21,7 +21,7 @@ from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_fo
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
-from schemas import errors
+from schemas import agents, errors
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
@@ -392,7 +392,8 @@ class SemanticMap:
             stamp_ns=time.time_ns(),
             id=transaction.id,
             source=transaction.source,
-            agent=transaction.agent,
+            agent=agents.name_of(transaction.agent),
+            authenticated=agents.is_proved(transaction.agent),
             verb=transaction.verb,
             reason=transaction.reason,
             confidence=transaction.confidence,

@@ -15,10 +15,12 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "sim": ("PIL", "mujoco", "numpy", "scipy", "trimesh"),
     "perception": ("PIL", "numpy", "scipy"),  # and Open3D, where there is one
     "record": ("PIL", "numpy", "rerun"),
+    "keys": ("cryptography",),
 }
 """What each extra installs, as it is imported."""
 
 OF_NODE: Mapping[str, str] = {
+    "router": "kb",
     "coordinator": "kb",
     "kb_node": "kb",
     "sim_node": "sim",

@@ -36,13 +36,18 @@ Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
 `calls.by_verb(Get.answered_by(function), ...)` makes them, and has mypy check the types of the functions.
 """
 
+Admit = Callable[[str, Any], Any]
+"""Of who asks (nothing where the key does not say) and a message, the message to handle."""
+
 
 class Node:
     """A running node: bind handlers, then `run`. Use `open_node`."""
 
-    def __init__(self, name: str, session: bus.Session) -> None:
+    def __init__(self, name: str, session: bus.Session, commands: str = keys.CMD) -> None:
+        """`commands` is the prefix under which it asks for commands."""
         self.name = name
         self.session = session
+        self._commands = commands
         self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
@@ -59,14 +64,16 @@ class Node:
         *,
         puts: bool = False,
         leave: Callable[[str], bool] = lambda verb: False,
+        admit: Admit = lambda who, message: message,
     ) -> None:
         """Answer queries on `prefix/<verb>`, and with `puts` execute puts too.
 
         A query of which `leave(verb)` holds is left to another node; it is called on a thread of Zenoh's.
+        `admit(who, message)` gives the message to handle, or raises why it is not.
         """
 
         def receive(request: bus.Request) -> None:
-            self._events.put(lambda: self._handle(request, handlers))
+            self._events.put(lambda: self._handle(request, handlers, admit))
 
         def receive_query(request: bus.Request) -> None:
             if not leave(request.verb):
@@ -77,7 +84,10 @@ class Node:
             bus.serve_puts(self.session, prefix, receive)
 
     def serve_one(self, prefix: str, handler: Handler) -> None:
-        """Answer queries on `prefix/<verb>` of one verb; another node serves all others of the prefix."""
+        """Answer queries on `prefix/<verb>` of one verb; another node serves all others of the prefix.
+
+        `prefix` may stand for everybody's own: `semmap/as/*/cmd`.
+        """
         verb = handler.kind.VERB
 
         def receive(request: bus.Request) -> None:
@@ -136,7 +146,7 @@ class Node:
         meanwhile = self.beat if beating else None
         answer: R = bus.ask(
             self.session,
-            prefix,
+            self._prefix(prefix),
             call.VERB,
             call,
             reply_type(type(call)),
@@ -166,7 +176,7 @@ class Node:
         def send() -> None:
             bus.ask_later(
                 self.session,
-                prefix,
+                self._prefix(prefix),
                 call.VERB,
                 call,
                 reply_type(type(call)),
@@ -192,6 +202,9 @@ class Node:
 
         send()
         return future
+
+    def _prefix(self, prefix: str) -> str:
+        return self._commands if prefix == keys.CMD else prefix
 
     def is_there(self, node: str) -> bool:
         """Is a process of another node ready? Any thread may ask."""
@@ -266,14 +279,16 @@ class Node:
         while self._afterwards:
             self._guard(self._afterwards.pop(0))
 
-    def _handle(self, request: bus.Request, handlers: Handlers) -> None:
+    def _handle(
+        self, request: bus.Request, handlers: Handlers, admit: Admit = lambda who, message: message
+    ) -> None:
         try:
             if request.verb not in handlers:
                 raise errors.UnknownVerb(
                     f"unknown verb '{request.verb}'; there are: {', '.join(sorted(handlers))}"
                 )
             kind, function = handlers[request.verb]
-            result = function(request.read(kind))
+            result = function(admit(request.who, request.read(kind)))
         except Exception as error:
             self._refuse(request, error)
             return
@@ -320,7 +335,7 @@ class Node:
 def open_node(name: str, network: bus.Network) -> Iterator[Node]:
     """A node with an open session that stops on SIGTERM and SIGINT."""
     with bus.open_session(network) as session:
-        node = Node(name, session)
+        node = Node(name, session, network.commands)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: node.stop())
         yield node

@@ -15,6 +15,7 @@ from pathlib import Path
 from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
 from schemas import codec, errors
+from schemas.keys import ROUTER
 
 
 def run_node(name: str, settings: Settings) -> None:
@@ -67,7 +68,8 @@ def _coordinator(settings: Settings) -> None:
     from nodes.coordinator.node import run
 
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
-    run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator")))
+    keys = None if settings.secure is None else Path(settings.secure)
+    run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator"), keys))
 
 
 def _sim_node(settings: Settings) -> None:
@@ -100,8 +102,18 @@ def _recorder(settings: Settings) -> None:
     run(RecorderConfig(path=path, network=settings.network("recorder"), serve=settings.live_view))
 
 
+def _router(settings: Settings) -> None:
+    from nodes.router.config import RouterConfig
+    from nodes.router.node import run
+
+    if settings.secure is None:
+        raise errors.BadRequest("only a secure system has a router; name the folder of keys: --secure DIR")
+    run(RouterConfig(Path(settings.secure), settings.network(ROUTER)))
+
+
 _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
     "kb_node": _kb_node,
+    ROUTER: _router,
     "coordinator": _coordinator,
     "sim_node": _sim_node,
     "perception_node": _perception_node,

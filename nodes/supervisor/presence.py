@@ -11,17 +11,16 @@ import contextlib
 import fcntl
 import os
 import re
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 _READ = os.O_RDONLY | os.O_NOFOLLOW
-_LOOPBACK = re.compile(r"tcp/(?:127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d+)")
+_LOOPBACK = re.compile(r"(?:tcp|tls)/(?:127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d+)")
 
 
 @contextlib.contextmanager
 def announced(endpoint: str) -> Iterator[None]:
-    """While this is open, `is_announced` holds of `endpoint`, if that is a TCP port of loopback."""
+    """While this is open, `is_announced` holds of `endpoint`, if that is a port of loopback."""
     if (lock := _lock_of(endpoint)) is None:
         yield
         return
@@ -57,11 +56,13 @@ def is_announced(endpoint: str) -> bool:
 
 
 def is_loopback(endpoint: str) -> bool:
-    """Is it a TCP port of loopback? Then a system that is run there is announced."""
+    """Is it a port of loopback? Then a system that is run there is announced."""
     return _LOOPBACK.fullmatch(endpoint) is not None
 
 
 def _lock_of(endpoint: str) -> Path | None:
     """The file of the lock: one for a port, whoever uses it."""
+    import tempfile
+
     match = _LOOPBACK.fullmatch(endpoint)
     return Path(tempfile.gettempdir(), f"semmap-{match[1]}.lock") if match else None

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -56,6 +55,8 @@ def systems() -> tuple[System, ...]:
 
 
 def _folder() -> Path:
+    import tempfile
+
     return Path(tempfile.gettempdir(), f"semmap-{os.getuid()}")
 
 

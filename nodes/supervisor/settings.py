@@ -9,7 +9,9 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta, Struct
 
-from nodes.bus import DEFAULT_ENDPOINT, Network
+from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
+from nodes.identity import Identity
+from schemas.keys import ROUTER
 
 ANY_PORT = "tcp/127.0.0.1:0"
 SETTINGS = "settings.json"
@@ -58,6 +60,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What becomes of an entity that perception brought in and no longer sees."""
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
+    secure: str | None = None
+    """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
@@ -81,7 +85,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The nodes to run, in the order of starting."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
-        return tuple(node for node in order if optional.get(node, True))
+        router = (ROUTER,) if self.secure is not None else ()
+        return router + tuple(node for node in order if optional.get(node, True))
 
     @property
     def angle_threshold_rad(self) -> float:
@@ -89,7 +94,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return math.radians(self.angle_threshold_deg)
 
     def network(self, node: str) -> Network:
-        """The coordinator listens where the world expects it; the others connect to it and mesh by gossip."""
+        """The coordinator listens where the world expects it; the others connect to it and mesh by gossip.
+
+        In a secure system the router listens, and all others are its clients.
+        """
+        if self.secure is not None:
+            identity = Identity.read(Path(self.secure) / node)
+            if node == ROUTER:
+                return Network(mode="router", listen=(self.listen,), connect=(), identity=identity)
+            return Network(connect=(self.reachable,), identity=identity, patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)
         return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))

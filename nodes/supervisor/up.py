@@ -16,6 +16,7 @@ from pathlib import Path
 from msgspec import structs
 
 from nodes import bus
+from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import Supervisor
 from nodes.supervisor.settings import Settings
@@ -41,7 +42,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         down = f"semmap down --data {shlex.quote(settings.data)}"
         raise errors.Refused(f"a system is already running on {settings.data}; stop it with: {down}")
     _require_free(settings.listen)
-    if settings.record:
+    if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
         settings = structs.replace(settings, live_view=_live_view())
     with presence.announced(settings.reachable):
         say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
@@ -102,11 +103,16 @@ class _Foreground:
     def _follow(self, stack: contextlib.ExitStack) -> bus.Session | None:
         """Join the network as soon as the coordinator listens."""
         try:
-            session = stack.enter_context(bus.open_session(bus.Network(connect=(self._settings.reachable,))))
+            session = stack.enter_context(bus.open_session(self._network()))
         except errors.NoAnswer:
             return None
         bus.follow(session, keys.HEALTH, lambda _, health: self._beats.put(health))
         return session
+
+    def _network(self) -> bus.Network:
+        secure = self._settings.secure
+        identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
+        return bus.Network(connect=(self._settings.reachable,), identity=identity)
 
     def _hear(self) -> None:
         with contextlib.suppress(queue.Empty):
@@ -149,14 +155,14 @@ class _Foreground:
                 self._say(f"{'models':<{_COLUMN}} {said}")
 
     def _greet(self) -> None:
-        connect = (
-            ""
-            if self._settings.reachable == bus.DEFAULT_ENDPOINT
-            else f" --connect {self._settings.reachable}"
-        )
+        usual = self._settings.reachable == bus.DEFAULT_ENDPOINT
+        connect = "" if usual else f" --connect {self._settings.reachable}"
+        if self._settings.secure is not None:
+            connect += f" --identity {shlex.quote(self._settings.secure)}/NAME"
         lines = {"zenoh": self._settings.reachable, "data": self._settings.data}
         if self._settings.record:
             lines["recording"] = f"{self._settings.data}/recordings"
+        if self._settings.live_view is not None:
             lines["live view"] = f"rerun --connect rerun+http://{self._settings.live_view}/proxy"
         lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
         self._say("")
@@ -166,7 +172,7 @@ class _Foreground:
 
 def _require_free(endpoint: str) -> None:
     """Refuse an endpoint that another system of this machine listens on, rather than take it for ours."""
-    match = re.fullmatch(r"tcp/(.+):(\d+)", endpoint)
+    match = re.fullmatch(r"(?:tcp|tls)/(.+):(\d+)", endpoint)
     if match is None:
         return
     host, port = match[1].strip("[]"), int(match[2])

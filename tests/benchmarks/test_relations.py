@@ -1,7 +1,7 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
 from benchmarks.relations.__main__ import as_json
-from benchmarks.relations.rightness import Counts, flat, inside_against_samples, on_against_contacts
+from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
 from benchmarks.table import Row
 from nodes.kb_node.relations.place_facts import Facts
@@ -15,9 +15,10 @@ def test_shares_of_right_ones():
 
 
 def test_settled_heaps_and_sampled_points():
-    on = on_against_contacts(3)
-    assert on.right > 8
-    assert on.f1 > 0.6
+    on, touches = against_contacts(4)
+    assert on.right > 20
+    assert on.f1 > 0.95
+    assert touches.f1 > 0.95
     assert inside_against_samples(200).f1 > 0.9
 
 

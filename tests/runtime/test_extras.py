@@ -14,7 +14,7 @@ import pytest
 
 from nodes.runtime import extras
 from schemas import errors
-from schemas.keys import NODES
+from schemas.keys import NODES, ROUTER
 from tests.conftest import free_endpoint
 
 ROOT = Path(__file__).parents[2]
@@ -27,9 +27,11 @@ AREAS = {
     "nodes/bus": (),
     "nodes/coordinator": ("kb",),
     "nodes/extern": tuple(extras.MODULES),  # which asks for them first
+    "nodes/identity": ("keys",),
     "nodes/kb_node": ("kb",),
     "nodes/perception_node": ("perception",),
     "nodes/recorder": ("record",),
+    "nodes/router": (),
     "nodes/runtime": (),
     "nodes/sim_node": ("sim",),
     "nodes/supervisor": ("kb",),
@@ -84,8 +86,8 @@ def test_all_is_every_extra():
 
 
 def test_every_node_has_an_extra():
-    assert set(extras.OF_NODE) == set(NODES)
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES)
+    assert set(extras.OF_NODE) == {*NODES, ROUTER}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys"}
 
 
 def test_with_everything_nothing_is_missing():

@@ -23,6 +23,7 @@ _MODULES = {
     "scene": ("move", "pause", "step", "reset", "picture", "replay"),
     "lifecycle": ("up", "down", "node", "repair"),
     "tbox": ("tbox",),
+    "keys": ("keys",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

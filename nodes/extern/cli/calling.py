@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import functools
-import json
 import os
 import sys
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes import bus
-from nodes.extern.client import Client, connect
-from nodes.extern.connection import CONNECT_VARIABLE
-from schemas import codec, errors
+from schemas import errors
+from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 TIME = (
     "TIME is ISO 8601 like 2026-03-01T12:30:05, as history shows it, and denotes its written precision: that"
@@ -29,22 +29,34 @@ connect_option = click.option(
     envvar=CONNECT_VARIABLE,
     show_envvar=True,
     metavar="EP",
-    help=f"Zenoh endpoint of the system. Default: {bus.DEFAULT_ENDPOINT}, or the only one on this machine.",
+    help=f"Zenoh endpoint of the system. Default: {DEFAULT_ENDPOINT}, or the only one on this machine.",
 )
 """Which running system is meant."""
+
+identity_option = click.option(
+    "--identity",
+    envvar=IDENTITY_VARIABLE,
+    show_envvar=True,
+    metavar="DIR/NAME",
+    help="Who you are, to a secure system: the certificate DIR/NAME.crt with its key.",
+)
+"""Whose certificate is shown."""
 
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""
 
     @connect_option
+    @identity_option
     @functools.wraps(function)
-    def with_client(where: str | None, **arguments: Any) -> None:
-        shared = click.get_current_context().obj
-        if isinstance(shared, Client):
+    def with_client(where: str | None, identity: str | None, **arguments: Any) -> None:
+        if (shared := click.get_current_context().obj) is not None:
             function(shared, **arguments)
             return
-        with connect(where, agent=f"cli/{os.environ.get('USER', 'user')}") as client:
+        from nodes.extern.client import connect  # not needed for what only prints help or completes a word
+
+        agent = f"cli/{os.environ.get('USER', 'user')}"
+        with connect(where, agent=agent, identity=identity) as client:
             function(client, **arguments)
 
     return with_client
@@ -80,6 +92,10 @@ def run_words(app: click.Command, words: list[str], client: Client | None = None
 
 def print_json(message: Any) -> None:
     """A reply as JSON."""
+    import json
+
+    from schemas import codec
+
     print(json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False))
 
 

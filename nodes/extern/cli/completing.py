@@ -5,23 +5,17 @@ A system that does not answer at once has nothing to complete with; nothing is e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Literal
 
 import click
 from click.shell_completion import CompletionItem, get_completion_class
 
-from nodes import bus
-from nodes.extern.connection import endpoint
-from nodes.supervisor import presence
-from schemas import commands, errors, keys
-from schemas.entities import ClassInfo, Entity
+from schemas import errors
 
 SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_SEMMAP_COMPLETE"
-_MEET_S = 0.5
-_ANSWER_S = 1.0
 
 
 def script(app: click.Command, shell: str) -> str:
@@ -31,39 +25,22 @@ def script(app: click.Command, shell: str) -> str:
     return found(app, {}, "semmap", _VARIABLE).source()
 
 
-def _entities(where: str) -> Iterable[CompletionItem]:
-    found = _ask(where, "list", commands.List(), tuple[Entity, ...])
-    return (CompletionItem(entity.name, help=entity.class_) for entity in found)
-
-
-def _classes(where: str) -> Iterable[CompletionItem]:
-    found = _ask(where, "classes", commands.Classes(), tuple[ClassInfo, ...])
-    return (CompletionItem(row.name, help=row.labels.get("en")) for row in found if row.spatial)
-
-
-def _ask(where: str, verb: str, command: Any, kind: Any) -> Any:
-    here = presence.is_loopback(where)
-    network = bus.Network(
-        connect=(where,), mode="peer" if here else "client", patience_s=0.0 if here else _MEET_S
-    )
-    with bus.open_session(network) as session:
-        return bus.ask(session, keys.CMD, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)
-
-
 def _completing(
-    find: Callable[[str], Iterable[CompletionItem]],
+    kind: Literal["entities", "classes"],
 ) -> Callable[[click.Context, click.Parameter, str], list[CompletionItem]]:
     def complete(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from nodes.extern.cli import known_names  # most words are completed without asking
+
         with suppress(errors.SemmapError):
-            where = context.params.get("where") or endpoint()
-            items = sorted(find(where), key=lambda item: str(item.value))
-            return [item for item in items if str(item.value).startswith(incomplete)]
+            found = known_names.KINDS[kind](context.params.get("where"))
+            named = sorted((name, help or "") for name, help in found if name.startswith(incomplete))
+            return [CompletionItem(name, help=help or None) for name, help in named]
         return []
 
     return complete
 
 
-entity_names = _completing(_entities)
+entity_names = _completing("entities")
 """For a parameter that names an entity."""
-class_names = _completing(_classes)
+class_names = _completing("classes")
 """For a parameter that names a class of things in space."""

@@ -19,8 +19,14 @@ RELATIONS: Final = {
     "type": v.RDF_TYPE,
     "sameas": v.OWL_SAME_AS,
     "differentfrom": v.OWL_DIFFERENT_FROM,
+    "subclassof": v.RDFS_SUB_CLASS_OF,
+    "equivalentclass": v.iri(f"{v.OWL}equivalentClass"),
+    "disjointwith": v.iri(f"{v.OWL}disjointWith"),
 }
 """What every map knows besides the properties of its TBox, in lower case."""
+OF_CLASSES: Final = frozenset(RELATIONS.values()) - {v.OWL_SAME_AS, v.OWL_DIFFERENT_FROM}
+"""Those whose value is a class."""
+_VOCABULARY: Final = tuple(f"<{namespace}" for namespace in (v.OWL, v.RDF, v.RDFS, v.XSD))
 
 
 def class_(semantic_map: SemanticMap, word: str) -> Term:
@@ -35,6 +41,12 @@ def class_(semantic_map: SemanticMap, word: str) -> Term:
     if name is None:
         raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
     return classes.iris[name]
+
+
+def _class_or_built_in(semantic_map: SemanticMap, word: str) -> Term:
+    """A class of the TBox, or one of the vocabulary of OWL (`owl:Thing`). Raises UnknownClass."""
+    found = term(semantic_map, word)
+    return found if found is not None and found.startswith(_VOCABULARY) else class_(semantic_map, word)
 
 
 def term(semantic_map: SemanticMap, word: str) -> Term | None:
@@ -83,8 +95,8 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
 
 def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
     """The terms that `word` may stand for as the object of this subject and predicate."""
-    if predicate == v.RDF_TYPE and not word.startswith("_:"):
-        return [class_(semantic_map, word)]
+    if predicate in OF_CLASSES and not word.startswith("_:"):
+        return [_class_or_built_in(semantic_map, word)]
     if (found := term(semantic_map, word)) is not None:
         return [found]
     if predicate in RELATIONS.values():
@@ -99,8 +111,8 @@ def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str)
 
 def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     """An individual, or a literal of the property's range. Raises UnknownName, BadRequest."""
-    if predicate == v.RDF_TYPE and not word.startswith("_:"):
-        return class_(semantic_map, word)
+    if predicate in OF_CLASSES and not word.startswith("_:"):
+        return _class_or_built_in(semantic_map, word)
     if (found := term(semantic_map, word)) is not None:
         return found
     if _is_data(semantic_map.reasoner, predicate):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import NamedTuple
 
@@ -10,8 +10,10 @@ from nodes.kb_node import proofs
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.answers.asked_terms import RELATIONS
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed
 from nodes.kb_node.reasoner.explain.sentences import said
 from nodes.kb_node.reasoner.refutation import refute, why_different
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import vocabulary as v
 from schemas import errors
@@ -25,11 +27,20 @@ _COMPARED = 50
 """Values that are looked at for what would be the same."""
 
 
+class Undecided(NotCompilable):
+    """Neither the rules nor a refutation decide it at once: a proof is to be searched for, on a copy."""
+
+
 class Asked(NamedTuple):
     """A question as triples: the one that is meant, or several that a word may stand for."""
 
     triples: tuple[Triple, ...]
     negated: bool = False
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """What it is about."""
+        return tuple(dict.fromkeys(term for s, _, o in self.triples for term in (s, o)))
 
 
 def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
@@ -56,6 +67,13 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
+def copy_of(triples: Iterable[Triple], names: Mapping[Term, str]) -> Reasoner:
+    """A reasoner for work beside the map's own; `names` tell its classes apart."""
+    reasoner = Reasoner(triples)
+    reasoner.words.tell_apart(names)
+    return reasoner
+
+
 def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
     """Why it holds by the rules; None if it does not."""
     found = next(filter(None, map(reasoner.explain, asked.triples)), None)
@@ -65,16 +83,21 @@ def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
 def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
     """Why it holds, or cannot hold.
 
+    What no rule derives is refuted, or proved from what is near (`why_entailed`).
+
     Raises:
         Refused: it does not hold; or it holds, or nothing says that it cannot.
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+        NotCompilable: everything would have to be worked out `anew`, and that is not wanted; Undecided if
+            only what is near would have to be.
     """
     first = asked.triples[0]
     clause = said(first, reasoner.words)
     if asked.negated:
         if (denied := refute(reasoner, first, anew=anew)) is not None:
             return proofs.message(denied)
-        holds = reasoner.explain(first)
+        if not reasoner.holds(first) and not anew:
+            raise Undecided("no rule excludes it, and none derives it")
+        holds = reasoner.explain(first) or _entailed(reasoner, asked)
         raise errors.Refused(
             f"it does hold: {holds.text}"
             if holds
@@ -84,10 +107,20 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
         return found
     if (different := why_different(reasoner, first, anew=anew)) is not None:
         return proofs.message(different)
-    excluded = refute(reasoner, first, anew=anew)
-    if excluded is None:
-        raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
-    raise errors.Refused(f"it does not hold: {excluded.text}", explanation=proofs.message(excluded))
+    if (excluded := refute(reasoner, first, anew=anew)) is not None:
+        raise errors.Refused(f"it does not hold: {excluded.text}", explanation=proofs.message(excluded))
+    if not anew:
+        raise Undecided("no rule derives it, and none excludes it")
+    if (further := _entailed(reasoner, asked)) is not None:
+        return further
+    raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
+
+
+def _entailed(reasoner: Reasoner, asked: Asked) -> Explanation | None:
+    """Why it follows from what is near, although no rule derives it."""
+    near = Reasoner(nearby(reasoner, asked.terms))
+    found = why_entailed(near, asked.triples[0], words=reasoner.words)
+    return None if found is None else proofs.message(found)
 
 
 def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:

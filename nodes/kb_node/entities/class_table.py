@@ -55,6 +55,9 @@ class ClassTable:
         self.names: dict[Term, str] = prefixes.names(classes, self.prefixes)
         """Class to name: its local name, with a prefix where several classes share that."""
         self.iris = {name: c for c, name in self.names.items()}
+        self.prefixed: dict[Term, str] = {c: prefixes.prefixed(c, self.prefixes) for c in self.names}
+        """Class to name with its prefix, which always means that class."""
+        reasoner.words.tell_apart(self.prefixed)
         self.alignments: tuple[Alignment, ...] = alignments.of_namespaces(self.prefixes.values())
         """Those that say how the TBox's vocabulary tells positions, sizes and names."""
         self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
@@ -104,11 +107,8 @@ class ClassTable:
     @property
     def ambiguous(self) -> dict[str, tuple[str, ...]]:
         """Each local name that several classes share, with the names that tell them apart."""
-        sharing: dict[str, list[str]] = {}
-        for c, name in self.names.items():
-            if name == prefixes.prefixed(c, self.prefixes):
-                sharing.setdefault(v.local_name(c), []).append(name)
-        return {local: tuple(sorted(names)) for local, names in sorted(sharing.items()) if len(names) > 1}
+        shared = prefixes.told_apart(self.names.keys(), self.prefixes)
+        return {local: tuple(names) for local, names in shared.items()}
 
     def special_first(self, types: Iterable[Term]) -> list[Term]:
         """Those of `types` that are named classes of the TBox, the most special one first."""
@@ -215,7 +215,7 @@ class ClassTable:
         return ClassInfo(
             name=self.names[c],
             iri=v.bare(c),
-            prefixed=prefixes.prefixed(c, self.prefixes),
+            prefixed=self.prefixed[c],
             parents=tuple(self.names[p] for p in self._parents[c]),
             ancestors=tuple(self.names[a] for a in self.special_first(self._reasoner.superclasses(c) - {c})),
             labels=labels,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from nodes.kb_node.relations.solids import Bounds, Solid
 
 CELL_M = 1.0
@@ -10,36 +12,46 @@ MOST_CELLS = 1024
 
 
 class Grid:
-    """Names by cell. A question costs as much as there is around the place that it asks about."""
+    """Solids by cell. A question costs as much as there is around the place that it asks about."""
 
     def __init__(self) -> None:
-        self._cells: dict[tuple[int, int], dict[str, None]] = {}
-        self._large: dict[str, None] = {}
+        self._cells: dict[tuple[int, int], dict[Solid, None]] = {}
+        self._large: dict[Solid, None] = {}
 
     def add(self, solid: Solid) -> None:
         """File a solid under the cells that its bounds cover."""
         cells = _cells(solid.bounds)
         if cells is None:
-            self._large[solid.name] = None
+            self._large[solid] = None
             return
         for cell in cells:
-            self._cells.setdefault(cell, {})[solid.name] = None
+            self._cells.setdefault(cell, {})[solid] = None
 
     def remove(self, solid: Solid) -> None:
         """Take it out; with the bounds that it was filed under."""
-        if self._large.pop(solid.name, self) is None:
+        if self._large.pop(solid, self) is None:
             return
         for cell in _cells(solid.bounds) or ():
-            names = self._cells[cell]
-            del names[solid.name]
-            if not names:
+            there = self._cells[cell]
+            del there[solid]
+            if not there:
                 del self._cells[cell]
 
-    def around(self, bounds: Bounds, margin_m: float = 0.0) -> dict[str, None]:
-        """The names of whoever may be within a margin of some bounds."""
+    def around(self, bounds: Bounds, margin_m: float = 0.0) -> list[Solid]:
+        """Whose bounds meet these, or are within a margin of them."""
         x0, y0, x1, y1 = bounds
+        x0, y0, x1, y1 = x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m
+        return [
+            solid
+            for solid in self._filed(_cells((x0, y0, x1, y1)))
+            if (its := solid.bounds)[0] <= x1 and its[2] >= x0 and its[1] <= y1 and its[3] >= y0
+        ]
+
+    def _filed(self, cells: list[tuple[int, int]] | None) -> Iterable[Solid]:
+        """Once each who is filed under some cells; under all for None."""
+        if cells is not None and len(cells) == 1 and not self._large:
+            return self._cells.get(cells[0], ())
         found = dict(self._large)
-        cells = _cells((x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m))
         for cell in self._cells if cells is None else cells:
             found.update(self._cells.get(cell, {}))
         return found

@@ -8,9 +8,16 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from nodes.kb_node.relations.polygons import area, clipped, contains, distance
-from nodes.kb_node.relations.solids import Bounds, Solid
+from nodes.kb_node.relations.convex import contact, over_flat_top
+from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance
+from nodes.kb_node.relations.solids import LOWEST_M, Bounds, Solid
 from nodes.kb_node.relations.thresholds import Thresholds
+from ontology.model_shapes import Interior
+
+_SIDEWAYS = math.sin(math.radians(10.0))
+"""A normal nearer to the horizontal than this is that of two who stand side by side."""
+_FLAT = math.cos(math.radians(2.0))
+"""A normal this near to the vertical is that of a flat contact."""
 
 
 class Measure(NamedTuple):
@@ -27,42 +34,85 @@ class Measure(NamedTuple):
     """Up to which gap, or from which share on, it holds."""
 
 
-def on(upper: Solid, lower: Solid, limits: Thresholds, *, far: bool = False) -> Measure | None:
-    """How the base of one stands over the best surface of the other.
+def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
+    """How one rests on another: where they meet, or nearly do, along a normal that points up.
 
-    None where no surface is below it; and, unless `far`, where none is near.
+    None where they do not, or where the one's base is nowhere over the other. It does not hold of what only
+    leans there, along a steeper normal.
     """
-    if not upper.is_measured or upper.is_place or upper is lower or not overlap(upper.bounds, lower.bounds):
+    if upper is lower or not overlap(upper.bounds, lower.bounds):
         return None
+    if upper.bottom - lower.top > limits.gap_m:
+        return None
+    # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
+    most = min(limits.gap_m, upper.bottom - lower.bottom + limits.contact_m)
+    if most < 0.0 and upper.is_level and lower.is_level:
+        return None
+    most = max(most, limits.contact_m)
+    pairs = []
+    is_level = upper.is_level and lower.is_level
+    for part in upper.parts:
+        (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+        for other in lower.parts:
+            (low_x, low_y, low_z), (high_x, high_y, high_z) = other.low, other.high
+            least = z0 - high_z
+            if least > most or z1 <= low_z or (is_level and least < -limits.gap_m):
+                continue
+            if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
+                pairs.append((least, part, other))
+    pairs.sort(key=_least)
+    best: Measure | None = None
+    leaning: Measure | None = None
+    for least, part, other in pairs:
+        if best is not None and least >= best.gap_m:
+            break
+        gap, upright = least, 1.0
+        if not over_flat_top(part, other):
+            gap, (_, _, upright) = contact(part, other, most)
+            if not -limits.gap_m <= gap <= most:
+                continue
+            if upright < limits.upright:
+                if upright > _SIDEWAYS and abs(gap) <= limits.contact_m:
+                    leaning = Measure(False, gap, 1.0, upper.bottom - gap, most)
+                continue
+        if best is None or gap < best.gap_m:
+            best = Measure(True, gap, 1.0, upper.bottom - gap, most)
+            is_flat = upright > _FLAT and other.has_flat_top
+    if best is None:
+        return leaning
+    if not (is_flat and upper.is_upright):
+        return best
+    share = _covered(upper, lower, best.height_m)
+    return best._replace(share=share) if share > 0.0 else None
+
+
+def _least(pair: tuple[float, object, object]) -> float:
+    return pair[0]
+
+
+def _covered(upper: Solid, lower: Solid, height: float) -> float:
+    """The share of a base that is over flat tops at a height."""
+    base = upper.base
+    tops = [p.shadow for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    for top in tops:
+        if covers(top, base):
+            return 1.0
+    whole = area(base)
+    return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
+
+
+def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
+    """How far above the best surface of the other one is, however far; None where it is over none of them."""
+    if upper is lower or not upper.is_measured or not overlap(upper.bounds, lower.bounds):
+        return None
+    whole = area(upper.outline)
     best: Measure | None = None
     for support in lower.supports:
         gap = upper.bottom - support.height
-        is_near = abs(gap) <= limits.gap_m
-        if not (is_near or far):
-            continue
-        share = _covered(upper, support.outline)
-        if share > 0.0:
-            made = Measure(
-                is_near and share >= limits.base_share, gap, share, support.height, limits.base_share
-            )
-            if best is None or preferred(made) > preferred(best):
-                best = made
+        share = area(clipped(upper.outline, support.outline)) / whole if whole > 0.0 else 0.0
+        if share > 0.0 and (best is None or abs(gap) < abs(best.gap_m)):
+            best = Measure(False, gap, share, support.height, limits.base_share)
     return best
-
-
-def preferred(made: Measure) -> tuple[bool, float, float, float]:
-    """Of several surfaces the nearest counts, to a centimetre; of those the highest."""
-    return (made.holds, -round(abs(made.gap_m), 2), made.height_m, made.share)
-
-
-def _covered(upper: Solid, outline: tuple[tuple[float, float], ...]) -> float:
-    base = upper.base
-    whole = area(base)
-    if whole <= 0.0:
-        return 0.0
-    if all(contains(outline, corner) for corner in base):
-        return 1.0
-    return area(clipped(base, outline)) / whole
 
 
 def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
@@ -71,13 +121,45 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
         return None
     if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
         return None
-    points = [outer.to_own(point) for point in inner.samples]
-    most = 0
-    for hollow in outer.hollows:
-        (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
-        most = max(most, sum(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1 for x, y, z in points))
-    share = most / len(points)
+    share = max(_share_in(inner, outer, hollow) for hollow in outer.hollows)
     return Measure(share >= limits.inside_share, share=share, limit=limits.inside_share)
+
+
+def _share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
+    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
+    if not (inner.is_level and outer.is_level):
+        points = inner.samples
+        found = [outer.to_own(point) for point in points]
+        return sum(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1 for x, y, z in found) / len(points)
+    floor, lid = outer.position[2] + z0, outer.position[2] + z1
+    height = min(lid, inner.position[2] + inner.size[2]) - max(floor, inner.position[2])
+    if height <= 0.0:
+        return 0.0
+    walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+    return area(clipped(inner.outline, walls)) * height / inner.volume
+
+
+def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
+    """How near what collides of the two is; None for what is further apart than counts."""
+    if one is other or not overlap(one.bounds, other.bounds, limits.contact_m):
+        return None
+    limit = limits.contact_m
+    nearest: float | None = None
+    for part in one.parts:
+        (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+        for its in other.parts:
+            (a0, b0, c0), (a1, b1, c1) = its.low, its.high
+            if max(x0 - a1, a0 - x1, y0 - b1, b0 - y1, z0 - c1, c0 - z1) > limit:
+                continue
+            if over_flat_top(part, its):
+                apart = z0 - c1
+            elif over_flat_top(its, part):
+                apart = c0 - z1
+            else:
+                apart = contact(part, its, limit).distance
+            if apart <= limit and (nearest is None or apart < nearest):
+                nearest = apart
+    return None if nearest is None else Measure(True, nearest, limit=limit)
 
 
 def within(solid: Solid, place: Solid, limits: Thresholds) -> Measure | None:
@@ -92,7 +174,7 @@ def within(solid: Solid, place: Solid, limits: Thresholds) -> Measure | None:
         share = float(contains(place.outline, solid.position[:2]))
     elif not overlap(solid.bounds, place.bounds):
         share = 0.0
-    elif all(contains(place.outline, corner) for corner in solid.outline):
+    elif covers(place.outline, solid.outline):
         share = 1.0
     else:
         share = area(clipped(solid.outline, place.outline)) / max(area(solid.outline), 1e-9)
@@ -131,6 +213,11 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     return Measure(share >= limits.beneath_share, height - lower.top, share, height, limits.beneath_share)
 
 
-def overlap(one: Bounds, other: Bounds) -> bool:
-    """Whether two rectangles along the axes meet."""
-    return one[0] <= other[2] and other[0] <= one[2] and one[1] <= other[3] and other[1] <= one[3]
+def overlap(one: Bounds, other: Bounds, margin_m: float = 0.0) -> bool:
+    """Whether two rectangles along the axes meet, or are within a margin."""
+    return (
+        one[0] - margin_m <= other[2]
+        and other[0] - margin_m <= one[2]
+        and one[1] - margin_m <= other[3]
+        and other[1] - margin_m <= one[3]
+    )

@@ -88,6 +88,18 @@ def contains(polygon: Polygon, point: Point) -> bool:
     return True
 
 
+def covers(polygon: Polygon, points: Polygon) -> bool:
+    """Whether all of the points lie in a convex polygon, its border included."""
+    ax, ay = polygon[-1]
+    for bx, by in polygon:
+        ex, ey = bx - ax, by - ay
+        for px, py in points:
+            if ex * (py - ay) - ey * (px - ax) < 0.0:
+                return False
+        ax, ay = bx, by
+    return True
+
+
 def _from_segment(point: Point, ax: float, ay: float, bx: float, by: float) -> float:
     px, py = point
     dx, dy = bx - ax, by - ay

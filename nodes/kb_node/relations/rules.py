@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
-from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -42,24 +41,30 @@ class Rule(NamedTuple):
 
 
 def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
-    container, support, place = space.whereabouts(solid)
+    container, supports, place = space.whereabouts(solid)
     if container is not None:
         yield "isInside", container[0].name
-    if support is not None:
-        yield "isOn", support[0].name
+    for support, _ in supports:
+        yield "isOn", support.name
     if place is not None:
         yield "isLocatedIn", place[0].name
 
 
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
     """Whether the other may be on the solid, inside it or in it."""
-    if not measures.overlap(solid.bounds, other.bounds):
+    if solid.is_place:
+        return True
+    limits = space.limits
+    if other.bottom > solid.top + limits.gap_m or other.top < solid.bottom - limits.gap_m:
         return False
-    gap = space.limits.gap_m
-    return solid.is_place or (other.bottom <= solid.top + gap and other.top >= solid.bottom - gap)
+    if not (other.is_level and solid.is_level) or (solid.hollows and other.volume < solid.volume):
+        return True
+    return other.bottom >= max(solid.bottom - limits.contact_m, solid.lowest_top - limits.gap_m)
 
 
-RULES: Final[tuple[Rule, ...]] = (Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear),)
+RULES: Final[tuple[Rule, ...]] = (
+    Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear, when_gone=True),
+)
 
 COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}
 """The properties that are computed, where a TBox has them."""

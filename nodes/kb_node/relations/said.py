@@ -87,23 +87,23 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         share = _share_within_box(solid, other, limits.gap_m)
         return f"{share:.0%} of its volume is within it" if share < limits.inside_share else None
     carrier = space.whereabouts(solid)
-    is_borne = carrier.support is not None or carrier.container is not None
+    is_borne = bool(carrier.supports) or carrier.container is not None
     if not other.supports or not (is_borne or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may hang or lean there
-    made = measures.on(solid, other, limits, far=True)
+    made = measures.over(solid, other, limits)
     return "it is over no surface of it" if made is None else why(relation, solid, other, made)
 
 
 def _bearers(space: Space, solid: Solid) -> set[Solid]:
     """What it is on or inside, what that is on or inside, and so on."""
     found: set[Solid] = set()
-    while True:
-        container, support, _ = space.whereabouts(solid)
-        below = container or support
-        if below is None or below[0] in found:
-            return found
-        solid = below[0]
-        found.add(solid)
+    waiting = [solid]
+    while waiting:
+        container, supports, _ = space.whereabouts(waiting.pop())
+        below = {other for other, _ in (*filter(None, (container,)), *supports)} - found
+        found |= below
+        waiting += below
+    return found
 
 
 def _share_within_box(inner: Solid, outer: Solid, margin_m: float) -> float:

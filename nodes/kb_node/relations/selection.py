@@ -61,16 +61,20 @@ def meant(everyone: Iterable[Entity], word: str) -> set[str]:
 
 def _is_on(space: Space, solid: Solid, carriers: set[str]) -> bool:
     """On one of them, or on what is on one of them."""
-    seen = {solid.name}
-    while True:
-        container, support, _ = space.whereabouts(solid)
-        below = support or container
-        if below is None or below[0].name in seen:
-            return False
-        solid = below[0]
-        if solid.name in carriers:
-            return support is not None or len(seen) > 1
-        seen.add(solid.name)
+    seen, waiting = {solid}, [solid]
+    while waiting:
+        upper = waiting.pop()
+        container, supports, _ = space.whereabouts(upper)
+        bearers = [other for other, _ in supports]
+        if container is not None and upper is not solid:
+            bearers.append(container[0])
+        if any(bearer.name in carriers for bearer in bearers):
+            return True
+        if container is not None:
+            bearers.append(container[0])
+        waiting += [bearer for bearer in bearers if bearer not in seen]
+        seen.update(bearers)
+    return False
 
 
 def _is_in(space: Space, solid: Solid, holders: set[str]) -> bool:

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from msgspec import structs
-
+from nodes.kb_node.relations.convex import Convex, convex
+from nodes.kb_node.relations.fitting import fitted
 from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.polygons import Point, area, hull
-from ontology.model_shapes import ModelShape, shapes
+from ontology.model_shapes import Interior, ModelShape, own_size_m
 from schemas.entities import Entity, Size, Vector
 
 UPRIGHT = math.cos(math.radians(15.0))
-"""A thing that leans more carries nothing, and stands on its lowest corners instead of its base."""
+"""A thing that leans more has no level surfaces."""
 SAMPLES = 5
 """Points along each axis that stand for a volume."""
-LOWEST = 0.15
-"""Of the height of a leaning thing: corners this near to its lowest are what it stands on."""
+LEVEL = math.cos(math.radians(0.2))
+LOWEST_M = 0.01
+"""Parts that end this near to the lowest point are what a thing stands on."""
+_BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
+"""Of what nobody measured."""
 
 Matrix = tuple[Vector, Vector, Vector]
 Bounds = tuple[float, float, float, float]
@@ -34,15 +38,6 @@ class Support:
     fill: float
 
 
-@dataclass(frozen=True)
-class Hollow:
-    """A hollow of a solid in its own frame [m]."""
-
-    low: Vector
-    high: Vector
-    open: bool
-
-
 @dataclass(frozen=True, eq=False)
 class Solid:
     """A thing or place in the map: position [m] of its bottom centre, rotation (map from body), extent [m].
@@ -55,7 +50,8 @@ class Solid:
     position: Vector
     rotation: Matrix
     size: Size
-    shape: ModelShape | None
+    shape: ModelShape
+    """As it is at this size, in its own frame."""
     is_place: bool
     is_measured: bool
 
@@ -63,6 +59,11 @@ class Solid:
     def is_upright(self) -> bool:
         """Whether its z axis is up, within 15 degrees."""
         return self.rotation[2][2] >= UPRIGHT
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it leans by less than a fifth of a degree."""
+        return self.rotation[2][2] >= LEVEL
 
     @cached_property
     def corners(self) -> tuple[Vector, ...]:
@@ -77,27 +78,42 @@ class Solid:
     @cached_property
     def bottom(self) -> float:
         """Its lowest point [m]."""
-        return min(corner[2] for corner in self.corners)
+        if not self.parts:
+            return min(corner[2] for corner in self.corners)
+        return min([part.low[2] for part in self.parts])
 
     @cached_property
     def top(self) -> float:
-        """Its highest point [m]."""
-        return max(corner[2] for corner in self.corners)
+        """Its highest point [m], that of its box."""
+        (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
+        return self.position[2] + max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
+
+    @cached_property
+    def lowest_top(self) -> float:
+        """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
+        return min([part.high[2] for part in self.parts], default=self.top)
 
     @cached_property
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
-        corners = self.corners[:4] if self.rotation[2][2] > 0.9999 else self.corners
-        return hull([(x, y) for x, y, _ in corners])
+        if not self.is_level:
+            return hull([(x, y) for x, y, _ in self.corners])
+        (a, b, _), (d, e, _), _ = self.rotation
+        x, y, _ = self.size
+        px, py, _ = self.position
+        ax, ay, bx, by = a * x / 2, d * x / 2, b * y / 2, e * y / 2
+        return [
+            (px - ax - bx, py - ay - by),
+            (px + ax - bx, py + ay - by),
+            (px + ax + bx, py + ay + by),
+            (px - ax + bx, py - ay + by),
+        ]
 
     @cached_property
-    def base(self) -> list[Point]:
-        """What it stands on: its base; of a thing that leans or lies, the shadow of its lowest corners."""
-        if self.is_upright:
-            return hull([(x, y) for x, y, _ in self.corners[:4]])
-        reach = self.bottom + LOWEST * (self.top - self.bottom)
-        lowest = hull([(x, y) for x, y, z in self.corners if z <= reach])
-        return lowest if len(lowest) > 2 else self.outline
+    def base(self) -> Sequence[Point]:
+        """What it stands on: the outline of its lowest parts."""
+        parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
+        return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
 
     @cached_property
     def centre(self) -> Vector:
@@ -120,15 +136,11 @@ class Solid:
         """The surfaces that carry things; the whole top of what has no model."""
         if self.is_place or not self.is_measured or not self.is_upright:
             return ()
-        if self.shape is None:
-            top = hull([(x, y) for x, y, _ in self.corners[4:]])
-            return (Support(self.top, tuple(top), 1.0),)
-        fx, fy, fz = self._stretch(self.shape)
         return tuple(
             Support(
-                self.to_map((0.0, 0.0, surface.height * fz))[2],
+                self.to_map((0.0, 0.0, surface.height))[2],
                 tuple(
-                    self.to_map((x * fx, y * fy, surface.height * fz))[:2]
+                    self.to_map((x, y, surface.height))[:2]
                     for x, y in (
                         (surface.low[0], surface.low[1]),
                         (surface.high[0], surface.low[1]),
@@ -141,24 +153,27 @@ class Solid:
             for surface in self.shape.surfaces
         )
 
-    @cached_property
-    def hollows(self) -> tuple[Hollow, ...]:
-        """Its interiors."""
-        if self.shape is None or not self.is_measured:
-            return ()
-        fx, fy, fz = self._stretch(self.shape)
-        return tuple(
-            Hollow(
-                (inner.low[0] * fx, inner.low[1] * fy, inner.low[2] * fz),
-                (inner.high[0] * fx, inner.high[1] * fy, inner.high[2] * fz),
-                inner.open,
-            )
-            for inner in self.shape.interiors
-        )
+    @property
+    def hollows(self) -> tuple[Interior, ...]:
+        """Its interiors, in its own frame."""
+        return self.shape.interiors if self.is_measured else ()
 
-    def _stretch(self, shape: ModelShape) -> Vector:
-        """How much its model is stretched along each axis."""
-        return tuple(mine / own for mine, own in zip(self.size, shape.size_m, strict=True))  # type: ignore[return-value]
+    @cached_property
+    def parts(self) -> tuple[Convex, ...]:
+        """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
+        if self.is_place or not self.is_measured:
+            return ()
+        (a, b, c), (d, e, f), (g, h, i) = self.rotation
+
+        def turned(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
+            return tuple(
+                (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z) for x, y, z in vectors
+            )
+
+        return tuple(
+            convex(self.to_map(part.centre), turned(part.straight), turned(part.round), turned(part.points))
+            for part in self.shape.parts
+        )
 
     def to_map(self, point: Vector) -> Vector:
         """A point of its own frame in the map's."""
@@ -198,40 +213,15 @@ def solid_of(entity: Entity | Placed) -> Solid | None:
     """The solid of an entity; None without a position."""
     if entity.pose is None:
         return None
-    shape = None if entity.place else shapes().get(entity.model)
-    size = entity.size_m or (shape.size_m if shape is not None else None)
-    turned = shape is not None and size is not None and _is_turned(shape.size_m, size)
+    size = entity.size_m or (None if entity.place else own_size_m(entity.model) if entity.model else None)
     return Solid(
         name=entity.name,
         position=entity.pose.position_m,
         rotation=_rotation(entity.pose.orientation_wxyz),
         size=size or (0.02, 0.02, 0.02),
-        shape=_quarter_turned(shape) if shape is not None and turned else shape,
+        shape=_BOX if size is None or entity.place else fitted(entity.model, size),
         is_place=entity.place,
         is_measured=size is not None,
-    )
-
-
-def _is_turned(own: Size, size: Size) -> bool:
-    """Whether the simulator meets a size by turning the model a quarter (sim_node/models/library.py)."""
-    longer, shorter = max(own[:2]), min(own[:2])
-    return (own[0] - own[1]) * (size[0] - size[1]) < 0.0 and longer > 1.3 * shorter
-
-
-def _quarter_turned(shape: ModelShape) -> ModelShape:
-    """The shape turned by -90 degrees about z: (x, y) becomes (y, -x)."""
-    x, y, z = shape.size_m
-    return structs.replace(
-        shape,
-        size_m=(y, x, z),
-        surfaces=tuple(
-            structs.replace(s, low=(s.low[1], -s.high[0]), high=(s.high[1], -s.low[0]))
-            for s in shape.surfaces
-        ),
-        interiors=tuple(
-            structs.replace(i, low=(i.low[1], -i.high[0], i.low[2]), high=(i.high[1], -i.low[0], i.high[2]))
-            for i in shape.interiors
-        ),
     )
 
 

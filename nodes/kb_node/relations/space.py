@@ -20,7 +20,8 @@ class Whereabouts(NamedTuple):
     """What a thing is inside, what it is on, and in which place; what it is inside it is not on."""
 
     container: Found | None
-    support: Found | None
+    supports: tuple[Found, ...]
+    """Several of what bridges or leans; the one that counts most first."""
     place: Found | None
 
 
@@ -50,33 +51,70 @@ class Space:
             self._grid.remove(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Whoever may be within a margin."""
-        names = self._grid.around(solid.bounds, margin_m)
-        names.pop(solid.name, None)
-        return [self.solids[name] for name in names]
+        """Whose bounds meet its own, or are within a margin of them."""
+        return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
         limits = self.limits
         container: Found | None = None
-        support: Found | None = None
         place: Found | None = None
+        below: list[Found] = []
+        least = solid.bottom - limits.gap_m
         for other in self.around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
                 continue
-            made = measures.inside(solid, other, limits)
+            if other.top < least:
+                continue
+            made = measures.inside(solid, other, limits) if other.hollows else None
             if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
                 container = (other, made)
-            if other.bottom < solid.bottom + limits.touch_m:
-                made = measures.on(solid, other, limits)
-                if made and made.holds and (support is None or _rank(other, made) > _rank(*support)):
-                    support = (other, made)
-        if support is not None and container is not None:
-            support = None  # what lies in a bowl is not on the table, and not on the bowl
-        return Whereabouts(container, support, place)
+            made = measures.on(solid, other, limits)
+            if made is not None:
+                below.append((other, made))
+        floor = None if place is None else solid.bottom - place[0].bottom
+        return Whereabouts(container, self._supports(solid, below, container, floor) if below else (), place)
+
+    def _supports(
+        self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None
+    ) -> tuple[Found, ...]:
+        """What of that which is close below bears it: the nearest, and what is level with that.
+
+        To a centimetre all are equally near; of those the highest counts. The floor of its place, `floor_m`
+        below it, is one of them, and so is what it leans on. What is inside something is on no more than
+        what is in there with it.
+        """
+        limits = self.limits
+        if container is not None:
+            below = [found for found in below if self._is_within(found[0], container[0])]
+        gaps = [made.gap_m for _, made in below if not made.holds]
+        below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
+        if not below:
+            return ()
+        gaps += [made.gap_m for _, made in below]
+        if floor_m is not None and abs(floor_m) <= limits.gap_m:
+            gaps.append(floor_m)
+        nearest = min(gaps, key=_nearness)
+        level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
+        if sum(made.share for _, made in level) < limits.base_share:
+            return ()
+        return tuple(sorted(level, key=lambda found: (-found[1].share, found[0].name)))
+
+    def _is_within(self, solid: Solid, container: Solid) -> bool:
+        made = measures.inside(solid, container, self.limits)
+        return made is not None and made.holds
+
+    def _is_below(self, solid: Solid, other: Solid, made: Measure) -> bool:
+        """Whether the other one rests on this one rather, as things do that are hooked into one another."""
+        if other.bottom < solid.bottom - self.limits.contact_m:
+            return False
+        back = measures.on(other, solid, self.limits)
+        return (
+            back is not None and back.holds and (abs(back.gap_m), solid.name) < (abs(made.gap_m), other.name)
+        )
 
 
 def _area(solid: Solid) -> tuple[float, str]:
@@ -87,5 +125,5 @@ def _volume(solid: Solid) -> tuple[float, str]:
     return (solid.volume, solid.name)
 
 
-def _rank(other: Solid, made: Measure) -> tuple[tuple[bool, float, float, float], str]:
-    return (measures.preferred(made), other.name)
+def _nearness(gap_m: float) -> tuple[float, float]:
+    return (round(abs(gap_m), 2), gap_m)

@@ -55,10 +55,10 @@ def whereabouts(space: Space, name: str) -> Iterator[Relation]:
     """What a thing is inside, on and in; nothing for one without a position."""
     if (solid := space.solids.get(name)) is None:
         return
-    container, support, place = space.whereabouts(solid)
+    container, supports, place = space.whereabouts(solid)
     if container is not None:
         yield _told("isInside", solid, *container)
-    if support is not None:
+    for support in supports:
         yield _told("isOn", solid, *support)
     if place is not None:
         yield _told("isLocatedIn", solid, *place)
@@ -97,14 +97,13 @@ def measured(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         return measures.within(solid, other, limits)
     if relation not in ("isOn", "isInside"):
         return None
-    container, support, _ = space.whereabouts(solid)
-    best = support if relation == "isOn" else container
-    if best is not None and best[0] is other:
-        return best[1]
+    container, supports, _ = space.whereabouts(solid)
+    found = supports if relation == "isOn" else (container,)
+    for best in filter(None, found):
+        if best[0] is other:
+            return best[1]
     made = (
-        measures.on(solid, other, limits, far=True)
-        if relation == "isOn"
-        else measures.inside(solid, other, limits)
+        measures.over(solid, other, limits) if relation == "isOn" else measures.inside(solid, other, limits)
     )
     return None if made is None else made._replace(holds=False)
 

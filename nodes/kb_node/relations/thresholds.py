@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from msgspec import Struct
 
 
@@ -10,6 +12,10 @@ class Thresholds(Struct, frozen=True, kw_only=True):
 
     gap_m: float = 0.05
     """Between a bottom and the surface it stands on; the map may be as far off the body."""
+    contact_m: float = 0.0015
+    """Between what touches; also between the surfaces that a thing rests on at once."""
+    steepest_deg: float = 30.0
+    """Between the vertical and the normal of a contact that carries."""
     base_share: float = 0.3
     """Of the base that is over the surface; a body that does not fall has about half."""
     inside_share: float = 0.5
@@ -24,3 +30,8 @@ class Thresholds(Struct, frozen=True, kw_only=True):
     """But never further apart than this."""
     beneath_share: float = 0.3
     """Of the lower thing's footprint that is beneath the other."""
+
+    @property
+    def upright(self) -> float:
+        """The least vertical component of the normal of a contact that carries."""
+        return math.cos(math.radians(self.steepest_deg))

@@ -170,6 +170,7 @@ def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
         stamp_ns=commit.stamp_ns,
         source=commit.source,
         agent=commit.agent,
+        authenticated=commit.authenticated,
         verb=commit.verb,
         reason=commit.reason,
         confidence=commit.confidence,

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from nodes.sim_node.models.convex_parts import convex_part
 from nodes.sim_node.models.library import Model
 from nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
 from ontology.model_shapes import Interior, ModelShape, Surface
@@ -49,6 +50,7 @@ def shape_of(model: Model) -> ModelShape:
         size_m=model.size_m,
         surfaces=tuple(_surfaces(felt, xs, ys, step)),
         interiors=tuple(_interiors(seen, xs, ys, step, z)),
+        parts=tuple(convex_part(part) for part in model.parts if part.role is not Role.SEEN),
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 from click.shell_completion import BashComplete
 
 from nodes import bus
-from nodes.extern.cli import completing
+from nodes.extern.cli import completing, known_names
 from nodes.extern.cli.all_verbs import app
 from schemas import keys
 from schemas.entities import ClassInfo, Entity, Provenance
@@ -84,7 +84,7 @@ def test_without_a_system_nothing_is_completed_and_nothing_said(monkeypatch, cap
 
 
 def test_a_system_that_does_not_answer_is_not_waited_for_long(monkeypatch):
-    monkeypatch.setattr(completing, "_ANSWER_S", 0.2)
+    monkeypatch.setattr(known_names, "_ANSWER_S", 0.2)
     endpoint, kept = free_endpoint(), []
     with bus.open_session(bus.Network(mode="peer", connect=(), listen=(endpoint,))) as session:
         queryable = session.declare_queryable(f"{keys.CMD}/*", kept.append)

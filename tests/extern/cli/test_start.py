@@ -37,6 +37,24 @@ def test_it_starts_without_numpy():
 
 
 @pytest.mark.parametrize(
+    ("words", "needless"),
+    [
+        (("--version",), {"zenoh", "rich.console", "nodes.extern.client"}),
+        (("tbox", "--help"), {"zenoh", "rich.console", "nodes.extern.client"}),
+        (("update", "cup1", "--connect", "tcp/127.0.0.1:9"), {"rich.console", "nodes.extern.availability"}),
+        (("sparql", "ASK {}", "--connect", "tcp/127.0.0.1:9"), {"rich.console", "rich.table"}),
+    ],
+)
+def test_a_verb_imports_only_what_it_needs(words, needless):
+    code = (
+        "import sys; from nodes.extern.cli.app import execute\n"
+        f"execute({list(words)!r})\nsys.exit(sorted({needless!r} & sys.modules.keys()) or 0)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+
+
+@pytest.mark.parametrize(
     ("words", "said"),
     [
         (("list", "--json"), "there is no option '--json'; did you mean --format json?"),

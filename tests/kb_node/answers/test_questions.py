@@ -2,6 +2,7 @@ import pytest
 
 from nodes.kb_node.answers import questions
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from ontology import vocabulary as v
 from schemas import errors
@@ -196,3 +197,45 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
     classes = questions.of_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
     with pytest.raises(NotCompilable):
         questions.could(furnished.reasoner, classes, anew=False)
+
+
+@pytest.mark.parametrize(
+    ("question", "text"),
+    [
+        (("Chair", "disjointWith", "Kitchen"), "nothing is both a chair and a Kitchen, because "),
+        (
+            ("chair1", "owl:topObjectProperty", "kitchen1"),
+            "chair1 has top object property kitchen1 (always).",
+        ),
+        (("Chair", "subClassOf", "Object"), "every chair is an Object, because "),
+        (("chair1", "type", "owl:Thing"), "chair1 is something"),
+    ],
+)
+def test_what_no_rule_derives_is_explained_too(furnished, question, text):
+    assert explained(furnished, *question).text.startswith(text)
+
+
+def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
+    asked = questions.of_explain(furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen"))
+    with pytest.raises(NotCompilable):
+        questions.explain(furnished.reasoner, asked, anew=False)
+    asked = questions.of_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
+    with pytest.raises(questions.Undecided):
+        questions.explain(furnished.reasoner, asked, anew=False)
+    beside = questions.copy_of(nearby(furnished.reasoner, asked.terms), furnished.classes.prefixed)
+    with pytest.raises(
+        errors.Refused, match="it does not hold that chair1 is a Door, and nothing excludes it"
+    ):
+        questions.explain(beside, asked)
+
+
+def test_classes_that_are_called_alike_have_prefixes_in_sentences(tmp_path):
+    twin = turtle('<http://a.org/lab.owl#Seat> a owl:Class ; rdfs:label "chair"@en .')
+    semantic_map = home.new_map(tmp_path, (*home.TBOX, *twin))
+    semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair . :a a <http://a.org/lab.owl#Seat> .")))
+    said = explained(semantic_map, "chair1", "type", "dm:Seat").text
+    assert said == "chair1 is a Seat, because it is a dm:Chair (asserted), and every dm:Chair is a Seat."
+    copied = questions.copy_of(semantic_map.reasoner.asserted(), semantic_map.classes.prefixed)
+    asked = questions.of_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
+    assert questions.explain(copied, asked).text == "a is a lab:Seat (asserted)."
+    home.close(semantic_map)

@@ -1,1 +1,25 @@
-"""Replies as a person reads them in a terminal."""
+"""What the command line prints.
+
+`output.show` and the others are imported when a verb first uses them: the libraries that lay out tables take
+as long to import as most answers take to come.
+"""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from nodes.extern.cli.output import show as show
+    from nodes.extern.cli.output import show_past as show_past
+    from nodes.extern.cli.output import sparql_formats as sparql_formats
+    from nodes.extern.cli.output import tables as tables
+
+_LATE = {"show", "show_past", "sparql_formats", "tables"}
+
+
+def __getattr__(name: str) -> ModuleType:
+    if name in _LATE:
+        return importlib.import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -22,9 +22,8 @@ from nodes.extern.cli.output.tables import (
 from schemas import wording
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
-from schemas.explanations import Explanation
 from schemas.relations import Described, Relation
-from schemas.replies import Changed, Inferred, SystemStatus
+from schemas.replies import SystemStatus
 
 _WIDE = 100_000
 _WORDY = ("class", "size [m]", "reference")
@@ -173,25 +172,6 @@ def status_line(status: SystemStatus) -> str:
 def status_notes(status: SystemStatus) -> Iterable[str]:
     """What is good to know of what the nodes work with: of the knowledge base, on its TBox."""
     return (f"TBox: {note}" for node in status.nodes for note in node.notes)
-
-
-def changed(reply: Changed) -> Iterable[str]:
-    """A change in words, with what was left out and how it was read."""
-    yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
-    yield from (f"  left out: {skipped}" for skipped in reply.skipped)
-    yield from (f"  note: {note}" for note in reply.notes)
-    yield from (f"  would follow: {text}" for text in reply.follows)
-    yield from (f"  would no longer follow: {text}" for text in reply.no_longer_follows)
-
-
-def inferred(reply: Inferred) -> Iterable[str]:
-    """What follows, one line a triple."""
-    return reply.text or ("nothing follows beyond what is asserted",)
-
-
-def explanation(e: Explanation) -> Iterable[str]:
-    """The sentence, and the asserted triples that it rests on."""
-    yield e.text
 
 
 def commit_line(commit: Commit) -> str:

@@ -50,8 +50,8 @@ def _properties(count: int) -> str:
 
 
 def _names(found: TBoxReport) -> Iterator[str]:
-    for name, iris in list(found.ambiguous.items())[:_FEW]:
-        yield _line("ambiguous", f"{name}: {' or '.join(iris)}")
+    for name, called in list(found.ambiguous.items())[:_FEW]:
+        yield _line("ambiguous", f"{name}: {' or '.join(called)}")
     if (more := len(found.ambiguous) - _FEW) > 0:
         yield _line("ambiguous", f"and {more} more names")
 

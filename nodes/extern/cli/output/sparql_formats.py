@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
-from nodes.extern.cli.output import tables
+from nodes.extern.cli.output import plain
+from nodes.extern.cli.output.formats import Format
 from nodes.runtime import extras
 from ontology import vocabulary as v
 from ontology.prefixes import WELL_KNOWN, used_by
@@ -16,12 +15,19 @@ from schemas import errors
 from schemas.explanations import Term
 from schemas.sparql import Row, RowsChanged, SparqlResult
 
-Format = Literal["table", "json", "csv", "turtle"]
-FORMATS: tuple[Format, ...] = get_args(Format)
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+def plain_table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Iterator[str]:
+    """One line a row, with prefixed names, for whatever is no terminal."""
+    return plain.lines(variables, [[spoken(term) for term in row] for row in rows])
 
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
-    """One line a row, with prefixed names."""
+    """The same for a terminal."""
+    from nodes.extern.cli.output import tables
+
     shown = tables.table(*variables, fold=variables)
     for row in rows:
         shown.add(*map(spoken, row))

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from rich import box
-from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.segment import Segment
 from rich.table import Column, Table
 from rich.text import Text
 
+from nodes.extern.cli.output import plain
+from schemas import agents
 from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
 from schemas.replies import LoggedCommit
@@ -55,20 +56,9 @@ class Rows(Table):
     def _in_plain_lines(self) -> RenderResult:
         """The same without colours and folding."""
         names = [str(column.header) for column in self.columns]
-        rows = [[escaped(str(cell)) for cell in cells] for cells in self._lines]
-        widths = [max(map(cell_len, column)) for column in zip(names, *rows, strict=True)]
+        rows = [[str(cell) for cell in cells] for cells in self._lines]
         to_the_right = [column.justify == "right" for column in self.columns]
-
-        def line(cells: Sequence[str]) -> Segment:
-            spaces = [" " * (width - cell_len(cell)) for cell, width in zip(cells, widths, strict=True)]
-            parts = (
-                s + c if right else c + s for c, s, right in zip(cells, spaces, to_the_right, strict=True)
-            )
-            return Segment(f" {'  '.join(parts).rstrip()}\n")
-
-        yield line(names)
-        yield Segment(f" {'─' * (sum(widths) + _BETWEEN * (len(widths) - 1))}\n")
-        yield from map(line, rows)
+        return (Segment(f"{line}\n") for line in plain.lines(names, rows, to_the_right))
 
 
 def table(*columns: str, fold: Collection[str]) -> Rows:
@@ -81,15 +71,8 @@ def table(*columns: str, fold: Collection[str]) -> Rows:
 
 
 def printable(text: str) -> Text:
-    """`escaped`, for rich."""
-    return Text(escaped(text))
-
-
-def escaped(text: str) -> str:
-    """Text as it is, with line ends and the like as escapes: they would break the row, or the terminal."""
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    """Text with its line ends and the like escaped, for rich."""
+    return Text(plain.escaped(text))
 
 
 def card(rows: Mapping[str, str]) -> Table:
@@ -124,8 +107,11 @@ def provenance_text(p: Provenance) -> str:
 
 
 def author(p: Provenance | Commit | LoggedCommit) -> str:
-    """The source with the agent."""
-    return f"{p.source}/{p.agent}" if p.agent else p.source
+    """The source with the agent: `@bob` if a certificate has proved the name, `bob` if it was claimed."""
+    if not p.agent:
+        return p.source
+    proved = not isinstance(p, Provenance) and p.authenticated
+    return f"{p.source}/{agents.proved(p.agent) if proved else p.agent}"
 
 
 def moment(stamp_ns: int) -> str:

@@ -6,21 +6,23 @@ import functools
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes import bus
-from nodes.extern import availability
+from nodes.extern.cli import output
 from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.cli.output import show, sparql_formats
+from nodes.extern.cli.output import lines
+from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.verbs import sparql as sparql_answers
-from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys
 from schemas.entities import Entity
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 _format = functools.partial(click.option, "--format", "format")
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
@@ -80,7 +82,7 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
         print_json(entity)
     else:
         labels = client.properties() if entity.properties else ()
-        show.console().print(show.entity_card(entity, labels))
+        output.show.console().print(output.show.entity_card(entity, labels))
 
 
 @click.command()
@@ -100,7 +102,7 @@ def check(client: Client, engine: Any) -> None:
 @talks
 def infer(client: Client, name: str | None) -> None:
     """List the inferred facts about one entity, or about all."""
-    print_lines(show.inferred(client.infer(name)))
+    print_lines(lines.inferred(client.infer(name)))
 
 
 @click.command(cls=NegativeNumbers)
@@ -120,7 +122,7 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
     if format == "json":
         print_json(explanation)
     else:
-        print_lines(show.explanation(explanation))
+        print_lines(lines.explanation(explanation))
 
 
 @click.command(cls=NegativeNumbers)
@@ -183,7 +185,7 @@ def classes(client: Client, format: str) -> None:
     if format == "json":
         print_json(client.classes())
     else:
-        show.console().print(show.class_tree(client.classes()))
+        output.show.console().print(output.show.class_tree(client.classes()))
 
 
 @click.command()
@@ -195,7 +197,7 @@ def properties(client: Client, format: str) -> None:
     if format == "json":
         print_json(found)
     else:
-        show.console().print(show.property_table(found))
+        output.show.console().print(output.show.property_table(found))
 
 
 @click.command()
@@ -207,17 +209,17 @@ def status(client: Client, format: str) -> None:
     if format == "json":
         print_json(status)
         return
-    show.console().print(show.status_table(status))
-    print(show.status_line(status))
+    output.show.console().print(output.show.status_table(status))
+    print(output.show.status_line(status))
     print_lines(f"  {problem}" for problem in status.problems)
-    print_lines(show.status_notes(status))
+    print_lines(output.show.status_notes(status))
 
 
 @click.command()
 @click.argument("query")
 @click.option("--inferred", is_flag=True, help="Query inferred facts, too.")
 @_format(
-    type=click.Choice(sparql_formats.FORMATS),
+    type=click.Choice(FORMATS),
     help="Default: table for rows, turtle for graphs.",
 )
 @click.option(
@@ -255,6 +257,8 @@ def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> No
     """Print messages on a Zenoh key expression as they are published; by default, the commits."""
     if query is not None and keyexpr != keys.COMMIT.key:
         raise errors.BadRequest("give a key expression or --sparql, not both")
+    from nodes.extern import availability
+
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
@@ -268,15 +272,17 @@ def _watch_key(client: Client, keyexpr: str) -> None:
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:
-                print(show.commit_line(commit), flush=True)
+                print(output.show.commit_line(commit), flush=True)
+    from nodes import bus
+
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
 
 
 def _print_entities(entities: Sequence[Entity]) -> None:
     if entities:
-        show.console().print(show.entity_table(entities))
-    print(show.entity_line(entities))
+        output.show.console().print(output.show.entity_table(entities))
+    print(output.show.entity_line(entities))
 
 
 def _format_of(file: Path) -> commands.RdfFormat:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,10 +13,11 @@ from nodes.extern.cli.calling import given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.cli.output import show
-from nodes.extern.cli.output.load_progress import progress
-from nodes.extern.client import Client
+from nodes.extern.cli.output import lines
 from schemas import errors
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 
 def _options(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -61,7 +62,7 @@ _describing = _options(
 @talks
 def add(client: Client, **fields: Any) -> None:
     """Add an entity to the map."""
-    print_lines(show.changed(client.add(**given(fields))))
+    print_lines(lines.changed(client.add(**given(fields))))
 
 
 @click.command()
@@ -82,7 +83,7 @@ def add(client: Client, **fields: Any) -> None:
 @talks
 def update(client: Client, **fields: Any) -> None:
     """Change an entity; omitted fields keep their values."""
-    print_lines(show.changed(client.update(**given(fields))))
+    print_lines(lines.changed(client.update(**given(fields))))
 
 
 @click.command("set", cls=NegativeNumbers)
@@ -100,7 +101,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 
     The value of a functional property replaces the one before; other properties get more values.
     """
-    print_lines(show.changed(client.set(name, property, *values, **_stated(fields))))
+    print_lines(lines.changed(client.set(name, property, *values, **_stated(fields))))
 
 
 @click.command(cls=NegativeNumbers)
@@ -113,7 +114,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @talks
 def unset(client: Client, **fields: Any) -> None:
     """Take back one value of an entity's property, or all of them."""
-    print_lines(show.changed(client.unset(**_stated(fields))))
+    print_lines(lines.changed(client.unset(**_stated(fields))))
 
 
 @click.command()
@@ -122,7 +123,7 @@ def unset(client: Client, **fields: Any) -> None:
 @talks
 def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
     """Remove entities from the map and the scene."""
-    print_lines(show.changed(client.remove(*names, dry_run=dry_run)))
+    print_lines(lines.changed(client.remove(*names, dry_run=dry_run)))
 
 
 @click.command()
@@ -130,7 +131,7 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
 @talks
 def clear(client: Client, dry_run: bool) -> None:
     """Remove all entities from the map and the scene; the TBox stays."""
-    print_lines(show.changed(client.clear(dry_run=dry_run)))
+    print_lines(lines.changed(client.clear(dry_run=dry_run)))
 
 
 @click.command()
@@ -146,6 +147,8 @@ def clear(client: Client, dry_run: bool) -> None:
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
+    from nodes.extern.cli.output.load_progress import progress
+
     with progress(client):
         try:
             reply = client.load(file, imports=dict(imports), **how)
@@ -153,4 +156,4 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
             raise errors.NoAnswer(
                 f"{error.text}; whether {file.name} was loaded is unknown; to find out: semmap history"
             ) from None
-    print_lines(show.changed(reply))
+    print_lines(lines.changed(reply))

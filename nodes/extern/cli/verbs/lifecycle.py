@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import logging
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,12 @@ from msgspec import structs
 from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
-from nodes.extern.connection import CONNECT_VARIABLE
+from nodes.identity.register import Register
 from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
+from schemas.endpoints import CONNECT_VARIABLE
 from schemas.keys import NODES
 
 _path = click.Path(path_type=Path)
@@ -75,6 +77,14 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Zenoh endpoint that the system listens on.",
     )
     @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option(
+        "--secure",
+        type=_path,
+        default=None,
+        metavar="DIR",
+        help="Let in only those with a certificate of this folder of keys (see: semmap keys).",
+    )
+    @click.option("--insecure", is_flag=True, help="Listen beyond this machine without certificates.")
     @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
     @click.option(
         "--models",
@@ -173,6 +183,7 @@ def _settings(
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
+    secure: Path | None, insecure: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -202,7 +213,7 @@ def _settings(
         "truth": truth,
         "threshold_m": threshold,
         "angle_threshold_deg": angle_threshold,
-        "listen": listen,
+        "listen": listen if secure is None else bus.over_tls(listen),
         "connect": connect,
         "window": window,
         "models": None if models is None else _folder(models),
@@ -214,12 +225,36 @@ def _settings(
         "sim": not no_sim,
         "record": not no_record,
         "fresh": fresh,
+        "secure": None if secure is None else _folder(secure),
     }
+    _require_protected(values, insecure=insecure)
     try:
         return codec.convert(values, Settings)
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
+    """Without certificates a system listens on this machine only. Raises BadRequest, BadFile."""
+    listen, secure = values["listen"], values["secure"]
+    if secure is not None:
+        if insecure:
+            raise errors.BadRequest("give either --secure or --insecure")
+        register = Register.read(Path(secure))
+        host = bus.host_of(listen)
+        if host not in ("0.0.0.0", "::", *register.hosts):
+            raise errors.BadRequest(
+                f"the router's certificate is for {', '.join(register.hosts)}, not for {host}; add it:"
+                f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
+            )
+    elif not bus.is_local(listen):
+        if not insecure:
+            raise errors.BadRequest(
+                f"without certificates everybody who reaches {listen} could read and change the map; make"
+                " some (semmap keys init DIR) and add --secure DIR, or say --insecure"
+            )
+        complain(f"warning: everybody who reaches {listen} may read and change the map (--insecure)")
 
 
 def _option_of(field: str) -> str:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
+from nodes.extern.cli import output
 from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
 from nodes.extern.cli.completing import entity_names
-from nodes.extern.cli.output import show, show_past
-from nodes.extern.client import Client
+from nodes.extern.cli.output import lines
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
@@ -32,7 +37,7 @@ def history(
         print_json(commits)
         return
     if commits:
-        show.console().print(show_past.history_table(commits))
+        output.show.console().print(output.show_past.history_table(commits))
     print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
 
 
@@ -46,7 +51,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
     if format == "json":
         print_json(sighting)
     else:
-        show.console().print(show_past.sighting_card(sighting))
+        output.show.console().print(output.show_past.sighting_card(sighting))
 
 
 @click.command()
@@ -55,4 +60,4 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @talks
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
     """Undo a commit unless later ones depend on it; by default, the newest that a client requested."""
-    print_lines(show.changed(client.undo(commit, dry_run=dry_run)))
+    print_lines(lines.changed(client.undo(commit, dry_run=dry_run)))

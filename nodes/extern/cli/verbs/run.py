@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.calling import complain, connect_option, print_lines, run_words
-from nodes.extern.cli.output import show
+from nodes.extern.cli.calling import complain, connect_option, identity_option, print_lines, run_words
+from nodes.extern.cli.output import lines
 from nodes.extern.client import Client, connect
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
@@ -21,11 +21,12 @@ _BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "wa
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--keep-going", is_flag=True, help="Continue after a failed request.")
 @connect_option
-def run(file: Path, keep_going: bool, where: str | None) -> None:
+@identity_option
+def run(file: Path, keep_going: bool, where: str | None, identity: str | None) -> None:
     """Execute a file of requests, one per line: a command line, or a JSON message with its verb."""
     lines = _decode_lines(file)
     failed = 0
-    with connect(where, agent=f"run/{file.name}") as client:
+    with connect(where, agent=f"run/{file.name}", identity=identity) as client:
         for number, line in lines:
             click.echo(f"{number}: {line}")
             status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")
@@ -62,7 +63,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
         complain(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
     if isinstance(reply, replies.Changed):
-        print_lines(show.changed(reply))
+        print_lines(lines.changed(reply))
     else:
         print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0

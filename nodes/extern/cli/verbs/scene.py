@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from nodes.extern.cli.calling import given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
-from nodes.extern.client import Client
 from nodes.extern.files import write_atomically
 from nodes.runtime import extras
 from schemas import errors
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 
 @click.command()

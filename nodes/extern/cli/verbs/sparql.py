@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from nodes.extern.cli.output import show, sparql_formats
-from nodes.extern.client import Client
+from nodes.extern.cli import output
+from nodes.extern.cli.output.formats import Format
 from nodes.extern.files import read_file
 from schemas import errors
+from schemas.sparql import Row
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
 
 
 def read_query(word: str) -> str:
@@ -30,7 +35,7 @@ def ask(
     query: str,
     *,
     inferred: bool,
-    format: sparql_formats.Format | None,
+    format: Format | None,
     timeout: float,
     limit: int,
 ) -> None:
@@ -38,10 +43,10 @@ def ask(
     result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit)
     format = format or ("turtle" if result.kind == "graph" else "table")
     if format != "table" or result.kind == "ask":
-        sys.stdout.write(sparql_formats.text(result, format))
+        sys.stdout.write(output.sparql_formats.text(result, format))
         return
     if result.rows:
-        show.console().print(sparql_formats.table(result.variables, result.rows))
+        _print_rows(result.variables, result.rows)
     print(f"{_rows(len(result.rows))} (commit {result.seq})")
 
 
@@ -49,11 +54,18 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
     """Print the rows, and then what appears and disappears."""
     with client.watch(read_query(query), inferred=inferred) as standing:
         if standing.rows:
-            show.console().print(sparql_formats.table(standing.variables, standing.rows))
+            _print_rows(standing.variables, standing.rows)
         print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
-            for line in sparql_formats.news(standing.variables, changed):
+            for line in output.sparql_formats.news(standing.variables, changed):
                 print(line, flush=True)
+
+
+def _print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
+    if sys.stdout.isatty():
+        output.show.console().print(output.sparql_formats.table(variables, rows))
+    else:
+        print(*output.sparql_formats.plain_table(variables, rows), sep="\n")
 
 
 def _rows(count: int) -> str:

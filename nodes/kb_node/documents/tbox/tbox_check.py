@@ -17,7 +17,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from ontology import stars
+from ontology import prefixes, stars
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.entities import Pose
@@ -44,9 +44,10 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     try:
         reasoner = Reasoner(tbox)
     except Inconsistent as error:
-        return _report(gathered, inconsistent=error.explanation.text)
+        return _report(gathered, tbox, inconsistent=error.explanation.text)
     load_s = time.perf_counter() - began_s
     classes = _classes(gathered.triples)
+    spatial_classes = _spatial(reasoner)  # first: it tells apart what sentences name
     unsatisfiable = list(_unsatisfiable(reasoner, classes))
     wrong = {class_ for class_, why in unsatisfiable if why}
     quickness = Quickness(
@@ -56,7 +57,8 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     )
     return _report(
         gathered,
-        spatial_classes=_spatial(reasoner),
+        tbox,
+        spatial_classes=spatial_classes,
         unsatisfiable=tuple(Unsatisfiable(iri=v.bare(c), why=why) for c, why in unsatisfiable if why),
         untried=len(classes) - len(unsatisfiable),
         quickness=quickness,
@@ -65,6 +67,7 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
 
 def _report(
     gathered: Gathered,
+    tbox: Collection[Triple],
     *,
     inconsistent: str = "",
     spatial_classes: int | None = None,
@@ -93,7 +96,7 @@ def _report(
         inconsistent=inconsistent,
         unsatisfiable=unsatisfiable,
         untried=untried,
-        ambiguous=_ambiguous(classes),
+        ambiguous=_ambiguous(tbox),
         quickness=quickness,
     )
 
@@ -111,11 +114,12 @@ def _individuals(triples: Collection[Triple]) -> set[Term]:
     return said | _of(triples, v.OWL_NAMED_INDIVIDUAL)
 
 
-def _ambiguous(classes: Iterable[Term]) -> dict[str, tuple[str, ...]]:
-    sharing: dict[str, list[str]] = {}
-    for c in classes:
-        sharing.setdefault(v.local_name(c), []).append(v.bare(c))
-    return {name: tuple(iris) for name, iris in sorted(sharing.items()) if len(iris) > 1}
+def _ambiguous(tbox: Collection[Triple]) -> dict[str, dict[str, str]]:
+    classes = _classes(tbox)
+    terms = {*classes, *_of(tbox, *v.PROPERTY_KINDS)}
+    known = prefixes.prefixes_of((prefixes.split(t)[0] for t in terms), prefixes.declared_in(tbox))
+    shared = prefixes.told_apart(classes, known)
+    return {local: {name: v.bare(c) for name, c in found.items()} for local, found in shared.items()}
 
 
 def _spatial(reasoner: Reasoner) -> int | None:

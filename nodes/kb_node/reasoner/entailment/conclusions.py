@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
 from nodes.kb_node.reasoner.entailment.axiom_tests import Axioms
+from nodes.kb_node.reasoner.entailment.effort import Effort
 from nodes.kb_node.reasoner.entailment.expressions import Reader, Unreadable
 from nodes.kb_node.reasoner.entailment.prover import Prover
 from nodes.kb_node.reasoner.explanations import Term, Triple
@@ -46,17 +47,18 @@ Choice = dict[Term, Term]
 """What blank nodes stand for."""
 
 
-def entails(reasoner: Reasoner, graph: Iterable[Triple]) -> bool:
+def entails(reasoner: Reasoner, graph: Iterable[Triple], effort: Effort | None = None) -> bool:
     """Whether all of a graph follows from what a reasoner holds; False when no proof is found.
 
     Tried are, in this order: to find the graph in what the rules derive; to prove its facts and axioms one by
-    one; the same with names for what must exist. The reasoner is the same before and after.
+    one; the same with names for what must exist. The reasoner is the same before and after. An `effort`
+    bounds the search, and may trace it: then the first way, which leaves no trace, is left out.
     """
     graph = [(_apart(s), p, _apart(o)) for s, p, o in dict.fromkeys(graph)]
-    facts = _Search(reasoner, graph)
-    if facts.matches(graph):
+    is_traced = effort is not None and effort.is_traced
+    if not is_traced and _Search(reasoner, graph).matches(graph):
         return True
-    stated = _Stated(reasoner, graph)
+    stated = _Stated(reasoner, graph, effort)
     try:
         if stated.follows():
             return True
@@ -78,8 +80,8 @@ def contradictory(reasoner: Reasoner) -> bool:
 class _Stated:
     """A graph read as axioms and facts."""
 
-    def __init__(self, reasoner: Reasoner, graph: Sequence[Triple]) -> None:
-        self.prover = Prover(reasoner)
+    def __init__(self, reasoner: Reasoner, graph: Sequence[Triple], effort: Effort | None) -> None:
+        self.prover = Prover(reasoner, effort)
         self._facts = Facts(dict.fromkeys(graph))
         self._reader = Reader(self._facts.match)
         self._axioms = Axioms(self.prover, self._reader)
@@ -167,7 +169,7 @@ class _Stated:
         if p in axioms.relations:
             return axioms.relations[p](s, o)
         if p == TYPE and o in axioms.characteristics:
-            return self._reasoner.holds(triple) or axioms.characteristics[o](self._reader.role(s))
+            return self.prover.holds(triple) or axioms.characteristics[o](self._reader.role(s))
         return None
 
     def _stated(self, node: Term, kind: str) -> bool:

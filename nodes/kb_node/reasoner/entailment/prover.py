@@ -13,6 +13,7 @@ from contextlib import ExitStack
 from itertools import combinations, islice
 
 from nodes.kb_node.reasoner import datatypes
+from nodes.kb_node.reasoner.entailment.effort import Effort
 from nodes.kb_node.reasoner.entailment.expressions import (
     And,
     AtLeast,
@@ -49,8 +50,6 @@ from nodes.kb_node.reasoner.terms import (
 
 _DEEPEST = 6
 """Expressions, definitions and case distinctions one inside the other."""
-_MOST = 1000
-"""Suppositions in one proof."""
 _INDIVIDUALS = 300
 """Individuals for whom witnesses are named."""
 _TOPS = (iri("owl:topObjectProperty"), iri("owl:topDataProperty"))
@@ -60,17 +59,39 @@ _BOTTOMS = (iri("owl:bottomObjectProperty"), iri("owl:bottomDataProperty"))
 class Prover:
     """Proves facts about the graph of a reasoner, which is as before after every question."""
 
-    def __init__(self, reasoner: Reasoner) -> None:
+    def __init__(self, reasoner: Reasoner, effort: Effort | None = None) -> None:
         self._reasoner = reasoner
+        self._effort = effort or Effort()
         self._writer = Writer()
         self._depth = 0
-        self._left = _MOST
         self._open: set[tuple[Term, Term]] = set()
         self._witnessed: set[Term] = set()
-        self.asserted = reasoner.asserted
-        self.holds = reasoner.holds
-        self.reader = Reader(reasoner.asserted)
+        self.reader = Reader(self.asserted)
         self.fresh = self._writer.fresh
+
+    # What is known
+
+    def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> list[Triple]:
+        """The asserted triples of a pattern; as a list, because proofs change the reasoner meanwhile."""
+        found = list(self._reasoner.asserted(s, p, o))
+        self._effort.note(found)
+        return found
+
+    def holds(self, triple: Triple) -> bool:
+        """Whether a triple follows by the rules."""
+        if not self._reasoner.holds(triple):
+            return False
+        self._effort.note_conclusion(self._reasoner, triple)
+        return True
+
+    def _known(self, s: Term | None, p: Term | None, o: Term | None, most: int | None = None) -> list[Triple]:
+        """The triples of a pattern that are asserted or follow, of each at most so many."""
+        asserted = list(islice(self._reasoner.asserted(s, p, o), most))
+        inferred = list(islice(self._reasoner.inferred(s, p, o), most))
+        self._effort.note(asserted)
+        for triple in inferred:
+            self._effort.note_conclusion(self._reasoner, triple)
+        return asserted + inferred
 
     # Suppositions
 
@@ -88,13 +109,13 @@ class Prover:
         supposed += [(x, p, x) for p in self._reflexive() for x in things]
         if any(p in _BOTTOMS for _, p, _ in supposed):
             return True
-        if self._left <= 0:
+        if not self._effort.may_suppose():
             return False
-        self._left -= 1
         try:
             with self._reasoner.supposing(supposed):
                 return goal()
-        except Inconsistent:
+        except Inconsistent as found:
+            self._effort.note(found.explanation.support)
             return True
 
     def follows_from_each(self, alternatives: Alternatives, goal: Callable[[], bool]) -> bool:
@@ -110,7 +131,7 @@ class Prover:
     def fact(self, triple: Triple) -> bool:
         """Whether a triple about individuals follows."""
         s, p, o = triple
-        if self._reasoner.holds(triple) or p in _TOPS:
+        if self.holds(triple) or p in _TOPS:
             return True
         if p == TYPE:
             try:
@@ -130,7 +151,7 @@ class Prover:
             return one is not None and other is not None and one != other
         if is_literal(x):
             x, y = y, x
-        return self._reasoner.holds((x, DIFFERENT_FROM, y)) or self.refutes((x, SAME_AS, y))
+        return self.holds((x, DIFFERENT_FROM, y)) or self.refutes((x, SAME_AS, y))
 
     def member(self, x: Term, expression: Expression) -> bool:
         """Whether x is in a class."""
@@ -157,7 +178,7 @@ class Prover:
                     return True
                 return self.follows_from_each(self.given(x, negated(expression)), lambda: False)
             case OneOf(terms):
-                return any(self._reasoner.holds((x, SAME_AS, term)) for term in terms)
+                return any(self.holds((x, SAME_AS, term)) for term in terms)
             case Has(role, value):
                 return self._edge(role, x, value)
             case Self(role):
@@ -172,7 +193,7 @@ class Prover:
 
     def _in_named(self, x: Term, cls: Term) -> bool:
         """By the rules, or by a definition that is a subclass: what is in that is in the class, too."""
-        if cls == THING or self._reasoner.holds((x, TYPE, cls)):
+        if cls == THING or self.holds((x, TYPE, cls)):
             return True
         if datatypes.is_datatype(cls):
             return self._has_datatype(x, cls)
@@ -187,16 +208,15 @@ class Prover:
     def _has_datatype(self, x: Term, datatype: Term) -> bool:
         if is_literal(x):
             return datatypes.contains(datatype, x)
-        held = [known for known in datatypes.known() if self._reasoner.holds((x, TYPE, known))]
+        held = [known for known in datatypes.known() if self.holds((x, TYPE, known))]
         return datatypes.includes_common(datatype, held)
 
     def _sufficient(self, cls: Term) -> Iterator[Expression]:
         """Expressions whose members are all in a class."""
         nodes = {cls: None}
         for name in ("rdfs:subClassOf", "owl:equivalentClass"):
-            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.asserted(None, iri(name), cls)))
-            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.inferred(None, iri(name), cls)))
-        for _, _, o in list(self._reasoner.asserted(cls, iri("owl:equivalentClass"), None)):
+            nodes.update(dict.fromkeys(s for s, _, _ in self._known(None, iri(name), cls)))
+        for _, _, o in self.asserted(cls, iri("owl:equivalentClass"), None):
             nodes[o] = None
         for node in nodes:
             if node != cls and is_named(node) and node != NOTHING:
@@ -222,9 +242,8 @@ class Prover:
         """The known values of a role at x, at most as many as are tried."""
         s, o = (None, x) if role.backwards else (x, None)
         found: dict[Term, None] = {}
-        for source in (self._reasoner.asserted, self._reasoner.inferred):
-            for triple in islice(source(s, role.property, o), WIDEST):
-                found[triple[0 if role.backwards else 2]] = None
+        for triple in self._known(s, role.property, o, most=WIDEST):
+            found[triple[0 if role.backwards else 2]] = None
         return list(found)
 
     def _edge(self, role: Role, x: Term, y: Term) -> bool:
@@ -234,15 +253,14 @@ class Prover:
     def _is_reflexive(self, x: Term, prop: Term) -> bool:
         """Whether the property, or one below it, relates everything, or all of a class of x, to itself."""
         below = {prop}
-        for source in (self._reasoner.asserted, self._reasoner.inferred):
-            below |= {s for s, _, _ in source(None, iri("rdfs:subPropertyOf"), prop)}
+        below.update(s for s, _, _ in self._known(None, iri("rdfs:subPropertyOf"), prop))
         reflexive = iri("owl:ReflexiveProperty")
-        if any(self._reasoner.holds((narrow, TYPE, reflexive)) for narrow in below):
+        if any(self.holds((narrow, TYPE, reflexive)) for narrow in below):
             return True
         return any(
-            on in below and self._reasoner.holds((x, TYPE, node))
-            for node, _, _ in self._reasoner.asserted(None, iri("owl:hasSelf"), None)
-            for _, _, on in self._reasoner.asserted(node, iri("owl:onProperty"), None)
+            on in below and self.holds((x, TYPE, node))
+            for node, _, _ in self.asserted(None, iri("owl:hasSelf"), None)
+            for _, _, on in self.asserted(node, iri("owl:onProperty"), None)
         )
 
     # Cases
@@ -259,13 +277,13 @@ class Prover:
     def _disjunctions(self, x: Term) -> Iterator[Expression]:
         """The unions and enumerations that x is in, without being known to be in one of their parts."""
         for name in ("owl:unionOf", "owl:oneOf"):
-            for node, _, head in list(self._reasoner.asserted(None, iri(name), None)):
-                if not self._reasoner.holds((x, TYPE, node)):
+            for node, _, head in self.asserted(None, iri(name), None):
+                if not self.holds((x, TYPE, node)):
                     continue
                 try:
                     members = self.reader.members(head)
                     decided = TYPE if name == "owl:unionOf" else SAME_AS
-                    if not any(self._reasoner.holds((x, decided, member)) for member in members):
+                    if not any(self.holds((x, decided, member)) for member in members):
                         yield from list(self.reader.definitions(node))
                 except Unreadable:
                     continue
@@ -277,7 +295,7 @@ class Prover:
         if x in self._witnessed or is_literal(x):
             return False
         new = list(self._must_exist([x]))
-        if all(map(self._reasoner.holds, new)):
+        if all(map(self.holds, new)):
             return False
         self._witnessed.add(x)
         try:
@@ -296,7 +314,8 @@ class Prover:
                     individuals = [
                         term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
                     ]
-            except Inconsistent:
+            except Inconsistent as found:
+                self._effort.note(found.explanation.support)
                 return True
             return goal()
 
@@ -318,20 +337,35 @@ class Prover:
         reflexive = self._reflexive()
         for x in individuals:
             for node, expression in wanted:
-                if node == THING or self._reasoner.holds((x, TYPE, node)):
+                if (node == THING or self.holds((x, TYPE, node))) and not self._is_met(x, expression):
                     alternatives = self.given(x, expression)
                     if len(alternatives) == 1:
                         yield from alternatives[0]
             yield from ((x, p, x) for p in reflexive)
             yield (x, TYPE, THING)
 
+    def _is_met(self, x: Term, expression: Expression) -> bool:
+        """Whether a known value of x meets a restriction, so that no other need have a name.
+
+        With another name for a value that is a literal, everything would have to be worked out anew.
+        """
+        match expression:
+            case AtLeast(1, role, Named(term)):
+                return any(self._is_in(y, term) for y in self.values(x, role))
+        return False
+
+    def _is_in(self, y: Term, term: Term) -> bool:
+        if is_literal(y):
+            return term == THING or self._has_datatype(y, term)
+        return term == THING or self.holds((y, TYPE, term))
+
     def _reflexive(self) -> list[Term]:
-        return [p for p, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:ReflexiveProperty"))]
+        return [p for p, _, _ in self.asserted(None, TYPE, iri("owl:ReflexiveProperty"))]
 
     def _existential(self) -> Iterator[tuple[Term, Expression]]:
         nodes: dict[Term, None] = {}
         for name in _EXISTENTIAL:
-            nodes.update(dict.fromkeys(s for s, _, _ in self._reasoner.asserted(None, iri(name), None)))
+            nodes.update(dict.fromkeys(s for s, _, _ in self.asserted(None, iri(name), None)))
         for node in nodes:
             try:
                 for expression in self.reader.definitions(node):

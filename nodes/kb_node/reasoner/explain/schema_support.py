@@ -60,9 +60,9 @@ class SchemaSupport:
         return self.axiom(result.term, "owl:propertyChainAxiom") | self.facts([transitive])
 
     def transitive(self, prop: int) -> Found:
-        """That a property is transitive, and all that its steps imply."""
-        transitive = (self._schema.axioms[prop].term, TYPE, iri("owl:TransitiveProperty"))
-        return self.facts([transitive, *chain.from_iterable(self._schema.roles(prop).values())])
+        """That a property is transitive, in whichever way that is stated, and all that its steps imply."""
+        implied = chain.from_iterable(self._schema.roles(prop).values())
+        return self.chains(self._schema.axioms[prop]) | self.facts(implied)
 
     def about(self, term: Term) -> Found:
         """The axioms that a class, property or individual may contradict another by."""

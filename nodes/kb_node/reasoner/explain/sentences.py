@@ -47,6 +47,14 @@ def sentence(goal: Triple | None, support: Sequence[Triple], steps: Sequence[Ste
     return f"{headline}: {_joined(reasons)}." if reasons else f"{headline}."
 
 
+def following(goal: Triple, support: Sequence[Triple], words: Words) -> str:
+    """Tell a conclusion that no rule draws, and the asserted triples that make it so, the facts first."""
+    speaker = _Speaker((*support, goal), words)
+    facts_first = sorted(support, key=speaker.axioms.is_axiom)
+    claim = speaker.say(goal)
+    return _because(claim, speaker.reasons(facts_first, goal)) if support else f"{claim} (always)."
+
+
 def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
     """Tell a refutation: what is not the case, because of the rest of a contradictory set of triples."""
     speaker = _Speaker(support, words)

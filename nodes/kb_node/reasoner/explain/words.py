@@ -8,6 +8,7 @@ Labels are those without a language or in English. A property's label is a verb 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Final, Literal, NamedTuple
@@ -81,7 +82,7 @@ class Words:
     """Labels of a graph, and names where there are none."""
 
     def __init__(self, labels: Mapping[Term, str], data_properties: frozenset[Term]) -> None:
-        self._labels = labels
+        self._labels = dict(labels)
         self._data = data_properties
         self._verbs: dict[Term, Verb] = {}
 
@@ -98,6 +99,11 @@ class Words:
             elif p == TYPE and o == _DATA:
                 data.add(s)
         return cls(labels, frozenset(data))
+
+    def tell_apart(self, names: Mapping[Term, str]) -> None:
+        """Call those of some classes that would be called alike by these names of theirs instead."""
+        alike = Counter(map(self.cls, names))
+        self._labels.update([(c, name) for c, name in names.items() if alike[self.cls(c)] > 1])
 
     def name(self, term: Term) -> str:
         """An individual or a value."""

@@ -40,7 +40,7 @@ def test_what_is_in_an_ontology(report, tmp_path):
     assert (found.classes, found.individuals) == (4, 2)
     assert (found.object_properties, found.data_properties, found.annotation_properties) == (1, 1, 1)
     assert found.outside_rl == {"existential restriction as a superclass": 1}
-    assert found.ambiguous == {"Cup": ("http://o.org/more#Cup", "http://o.org/o#Cup")}
+    assert found.ambiguous == {"Cup": {"more:Cup": "http://o.org/more#Cup", "o:Cup": "http://o.org/o#Cup"}}
     assert (found.inconsistent, found.unsatisfiable, found.untried) == ("", (), 0)
 
 

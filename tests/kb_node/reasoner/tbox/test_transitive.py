@@ -92,3 +92,16 @@ def test_where_a_rule_looks_at_pairs_a_circle_is_found(axiom):
     assert stored(reasoner) == 3
     with pytest.raises(Inconsistent):
         reasoner.apply(insert=triples(":c :part :a ."))
+
+
+@pytest.mark.parametrize(
+    "axiom",
+    [":on a owl:TransitiveProperty .", ":on owl:propertyChainAxiom ( :on :on ) ."],
+    ids=["declared", "as a chain"],
+)
+def test_however_it_is_stated_it_is_part_of_the_proof(axiom):
+    told = triples(axiom + ":under owl:inverseOf :on . :a :on :b . :c :under :b . :c a :Floor .")
+    told += triples(":Top owl:onProperty :on ; owl:someValuesFrom :Floor .")
+    reasoner = Reasoner(told)
+    for fact in map(triple, (":a :on :c", ":c :under :a", ":a a :Top")):
+        proofs.check(reasoner.explain(fact), told)

@@ -1,0 +1,46 @@
+"""The names that a running system knows, for completion; it is given a moment to answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from nodes import bus
+from nodes.extern.connection import endpoint, identity
+from nodes.supervisor import presence
+from schemas import commands
+from schemas.entities import ClassInfo, Entity
+
+_MEET_S = 0.5
+_ANSWER_S = 1.0
+
+Named = Iterable[tuple[str, str | None]]
+"""Names, each with what to say of it."""
+
+
+def _entities(where: str | None) -> Named:
+    found = _ask(where, "list", commands.List(), tuple[Entity, ...])
+    return [(entity.name, entity.class_) for entity in found]
+
+
+def _classes(where: str | None) -> Named:
+    found = _ask(where, "classes", commands.Classes(), tuple[ClassInfo, ...])
+    return [(row.name, row.labels.get("en")) for row in found if row.spatial]
+
+
+KINDS: Mapping[str, Callable[[str | None], Named]] = {"entities": _entities, "classes": _classes}
+"""Each asks the system at an endpoint, or the one that is meant when none is given. They raise NoAnswer."""
+
+
+def _ask(where: str | None, verb: str, command: Any, kind: Any) -> Any:
+    where = where or endpoint()
+    here, who = presence.is_loopback(where), identity(None)
+    network = bus.Network(
+        connect=(where if who is None else bus.over_tls(where),),
+        mode="peer" if here and who is None else "client",
+        patience_s=0.0 if here else _MEET_S,
+        identity=who,
+    )
+    with bus.open_session(network) as session:
+        prefix = network.commands
+        return bus.ask(session, prefix, verb, command, kind, timeout_s=_ANSWER_S, patience_s=_MEET_S)

@@ -1,0 +1,34 @@
+"""Tables as plain text: no colours, no folding, and little to import."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from rich.cells import cell_len
+
+_BETWEEN = "  "
+
+
+def lines(
+    names: Sequence[str], rows: Iterable[Sequence[str]], to_the_right: Sequence[bool] = ()
+) -> Iterator[str]:
+    """The header, a rule and a line for each row, in columns as wide as they must be."""
+    shown = [[escaped(cell) for cell in row] for row in rows]
+    widths = [max(map(cell_len, column)) for column in zip(names, *shown, strict=True)]
+    right = to_the_right or [False] * len(names)
+
+    def line(cells: Sequence[str]) -> str:
+        spaces = [" " * (width - cell_len(cell)) for cell, width in zip(cells, widths, strict=True)]
+        parts = [s + c if last else c + s for c, s, last in zip(cells, spaces, right, strict=True)]
+        return f" {_BETWEEN.join(parts).rstrip()}"
+
+    yield line(names)
+    yield f" {'─' * (sum(widths) + len(_BETWEEN) * (len(widths) - 1))}"
+    yield from map(line, shown)
+
+
+def escaped(text: str) -> str:
+    """Text as it is, with line ends and the like as escapes: they would break the row, or the terminal."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -1,0 +1,101 @@
+"""`semmap keys`: certificates that say who somebody is and what they may do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from nodes.extern.cli.output import show
+from nodes.extern.cli.output.tables import table
+from nodes.identity.register import Member, Register
+from nodes.runtime import extras
+from schemas.roles import ROLES, Role
+
+_path = click.Path(path_type=Path)
+_folder = click.option(
+    "--dir", "folder", type=_path, default=Path("keys"), show_default=True, help="Folder of the keys."
+)
+_days = click.option(
+    "--days", type=click.IntRange(1, 3650), default=365, show_default=True, help="How long it is valid."
+)
+_host = click.option(
+    "--host",
+    "hosts",
+    multiple=True,
+    metavar="HOST",
+    help="Another name or address at which the router is found; may be repeated.",
+)
+
+
+@click.group()
+def keys() -> None:
+    """Make, renew and revoke the certificates of a secure system."""
+    extras.require("semmap keys", "keys")
+
+
+@keys.command()
+@click.argument("folder", type=_path, default=Path("keys"))
+@_host
+@_days
+def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
+    """Make an authority in FOLDER, and the certificates of the system's own processes."""
+    from nodes.identity import authority
+
+    register = authority.init(folder, hosts, days)
+    click.echo(f"made an authority in {folder}, for a router at {', '.join(register.hosts)}")
+    click.echo(f"keep {folder / 'ca.key'} secret: whoever has it can be anybody")
+    click.echo(f"add yourself: semmap keys add NAME --role operator --dir {folder}")
+    click.echo(f"start:        semmap up --secure {folder}")
+
+
+@keys.command()
+@click.argument("name")
+@click.option("--role", type=click.Choice(ROLES), required=True, help="What NAME may do.")
+@_folder
+@_days
+def add(name: str, role: Role, folder: Path, days: int) -> None:
+    """Make NAME a certificate; a running system admits it within a second."""
+    from nodes.identity import authority
+
+    _told("made", folder, authority.add(folder, name, role, days))
+    click.echo(f"use it: semmap status --identity {folder / name}")
+
+
+@keys.command()
+@click.argument("name")
+@_host
+@_folder
+@_days
+def renew(name: str, hosts: tuple[str, ...], folder: Path, days: int) -> None:
+    """Make NAME a new key and certificate; the old one stays valid until it expires."""
+    from nodes.identity import authority
+
+    _told("renewed", folder, authority.renew(folder, name, hosts, days))
+
+
+@keys.command()
+@click.argument("name")
+@_folder
+def revoke(name: str, folder: Path) -> None:
+    """Admit NAME no longer; a running system shuts them out within a second."""
+    from nodes.identity import authority
+
+    member = authority.revoke(folder, name)
+    click.echo(f"revoked {member.name} ({member.role}); the name is not given again")
+
+
+@keys.command("list")
+@_folder
+def list_(folder: Path) -> None:
+    """Show who has a certificate, in which role and until when."""
+    rows = table("name", "role", "valid until", "state", fold=())
+    for member in Register.read(folder).members.values():
+        state = "revoked" if member.revoked else "admitted"
+        rows.add(member.name, member.role, f"{member.expires:%Y-%m-%d}", state)
+    show.console().print(rows)
+
+
+def _told(done: str, folder: Path, member: Member) -> None:
+    files = f"{folder / member.name}.crt and .key"
+    click.echo(f"{done} {files}: {member.name}, {member.role}, until {member.expires:%Y-%m-%d}")

@@ -1,0 +1,8 @@
+"""Who is who: certificates with a name and a role, the authority that issues them, and the register of them.
+
+`identity.py` is what a process needs to show who it is, and reads certificates without any library;
+`authority.py` issues them (with the `keys` extra); `register.py` is the list of those that were issued.
+"""
+
+from nodes.identity.identity import SUPERVISOR as SUPERVISOR
+from nodes.identity.identity import Identity as Identity

@@ -1,0 +1,256 @@
+"""A private certification authority: issues certificates with a name and a role, renews and revokes them.
+
+Only the router's certificate may be a server's: another one with that use could pose as the router.
+"""
+
+from __future__ import annotations
+
+import functools
+import ipaddress
+import os
+import re
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Concatenate, Final, ParamSpec
+
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
+from msgspec import structs
+
+from nodes.identity.identity import AUTHORITY, SUPERVISOR
+from nodes.identity.register import FILE, Member, Register, changing
+from schemas import errors, keys
+from schemas.keys import ROUTER
+from schemas.roles import Role
+
+OWN: Final = (ROUTER, SUPERVISOR, *keys.NODES)
+"""The names of the system's own certificates."""
+HOSTS: Final = ("localhost", "127.0.0.1")
+DAYS: Final = 365
+_AUTHORITY_DAYS: Final = 3650
+_AUTHORITY_NAME: Final = "semmap"
+_AUTHORITY_KEY: Final = "ca.key"
+_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_EARLY: Final = timedelta(minutes=5)
+"""Clocks differ."""
+
+P = ParamSpec("P")
+_Key = ec.EllipticCurvePrivateKey
+
+
+def _alone(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatenate[Path, P], Member]:
+    """A change of a folder of keys, one at a time. Raises BadFile where there is none."""
+
+    @functools.wraps(change)
+    def alone(folder: Path, /, *args: P.args, **options: P.kwargs) -> Member:
+        Register.read(folder)
+        with changing(folder):
+            return change(folder, *args, **options)
+
+    return alone
+
+
+def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Register:
+    """Make the authority and the system's own certificates in `folder`. Raises Refused where there is one."""
+    if (folder / FILE).exists() or (folder / AUTHORITY).exists():
+        raise errors.Refused(f"there are keys in {folder} already; add to them with: semmap keys add NAME")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        folder.chmod(0o700)
+    except OSError as error:
+        raise errors.BadFile(f"cannot store keys in {folder}: {error.strerror}") from None
+    key = _new_key()
+    name = _subject(_AUTHORITY_NAME)
+    certificate = (
+        _builder(name, name, key.public_key(), _AUTHORITY_DAYS)
+        .add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
+        .add_extension(_key_usage(signs_certificates=True), critical=True)
+        .add_extension(x509.SubjectKeyIdentifier.from_public_key(key.public_key()), critical=False)
+        .sign(key, hashes.SHA256())
+    )
+    _write(folder, AUTHORITY, certificate.public_bytes(serialization.Encoding.PEM))
+    _write(folder, _AUTHORITY_KEY, _key_bytes(key))
+    register = Register(hosts=tuple(dict.fromkeys((*HOSTS, *hosts))))
+    for own in OWN:
+        register = _issued(folder, register, own, "node", days)
+    register.write(folder)
+    return register
+
+
+@_alone
+def add(folder: Path, name: str, role: Role, days: int = DAYS) -> Member:
+    """Issue a certificate. Raises BadRequest for no name, Refused for one that was given before."""
+    register = Register.read(folder)
+    if not _NAME.fullmatch(name):
+        raise errors.BadRequest(
+            f"'{name}' is not a name: up to 64 letters, digits, '_', '.' and '-', beginning with a letter or"
+            " a digit"
+        )
+    known = {other.lower(): member for other, member in register.members.items()}
+    if (member := known.get(name.lower())) is not None:
+        raise errors.Refused(
+            f"{member.name} was revoked, and its certificate would be good again; choose another name"
+            if member.revoked
+            else f"{member.name} has a certificate already ({member.role}); for a new one:"
+            f" semmap keys renew {member.name}"
+        )
+    if f"{name}.crt".lower() == AUTHORITY:
+        raise errors.BadRequest(f"'{name}' is the authority's own name; choose another one")
+    return _in_register(folder, register, name, role, days)
+
+
+@_alone
+def renew(folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS) -> Member:
+    """A new key and certificate for somebody; `hosts` are added to the router's.
+
+    Raises UnknownName, Refused for one who was revoked.
+    """
+    register = Register.read(folder)
+    member = _member(register, name)
+    if member.revoked:
+        raise errors.Refused(f"{name} was revoked; add another name instead")
+    if hosts and name != ROUTER:
+        raise errors.BadRequest(
+            f"only the router's certificate carries hosts: semmap keys renew {ROUTER} --host"
+        )
+    register = structs.replace(register, hosts=tuple(dict.fromkeys((*register.hosts, *hosts))))
+    return _in_register(folder, register, name, member.role, days)
+
+
+@_alone
+def revoke(folder: Path, name: str) -> Member:
+    """Admit somebody no longer. Raises UnknownName, Refused for the system's own."""
+    register = Register.read(folder)
+    if name in OWN:
+        raise errors.Refused(f"{name} is the system's own; give it a new key with: semmap keys renew {name}")
+    member = structs.replace(_member(register, name), revoked=True)
+    structs.replace(register, members={**register.members, name: member}).write(folder)
+    return member
+
+
+def _member(register: Register, name: str) -> Member:
+    if (member := register.members.get(name)) is None:
+        hint = errors.did_you_mean(name, register.members)
+        raise errors.UnknownName(f"no certificate was issued to '{name}'{hint}")
+    return member
+
+
+def _in_register(folder: Path, register: Register, name: str, role: Role, days: int) -> Member:
+    register = _issued(folder, register, name, role, days)
+    register.write(folder)
+    return register.members[name]
+
+
+def _issued(folder: Path, register: Register, name: str, role: Role, days: int) -> Register:
+    """Write a key and a certificate; the register with it."""
+    authority, authority_key = _authority(folder)
+    key = _new_key()
+    uses = [ExtendedKeyUsageOID.CLIENT_AUTH]
+    builder = _builder(_subject(name, role), authority.subject, key.public_key(), days)
+    if name == ROUTER:
+        uses.append(ExtendedKeyUsageOID.SERVER_AUTH)
+        builder = builder.add_extension(
+            x509.SubjectAlternativeName([_host(host) for host in register.hosts]), critical=False
+        )
+    certificate = (
+        builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
+        .add_extension(_key_usage(signs_certificates=False), critical=True)
+        .add_extension(x509.ExtendedKeyUsage(uses), critical=False)
+        .add_extension(
+            x509.AuthorityKeyIdentifier.from_issuer_public_key(authority_key.public_key()), critical=False
+        )
+        .sign(authority_key, hashes.SHA256())
+    )
+    _write(folder, f"{name}.key", _key_bytes(key))
+    _write(folder, f"{name}.crt", certificate.public_bytes(serialization.Encoding.PEM))
+    member = Member(
+        name=name,
+        role=role,
+        serial=f"{certificate.serial_number:x}",
+        expires=certificate.not_valid_after_utc,
+    )
+    return structs.replace(register, members={**register.members, name: member})
+
+
+def _authority(folder: Path) -> tuple[x509.Certificate, _Key]:
+    try:
+        certificate = x509.load_pem_x509_certificate((folder / AUTHORITY).read_bytes())
+        key = serialization.load_pem_private_key((folder / _AUTHORITY_KEY).read_bytes(), password=None)
+    except OSError as error:
+        raise errors.BadFile(f"the authority's {error.filename} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise errors.BadFile(f"the authority in {folder} is damaged: {error}") from None
+    assert isinstance(key, _Key)
+    return certificate, key
+
+
+def _builder(
+    subject: x509.Name, issuer: x509.Name, public_key: ec.EllipticCurvePublicKey, days: int
+) -> x509.CertificateBuilder:
+    return (
+        x509.CertificateBuilder()
+        .subject_name(subject)
+        .issuer_name(issuer)
+        .public_key(public_key)
+        .serial_number(x509.random_serial_number())
+        .not_valid_before(datetime.now(UTC) - _EARLY)
+        .not_valid_after(_end(days))
+    )
+
+
+def _end(days: int) -> datetime:
+    return datetime.now(UTC) + timedelta(days=days)
+
+
+def _subject(name: str, role: str = "") -> x509.Name:
+    attributes = [x509.NameAttribute(NameOID.COMMON_NAME, name)]
+    if role:
+        attributes.append(x509.NameAttribute(NameOID.ORGANIZATIONAL_UNIT_NAME, role))
+    return x509.Name(attributes)
+
+
+def _host(host: str) -> x509.GeneralName:
+    try:
+        return x509.IPAddress(ipaddress.ip_address(host.strip("[]")))
+    except ValueError:
+        pass
+    try:
+        return x509.DNSName(host)
+    except ValueError:
+        raise errors.BadRequest(f"'{host}' is neither a host name nor an address") from None
+
+
+def _key_usage(*, signs_certificates: bool) -> x509.KeyUsage:
+    return x509.KeyUsage(
+        digital_signature=not signs_certificates,
+        key_cert_sign=signs_certificates,
+        crl_sign=signs_certificates,
+        content_commitment=False,
+        key_encipherment=False,
+        data_encipherment=False,
+        key_agreement=False,
+        encipher_only=False,
+        decipher_only=False,
+    )
+
+
+def _new_key() -> _Key:
+    return ec.generate_private_key(ec.SECP256R1())
+
+
+def _key_bytes(key: _Key) -> bytes:
+    return key.private_bytes(
+        serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    )
+
+
+def _write(folder: Path, name: str, content: bytes) -> None:
+    """Replace a file, readable by its owner only from the first byte on."""
+    path = folder / f".{name}.new"
+    path.unlink(missing_ok=True)
+    with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as file:
+        file.write(content)
+    path.replace(folder / name)

@@ -1,0 +1,222 @@
+"""Large Turtle and N-Triples as programs write them, read line by line in a third of Oxigraph's time.
+
+A line is taken apart at its spaces, and each distinct word is looked at once; one that is not plain is given
+to Oxigraph. So the outcome is Oxigraph's. A document that cannot be read so, with lists or texts of several
+lines for example, or with a fault, is not read here at all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Final
+
+import pyoxigraph
+
+from ontology import vocabulary as v
+from schemas.explanations import Term, Triple
+
+_PIECE: Final = 1 << 20
+"""Bytes."""
+_REMEMBERED: Final = 200_000
+"""Words; more are looked at again."""
+_WORD = (
+    r'<[^\s<>"]*>|"(?:[^"\\\n\r]|\\.)*"(?:\^\^(?:<[^\s<>"]*>|[^\s<>"\',;]+)|@[A-Za-z0-9-]+)?|[^\s<>"\',;]+'
+)
+_WORDS = re.compile(rf"(?:#.*|{_WORD}|[;,]|\S)")
+_TAIL = re.compile(rf"({_WORD})\s*([.;,])\s*")
+"""An object and what separates it from what follows."""
+_PREFIX = re.compile(r"@prefix\s+([A-Za-z0-9_-]*):\s*<([^\s<>]*)>\s*\.\s*")
+_HIERARCHY = r"[a-z]+://[A-Za-z0-9.-]+(?:/(?:[A-Za-z0-9_~-][A-Za-z0-9._~-]*)?)"
+"""How an absolute IRI begins that is not normalised."""
+_IRI = re.compile(rf"<{_HIERARCHY}*(?:#[A-Za-z0-9._~/-]*)?>")
+_NAMESPACE = re.compile(rf"{_HIERARCHY}+#?")
+_PREFIXED = re.compile(r"([A-Za-z][A-Za-z0-9_-]*|):([A-Za-z0-9_][A-Za-z0-9_-]*)")
+_LITERAL = re.compile(r'("[ !#-\[\]-~]*")(?:\^\^(\S+))?')
+_NUMBER = re.compile(r"[+-]?[0-9]*(\.?)[0-9]+")
+_OF_XSD: Final = f"<{v.XSD}"
+_STRING, _INTEGER, _DECIMAL = (v.iri(v.XSD + kind) for kind in ("string", "integer", "decimal"))
+_SUBJECT, _PREDICATE, _OBJECT, _SEPARATOR = range(4)
+_AFTER: Final = {".": _SUBJECT, ";": _PREDICATE, ",": _OBJECT}
+
+
+class _NotPlain(Exception):
+    """Oxigraph is to read the whole document."""
+
+
+class _Words(dict[str, Term]):
+    """What words stand for. Raises _NotPlain for one that cannot stand there."""
+
+    def __init__(self, look_up: Callable[[str], Term]) -> None:
+        self._look_up = look_up
+
+    def __missing__(self, word: str) -> Term:
+        if len(self) >= _REMEMBERED:
+            self.clear()
+        term = self[word] = self._look_up(word)
+        return term
+
+
+def read(
+    content: bytes, prefixes: dict[str, str], label_prefix: str, progress: Callable[[int], None]
+) -> list[Triple] | None:
+    """The triples in their order, terms as Oxigraph writes them; None for a document that is not plain.
+
+    `prefixes` are those declared before the first triple. Blank nodes get `label_prefix`. `progress` is told
+    now and then how many triples there are so far.
+    """
+    try:
+        return _Reader(prefixes, label_prefix).read(content, progress)
+    except (_NotPlain, UnicodeDecodeError):
+        return None
+
+
+class _Reader:
+    """Reads one document; equal terms are one object."""
+
+    def __init__(self, prefixes: dict[str, str], label_prefix: str) -> None:
+        self._prefixes = prefixes
+        self._plain = {name: iri for name, iri in prefixes.items() if _NAMESPACE.fullmatch(iri)}
+        self._head = "".join(f"@prefix {name}: <{iri}> .\n" for name, iri in prefixes.items())
+        self._label_prefix = label_prefix
+        self._shared: dict[Term, Term] = {}
+        self._datatypes: dict[str, Term | None] = {}
+        """Those that keep their text as it is; None for others."""
+        self._subjects = _Words(self._subject)
+        self._predicates = _Words(self._predicate)
+        self._tails = _Words(self._tail)
+        self._triples: list[Triple] = []
+        self._expects = _SUBJECT
+        self._said: tuple[Term, Term] = ("", "")
+
+    def read(self, content: bytes, progress: Callable[[int], None]) -> list[Triple]:
+        for piece in _pieces(content):
+            self._read_lines(piece.decode().replace("\r\n", "\n").split("\n"))
+            progress(len(self._triples))
+        if self._expects != _SUBJECT:
+            raise _NotPlain
+        return self._triples
+
+    def _read_lines(self, lines: list[str]) -> None:
+        """A line that is a triple, or its end, at once; any other word by word."""
+        subjects, predicates, tails = self._subjects, self._predicates, self._tails
+        add, expects, (subject, predicate) = self._triples.append, self._expects, self._said
+        for line in lines:
+            try:
+                if expects == _SUBJECT:
+                    s, p, tail = line.split(" ", 2)
+                    triple = subjects[s], predicates[p], tails[tail]
+                    subject, predicate, _ = triple
+                elif expects == _PREDICATE:
+                    p, tail = line.split(None, 1)
+                    _, predicate, _ = triple = subject, predicates[p], tails[tail]
+                elif expects == _OBJECT:
+                    tail = line.strip()
+                    triple = subject, predicate, tails[tail]
+                else:
+                    raise _NotPlain
+                after = _AFTER[tail[-1]]
+            except (ValueError, KeyError, _NotPlain):
+                self._expects, self._said = expects, (subject, predicate)
+                self._read_words(line)
+                expects, (subject, predicate) = self._expects, self._said
+                continue
+            add(triple)
+            expects = after
+        self._expects, self._said = expects, (subject, predicate)
+
+    def _read_words(self, line: str) -> None:
+        if self._expects == _SUBJECT and (declared := _PREFIX.fullmatch(line)) is not None:
+            if self._prefixes.get(declared[1]) != declared[2]:
+                raise _NotPlain
+            return
+        for word in _WORDS.findall(line):
+            if word[0] == "#":
+                continue
+            subject, predicate = self._said
+            if self._expects == _SUBJECT:
+                self._said, self._expects = (self._subjects[word], ""), _PREDICATE
+            elif self._expects == _PREDICATE and word in (".", ";") and predicate:
+                self._expects = _AFTER[word]  # as in `:a :p 1 ; .`
+            elif self._expects == _PREDICATE:
+                self._said, self._expects = (subject, self._predicates[word]), _OBJECT
+            elif self._expects == _OBJECT:
+                self._triples.append((subject, predicate, self._term(word)))
+                self._expects = _SEPARATOR
+            elif word in _AFTER:
+                self._expects = _AFTER[word]
+            else:
+                raise _NotPlain
+
+    def _subject(self, word: str) -> Term:
+        term = self._term(word)
+        if term[0] == '"':
+            raise _NotPlain
+        return term
+
+    def _predicate(self, word: str) -> Term:
+        term = v.RDF_TYPE if word == "a" else self._term(word)
+        if term[0] != "<":
+            raise _NotPlain
+        return term
+
+    def _tail(self, text: str) -> Term:
+        if text[-2:-1] == " " and (term := self._plain_term(text[:-2])) is not None:
+            return self._shared.setdefault(term, term)
+        found = _TAIL.fullmatch(text)
+        if found is None:
+            raise _NotPlain
+        return self._term(found[1])
+
+    def _term(self, word: str) -> Term:
+        term = self._plain_term(word) or self._as_oxigraph_reads(word)
+        return self._shared.setdefault(term, term)
+
+    def _plain_term(self, word: str) -> Term | None:
+        """What a word stands for, if that can be told at sight."""
+        match word[:1]:
+            case '"':
+                found = _LITERAL.fullmatch(word)
+                return None if found is None else self._plain_literal(word, *found.groups())
+            case "<":
+                return word if _IRI.fullmatch(word) else None
+        if found := _PREFIXED.fullmatch(word):
+            namespace = self._plain.get(found[1])
+            return None if namespace is None else f"<{namespace}{found[2]}>"
+        if found := _NUMBER.fullmatch(word):
+            return f'"{word}"^^{_DECIMAL if found[1] else _INTEGER}'
+        return None
+
+    def _plain_literal(self, word: str, text: str, kind: str | None) -> Term | None:
+        if kind is None:
+            return word
+        if kind not in self._datatypes:
+            datatype = self._plain_term(kind)
+            is_plain = datatype is not None and datatype.startswith(_OF_XSD) and datatype != _STRING
+            self._datatypes[kind] = datatype if is_plain else None
+        datatype = self._datatypes[kind]
+        return None if datatype is None else f"{text}^^{datatype}"
+
+    def _as_oxigraph_reads(self, word: str) -> Term:
+        """What any other word stands for. Raises _NotPlain for what is no term, or one without a name."""
+        head = self._head if ":" in word else ""
+        document = f"{head}<x:s> <x:p> {word} ."
+        try:
+            (quad,) = pyoxigraph.parse(document, pyoxigraph.RdfFormat.TURTLE, base_iri=v.ABOX)
+        except (SyntaxError, ValueError):
+            raise _NotPlain from None
+        term = str(quad.object)
+        if term[0] == "_" and word == term:
+            return f"_:{self._label_prefix}{term[2:]}"
+        if term[0] not in '<"' or term[:2] == "<<":
+            raise _NotPlain
+        return term
+
+
+def _pieces(content: bytes) -> Iterator[bytes]:
+    """The content, cut at ends of lines."""
+    at = 0
+    while at < len(content):
+        end = content.find(b"\n", at + _PIECE) + 1 or len(content)
+        yield content[at:end]
+        at = end

@@ -1,0 +1,47 @@
+"""How much is tried for a proof, and what it looked at on the way."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from math import inf
+
+from nodes.kb_node.reasoner.explanations import Triple
+from nodes.kb_node.reasoner.reasoner import Reasoner
+
+_MOST = 1000
+"""Suppositions in one proof."""
+
+
+class Effort:
+    """Bounds a search for a proof; one that is `traced` also keeps what the proof may rest on."""
+
+    def __init__(self, patience_s: float = inf, *, traced: bool = False) -> None:
+        self._until_s = time.monotonic() + patience_s
+        self._left = _MOST
+        self._seen: dict[Triple, None] | None = {} if traced else None
+
+    @property
+    def is_traced(self) -> bool:
+        """Whether it keeps what it looks at."""
+        return self._seen is not None
+
+    def may_suppose(self) -> bool:
+        """Whether one more supposition is allowed."""
+        self._left -= 1
+        return self._left >= 0 and time.monotonic() < self._until_s
+
+    def note(self, triples: Iterable[Triple]) -> None:
+        """Asserted triples that a proof may rest on."""
+        if self._seen is not None:
+            self._seen.update(dict.fromkeys(triples))
+
+    def note_conclusion(self, reasoner: Reasoner, triple: Triple) -> None:
+        """A conclusion of the rules that a proof may rest on."""
+        if self._seen is not None and (found := reasoner.explain(triple)) is not None:
+            self.note(found.support)
+
+    @property
+    def seen(self) -> list[Triple]:
+        """All that was noted, in that order; nothing unless it is traced."""
+        return list(self._seen or ())

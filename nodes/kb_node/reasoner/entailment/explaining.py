@@ -1,0 +1,89 @@
+"""Why something follows that no rule derives: the asserted triples that are enough for it, and no more."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from nodes.kb_node.reasoner.entailment.conclusions import entails
+from nodes.kb_node.reasoner.entailment.effort import Effort
+from nodes.kb_node.reasoner.explain.sentences import following
+from nodes.kb_node.reasoner.explain.words import Words
+from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal
+
+_LABEL = iri("rdfs:label")
+_NEAR = 2
+"""Steps from what a question names to the facts that may matter."""
+_FACTS = 2000
+"""Facts that are looked at, at most; with fewer a proof may be missed, but none is wrong."""
+PATIENCE_S = 5.0
+"""How long a proof is looked for, and then again how long it is made smaller."""
+
+
+def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
+    """The schema with its labels, and the facts within a few steps of some individuals.
+
+    Whatever follows from these follows from all.
+    """
+    schema = [triple for triple in reasoner.asserted() if triple[1] == _LABEL or is_schema(triple)]
+    facts: dict[Triple, None] = {}
+    near = seen = {term for term in terms if not is_literal(term)}
+    for _ in range(_NEAR):
+        further: set[Term] = set()
+        for term in sorted(near):
+            for triple in (*reasoner.asserted(term), *reasoner.asserted(None, None, term)):
+                s, p, o = triple
+                if triple in facts or is_schema(triple) or (p == TYPE and s not in near):
+                    continue
+                if len(facts) >= _FACTS:
+                    break
+                facts[triple] = None
+                further.update((s,) if p == TYPE or is_literal(o) else (s, o))
+        near, seen = further - seen, seen | further
+    return [*schema, *facts]
+
+
+def why_entailed(
+    reasoner: Reasoner, triple: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
+) -> Explanation | None:
+    """Why a triple follows that no rule derives; None if no proof is found in time. `words` tell of it.
+
+    The proof is by refutation, generic individuals and names for what must exist, so it has no steps; its
+    support is minimal unless making it smaller takes too long.
+    """
+    if not entails(reasoner, [triple], Effort(patience_s)):
+        return None
+    known = set(reasoner.asserted())
+    effort = Effort(patience_s, traced=True)
+    entails(reasoner, [triple], effort)
+    support = [one for one in effort.seen if one in known]
+    if not _suffice(support, triple):
+        support = sorted(known)
+    support = _shrunk(support, triple, time.monotonic() + patience_s)
+    text = following(triple, support, words or reasoner.words)
+    return Explanation(conclusion=triple, support=tuple(support), steps=(), text=text)
+
+
+def _suffice(triples: Sequence[Triple], goal: Triple) -> bool:
+    try:
+        return entails(Reasoner(triples), [goal], Effort(PATIENCE_S))
+    except Inconsistent:
+        return False
+
+
+def _shrunk(triples: list[Triple], goal: Triple, until_s: float) -> list[Triple]:
+    """Fewer triples that suffice, in their order: first large parts are left out, then single triples."""
+    size = len(triples)
+    while size > 1 and time.monotonic() < until_s:
+        size = (size + 1) // 2
+        start = 0
+        while start < len(triples) and time.monotonic() < until_s:
+            rest = triples[:start] + triples[start + size :]
+            if _suffice(rest, goal):
+                triples = rest
+            else:
+                start += size
+    return triples

@@ -1,0 +1,101 @@
+"""A model's shape at the size of an entity."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from ontology.model_shapes import ConvexPart, Interior, ModelShape, Surface, shapes
+from schemas.entities import Size, Vector
+
+
+@lru_cache(maxsize=8192)
+def fitted(model: str, size: Size) -> ModelShape:
+    """The shape of a model stretched to a size; the whole box of what has no model."""
+    own = shapes().get(model) if model else None
+    if own is None:
+        return box(size)
+    if _is_turned(own.size_m, size):
+        own = _quarter_turned(own)
+    if own.size_m == size:
+        return own
+    fx, fy, fz = (mine / its for mine, its in zip(size, own.size_m, strict=True))
+
+    def stretched(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
+        return tuple((fx * x, fy * y, fz * z) for x, y, z in vectors)
+
+    return ModelShape(
+        size_m=size,
+        surfaces=tuple(
+            Surface(
+                height=fz * s.height,
+                low=(fx * s.low[0], fy * s.low[1]),
+                high=(fx * s.high[0], fy * s.high[1]),
+                fill=s.fill,
+            )
+            for s in own.surfaces
+        ),
+        interiors=tuple(
+            Interior(low=low, high=high, fill=i.fill, open=i.open)
+            for i in own.interiors
+            for low, high in (stretched((i.low, i.high)),)
+        ),
+        parts=tuple(
+            ConvexPart(
+                centre=stretched((p.centre,))[0],
+                straight=stretched(p.straight),
+                round=stretched(p.round),
+                points=stretched(p.points),
+            )
+            for p in own.parts
+        ),
+    )
+
+
+def box(size: Size) -> ModelShape:
+    """A box carries things on all of its top."""
+    x, y, z = (extent / 2 for extent in size)
+    return ModelShape(
+        size_m=size,
+        surfaces=(Surface(height=2 * z, low=(-x, -y), high=(x, y)),),
+        parts=(ConvexPart(centre=(0.0, 0.0, z), straight=((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z))),),
+    )
+
+
+def _is_turned(own: Size, size: Size) -> bool:
+    """Whether the simulator meets a size by turning the model a quarter (sim_node/models/library.py)."""
+    longer, shorter = max(own[:2]), min(own[:2])
+    return (own[0] - own[1]) * (size[0] - size[1]) < 0.0 and longer > 1.3 * shorter
+
+
+def _quarter_turned(shape: ModelShape) -> ModelShape:
+    """The shape turned by -90 degrees about z: (x, y) becomes (y, -x)."""
+    x, y, z = shape.size_m
+
+    def turned(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
+        return tuple((y, -x, z) for x, y, z in vectors)
+
+    return ModelShape(
+        size_m=(y, x, z),
+        surfaces=tuple(
+            Surface(height=s.height, low=(s.low[1], -s.high[0]), high=(s.high[1], -s.low[0]), fill=s.fill)
+            for s in shape.surfaces
+        ),
+        interiors=tuple(
+            Interior(
+                low=(i.low[1], -i.high[0], i.low[2]),
+                high=(i.high[1], -i.low[0], i.high[2]),
+                fill=i.fill,
+                open=i.open,
+            )
+            for i in shape.interiors
+        ),
+        parts=tuple(
+            ConvexPart(
+                centre=turned((p.centre,))[0],
+                straight=turned(p.straight),
+                round=turned(p.round),
+                points=turned(p.points),
+            )
+            for p in shape.parts
+        ),
+    )

@@ -1,0 +1,118 @@
+"""Zenoh's access control, made from the table of roles and the names that certificates were issued to.
+
+A rule lets a message through only if its key expression includes the message's, so everything is denied and
+then some allowed. What is declared passes as it was declared: a client that does not hear of the queryable
+`semmap/as/*/cmd/*` never finds anybody who serves its own commands.
+
+`ingress` is what the router takes from somebody, `egress` what it passes on to them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Final, Literal
+
+from nodes.identity.register import Member
+from schemas import keys, roles
+from schemas.roles import Role
+
+Flow = Literal["ingress", "egress"]
+
+_EVERY_MESSAGE: Final = (
+    *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
+    *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
+)
+_EVERYTHING: Final = f"{keys.ROOT}/**"
+_PRESENCE: Final = keys.live_key("*")
+_BRANCHES: Final = sorted({f"{'/'.join(grant.key.split('/')[:2])}/**" for grant in roles.GRANTS})
+"""Every branch of keys but the one where commands are asked under a name."""
+_LOSSLESS: Final = frozenset(topic.key for topic in keys.TOPICS if topic.qos == "lossless")
+
+
+def access_control(members: Iterable[Member]) -> dict[str, Any]:
+    """The value of Zenoh's `access_control` that admits these members as their roles say."""
+    by_role: dict[Role, list[str]] = {}
+    for member in members:
+        by_role.setdefault(member.role, []).append(member.name)
+    rules: list[dict[str, Any]] = []
+    policies: list[dict[str, Any]] = []
+    subjects: list[dict[str, Any]] = []
+    for role, names in by_role.items():
+        of_role = _of_node() if role == "node" else _of_outsider(role)
+        policies.append(_policy(rules, role, of_role, [f"as {name}" for name in names]))
+        for name in names:
+            subjects.append({"id": f"as {name}", "cert_common_names": [name]})
+            policies.append(_policy(rules, f"as {name}", _of_name(name), [f"as {name}"]))
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+Rule = tuple[Flow, tuple[str, ...], Sequence[str]]
+"""A flow, kinds of messages, key expressions."""
+
+
+def _of_name(name: str) -> list[Rule]:
+    """Everybody asks for commands as themselves, and as nobody else."""
+    mine = f"{keys.commands_as(name)}/*"
+    return [("ingress", ("query",), [mine]), ("egress", ("reply",), [mine])]
+
+
+def _of_outsider(role: Role) -> list[Rule]:
+    followed, published = roles.granted(role, "follow"), roles.granted(role, "publish")
+    asked = roles.granted(role, "ask")
+    recovered = [keys.recovery(key) for key in followed if key in _LOSSLESS]
+    seen = [_PRESENCE, *recovered]
+    return [
+        ("ingress", ("declare_subscriber",), [*followed, *recovered]),
+        ("egress", ("put", "delete"), [*followed, *recovered]),
+        ("ingress", ("query",), [*asked, *recovered]),
+        ("egress", ("reply",), [*asked, *followed, *recovered]),
+        ("egress", ("declare_queryable",), [*_declared(asked), f"{keys.commands_as()}/*", *recovered]),
+        ("ingress", ("declare_liveliness_subscriber", "liveliness_query"), seen),
+        ("egress", ("liveliness_token",), seen),
+        ("ingress", ("put",), published),
+        ("egress", ("declare_subscriber",), published),
+    ]
+
+
+def _of_node() -> list[Rule]:
+    """A node does everything but ask in another's name."""
+    recovered = keys.recovery(_EVERYTHING)
+    everything = [_EVERYTHING, _PRESENCE, recovered]
+    but_queries = tuple(message for message in _EVERY_MESSAGE if message != "query")
+    return [
+        ("ingress", but_queries, everything),
+        ("ingress", ("query",), [*_BRANCHES, recovered]),
+        ("egress", _EVERY_MESSAGE, everything),
+    ]
+
+
+def _declared(asked: Iterable[str]) -> list[str]:
+    """The queryables that serve these keys, as nodes declare them: for all verbs of a prefix."""
+    return list(dict.fromkeys(f"{key.rpartition('/')[0]}/*" for key in asked))
+
+
+def _policy(
+    rules: list[dict[str, Any]], name: str, allowed: Iterable[Rule], subjects: list[str]
+) -> dict[str, Any]:
+    """Add the rules, under ids made of `name`; the policy that gives them to the subjects."""
+    ids = []
+    for number, (flow, messages, key_exprs) in enumerate(allowed):
+        if not key_exprs:
+            continue
+        ids.append(f"{name} {number}")
+        rules.append(
+            {
+                "id": ids[-1],
+                "permission": "allow",
+                "flows": [flow],
+                "messages": list(messages),
+                "key_exprs": list(key_exprs),
+            }
+        )
+    return {"rules": ids, "subjects": subjects}

@@ -1,0 +1,38 @@
+"""A model's parts as the knowledge base knows them: segments, ellipsoids and hulls, summed."""
+
+from __future__ import annotations
+
+from nodes.sim_node.models.parts import Floats, Part, Shape, rotation_matrix
+from ontology.model_shapes import ConvexPart, Corner
+
+
+def convex_part(part: Part) -> ConvexPart:
+    """A colliding part; of a mesh its convex hull, which is what collides."""
+    rotation = rotation_matrix(part.turn)
+    x, y, z = _columns(rotation * part.half)
+    match part.shape:
+        case Shape.BOX:
+            return ConvexPart(centre=part.centre, straight=(x, y, z))
+        case Shape.ELLIPSOID:
+            return ConvexPart(centre=part.centre, round=(x, y, z))
+        case Shape.CYLINDER:
+            return ConvexPart(centre=part.centre, straight=(z,), round=(x, y))
+        case Shape.CAPSULE:
+            return ConvexPart(
+                centre=part.centre, straight=(z,), round=tuple(_columns(rotation * part.half[0]))
+            )
+        case Shape.MESH:
+            return ConvexPart(centre=part.centre, points=tuple(_columns((_hull(part) @ rotation.T).T)))
+
+
+def _columns(matrix: Floats) -> list[Corner]:
+    return [(float(x), float(y), float(z)) for x, y, z in matrix.T]
+
+
+def _hull(part: Part) -> Floats:
+    """The corners of a mesh's hull: (N, 3) [m]."""
+    from scipy.spatial import ConvexHull
+
+    assert part.mesh is not None
+    corners: Floats = part.mesh.vertices[ConvexHull(part.mesh.vertices).vertices]
+    return corners

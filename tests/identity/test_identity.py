@@ -1,0 +1,77 @@
+"""A certificate is read as the library for certificates reads it, without it."""
+
+from __future__ import annotations
+
+import contextlib
+from datetime import UTC, datetime
+
+import pytest
+from cryptography import x509
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nodes.identity import Identity, authority, certificate
+from nodes.identity.register import LiveRegister, Register
+from schemas import errors
+
+
+def test_name_role_and_end_are_those_of_the_certificate(folder):
+    for name, member in Register.read(folder).members.items():
+        pem = (folder / f"{name}.crt").read_bytes()
+        assert certificate.read(pem) == (name, member.role, member.expires)
+        assert member.expires == x509.load_pem_x509_certificate(pem).not_valid_after_utc
+
+
+def test_a_certificate_of_the_far_future_is_read(folder):
+    """From 2050 on, times are written in another way."""
+    authority.add(folder, "late", "viewer", days=365 * 40)
+    assert certificate.read((folder / "late.crt").read_bytes()).expires.year > 2060
+
+
+@given(st.binary(max_size=300))
+def test_what_is_no_certificate_is_told(content):
+    with pytest.raises(ValueError, match=r"certificate|cut short|unpack"):
+        certificate.read(content)
+
+
+@given(data=st.data())
+def test_a_damaged_certificate_never_raises_anything_else(made_once, data):
+    pem = bytearray((made_once / "vera.crt").read_bytes())
+    at = data.draw(st.integers(30, len(pem) - 30))
+    pem[at] = data.draw(st.integers(33, 126))
+    with contextlib.suppress(ValueError):
+        certificate.read(bytes(pem))
+
+
+@pytest.mark.parametrize("path", ["vera", "vera.crt", "vera.key"])
+def test_an_identity_is_named_by_folder_and_name(folder, path):
+    identity = Identity.read(folder / path)
+    assert (identity.name, identity.role) == ("vera", "viewer")
+    assert identity.certificate == str(folder / "vera.crt")
+
+
+@pytest.mark.parametrize("missing", ["vera.crt", "vera.key", "ca.crt"])
+def test_a_missing_file_is_named(folder, missing):
+    (folder / missing).unlink()
+    with pytest.raises(errors.BadFile, match=missing):
+        Identity.read(folder / "vera")
+
+
+def test_an_expired_certificate_is_told_before_anything_is_asked(folder):
+    authority.add(folder, "old", "viewer", days=0)
+    with pytest.raises(errors.NoAnswer, match=r"expired on \d{4}-.*semmap keys renew old"):
+        Identity.read(folder / "old").require_valid()
+    Identity.read(folder / "vera").require_valid()
+
+
+def test_a_live_register_sees_what_is_added_and_revoked(folder):
+    live = LiveRegister(folder)
+    assert (live.role_of("vera"), live.role_of("bob")) == ("viewer", None)
+    authority.add(folder, "bob", "operator")
+    assert live.role_of("bob") == "operator"
+    authority.revoke(folder, "vera")
+    assert live.role_of("vera") is None
+    before = live.now
+    (folder / "identities.json").write_text("{")
+    assert live.now is before  # what cannot be read changes nothing
+    assert live.now.members["bob"].expires > datetime.now(UTC)

@@ -1,0 +1,181 @@
+"""Whatever is read line by line is what Oxigraph reads; whatever it would refuse is not read."""
+
+import pyoxigraph
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from nodes.kb_node.documents import plain_turtle, rdf
+from ontology import vocabulary as v
+from schemas import errors
+
+HEAD = (
+    f"@prefix : <{v.ABOX}> .\n@prefix dm: <{v.TBOX}> .\n@prefix xsd: <{v.XSD}> .\n"
+    "@prefix odd: <http://x/a/../b?c=> .\n@prefix host: <http://x> .\n"
+)
+SUBJECTS = st.sampled_from(
+    [":cup1", "<http://x/y#z>", "_:b1", "_:c.d", "odd:a", "host:b", "<y>", "<http://x/./y>"]
+)
+PREDICATES = st.sampled_from(["a", "dm:hasPosition", ":p-", "<http://x/p>", "<urn:a:b>", "odd:p"])
+OBJECTS = st.sampled_from(
+    [
+        *(
+            ":cup1",
+            "dm:3Three_Dim_Size",
+            "dm:a.b",
+            "dm:a-b",
+            "_:b1",
+            "host:b",
+            "odd:b",
+            ":caffè",
+            ":a\\,b",
+            "()",
+        ),
+        *("<http://x:80/y>", "<rel>", "<urn:x>", "<http://x/%20y>", "<http://x/\\u0041>"),
+        *(
+            '"1.50"^^xsd:float',
+            '"x"^^xsd:string',
+            '"x"^^<urn:x>',
+            '"x"^^dm:mine',
+            '"Tasse"@de',
+            '"Tasse"@DE-at',
+        ),
+        *("1", "-01", "+1.5", ".5", "1e3", "1.E3", "1.0e-7", "true", "false"),
+        *('"coffee"', '""', '"caffè"', r'"a\nb"', r'"a\u0041"', r'"\""'),
+        *('"a cup, of; tea ."', '"# no comment"', '"it\'s"', '"a\tb"'),
+    ]
+)
+BREAKS = st.sampled_from([" ", "\n", "\n\t", "  ", " # said\n", "\r\n"])
+BAD = [
+    "[]",
+    ":a.",
+    "<a b>",
+    "un:known",
+    '"open',
+    "'x'",
+    '"""x"""',
+    "a",
+    "a:",
+    "@en",
+    '"x"^^',
+    "{",
+    "<<:a",
+    "1.",
+    ":a#b",
+]
+
+
+def slowly(content):
+    """What Oxigraph reads."""
+    quads = pyoxigraph.parse(content, pyoxigraph.RdfFormat.TURTLE, base_iri=v.ABOX)
+    return rdf._triples(quads, "f", lambda _: None)
+
+
+def quickly(content):
+    return plain_turtle.read(content, rdf.prefixes(content), "f", lambda _: None)
+
+
+@st.composite
+def statements(draw):
+    """Statements in Turtle, broken into lines anywhere."""
+    text = ""
+    for _ in range(draw(st.integers(1, 4))):
+        words = [draw(SUBJECTS)]
+        for number in range(draw(st.integers(1, 3))):
+            words += [*([";"] if number else []), draw(PREDICATES), draw(OBJECTS)]
+            for _ in range(draw(st.integers(0, 2))):
+                words += [",", draw(OBJECTS)]
+        words += draw(st.sampled_from([["."], [";", "."]]))
+        plain = draw(st.booleans())
+        text += "".join(word + (" " if plain else draw(BREAKS)) for word in words)[:-1] + "\n"
+    return text
+
+
+@settings(deadline=None, max_examples=300)
+@given(statements())
+@example(":cup1 a dm:Cup .\n:cup1 a dm:Cup ;\n\ta :x , :y ;\n\n\t. # done\n")
+def test_it_is_what_oxigraph_reads(text):
+    content = (HEAD + text).encode()
+    read = quickly(content)
+    if read is not None:
+        assert read == slowly(content)
+
+
+@settings(deadline=None, max_examples=100)
+@given(statements(), st.sampled_from(BAD), st.integers(0, 60))
+def test_what_oxigraph_refuses_is_not_read(text, bad, at):
+    words = text.split(" ")
+    words.insert(min(at, len(words)), bad)
+    content = (HEAD + " ".join(words)).encode()
+    read = quickly(content)
+    if read is not None:
+        assert read == slowly(content)  # which raises for what is not valid
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ':cup1 a dm:Cup .\r\n:cup1 dm:lexicalReference "cup" .\r\n',
+        ":cup1 a dm:Cup ;\n\tdm:hasPosition :p , :q ;\n\tdm:x 1.5 .\n# the end",
+        ":cup1 a dm:Cup,\n        dm:Thing ;\n    dm:x 1,\n        2 .\n",
+        "###  http://x/y\n:cup1 rdf:type dm:Cup ;\n".replace("rdf:type", "a") + '      dm:label "Tasse"@de .',
+        "<http://x/y> <http://x/p> _:a .\n",
+    ],
+)
+def test_what_programs_write_is_read(text):
+    content = (HEAD + text).encode()
+    assert quickly(content) == slowly(content)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":a :p [ :q 1 ] .",
+        ":a :p (1 2) .",
+        ':a :p """two\nlines""" .',
+        "@base <http://y/> .\n:a :p <b> .",
+        ":a :p 1 .\n@prefix : <http://y/> .\n:a :p 1 .",
+        "PREFIX x: <http://y/>\n:a :p 1 .",
+    ],
+)
+def test_what_is_not_plain_is_left_to_oxigraph(text):
+    assert quickly((HEAD + text).encode()) is None
+
+
+@pytest.mark.parametrize(
+    "text", [":a :p 1", ":a :p .", ":a :p 1 ;", '"a" :p 1 .', ":a 1 1 .", ":a _:p 1 .", ":a :p 1 2 ."]
+)
+def test_a_fault_is_left_to_oxigraph(text):
+    content = (HEAD + text).encode()
+    assert quickly(content) is None
+    with pytest.raises(SyntaxError):
+        slowly(content)
+
+
+def test_pieces_end_anywhere_between_lines(monkeypatch):
+    content = (
+        HEAD + "".join(f':cup{i} a dm:Cup ;\n\tdm:x "{i}"@de ,\n\t\t{i} .\n' for i in range(50))
+    ).encode()
+    expected = slowly(content)
+    told = []
+    for size in range(1, 60, 7):
+        monkeypatch.setattr(plain_turtle, "_PIECE", size)
+        assert plain_turtle.read(content, rdf.prefixes(content), "f", told.append) == expected
+    assert max(told) == len(expected)
+
+
+def test_many_words_do_not_fill_the_memory(monkeypatch):
+    monkeypatch.setattr(plain_turtle, "_REMEMBERED", 3)
+    content = (HEAD + "".join(f":cup{i} a dm:Cup .\n:cup{i} dm:x {i} .\n" for i in range(20))).encode()
+    assert quickly(content) == slowly(content)
+
+
+def test_a_large_document_is_read_so(monkeypatch):
+    monkeypatch.setattr(rdf, "_LARGE", 0)
+    content = (HEAD + ":cup1 a dm:Cup .\n_:b dm:x :cup1 .\n").encode()
+    assert rdf.parse(content, "f.ttl", label_prefix="f") == slowly(content)
+    assert ("_:fb", v.dm("x"), v.entity_iri("cup1")) in rdf.parse(content, "f.ttl", label_prefix="f")
+    with pytest.raises(errors.BadFile, match="line 9"):
+        rdf.parse(content + b":cup2 a\n.", "f.ttl")
+    with pytest.raises(errors.BadFile, match=r"not UTF-8 text \(line 6"):
+        rdf.parse(content.replace(b"Cup", b"C\xfcp"), "f.ttl")

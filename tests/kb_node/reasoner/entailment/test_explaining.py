@@ -1,0 +1,83 @@
+"""What follows although no rule derives it, with the asserted triples that it takes."""
+
+import pytest
+
+from nodes.kb_node.reasoner import Reasoner, entails
+from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed
+from tests.kb_node.reasoner.graphs import household, triple, triples
+
+TBOX = """
+:Mug rdfs:subClassOf :Cup . :Cup rdfs:subClassOf :Thing ,
+ [ owl:onProperty :part ; owl:someValuesFrom :Handle ] .
+:Wall rdfs:subClassOf :Part . :Thing owl:disjointWith :Part .
+:Grippable owl:onProperty :part ; owl:someValuesFrom :Handle . :Other rdfs:subClassOf :Cup .
+:on a owl:ObjectProperty , owl:AsymmetricProperty . :under owl:inverseOf :on .
+:knows a owl:ReflexiveProperty . :knows rdfs:subPropertyOf :meets .
+:mug1 a :Mug . :mug2 a :Mug ; :on :mug1 . :wall1 a :Wall .
+"""
+
+
+@pytest.mark.parametrize(
+    ("goal", "text"),
+    [
+        (":Mug owl:disjointWith :Wall", "nothing is both a Mug and a Wall, because every "),
+        (
+            ":on a owl:IrreflexiveProperty",
+            "nothing is on itself, because if one thing is on another, ",
+        ),
+        (
+            ":under a owl:AsymmetricProperty",
+            "if one thing is under another, the other is not under it",
+        ),
+        (":mug1 a :Grippable", "mug1 is a Grippable, because"),
+        (":Mug rdfs:subClassOf :Grippable", "every Mug is a Grippable, because"),
+        (":mug1 :meets :mug1", "mug1 meets itself, because "),
+        (":mug1 owl:topObjectProperty :wall1", "mug1 has top object property wall1 (always)."),
+    ],
+)
+def test_the_support_is_enough_and_no_less_is(goal, text):
+    reasoner = Reasoner(triples(TBOX))
+    goal = triple(goal)
+    assert not reasoner.holds(goal)
+    found = why_entailed(Reasoner(nearby(reasoner, goal[::2])), goal)
+    assert found.conclusion == goal
+    assert found.text.startswith(text), found.text
+    assert set(found.support) <= set(reasoner.asserted())
+    assert entails(Reasoner(found.support), [goal])
+    for left_out in found.support:
+        assert not entails(Reasoner([one for one in found.support if one != left_out]), [goal])
+
+
+@pytest.mark.parametrize("goal", [":mug1 :on :mug2", ":mug1 a :Other", ":Cup rdfs:subClassOf :Mug"])
+def test_what_does_not_follow_has_no_proof(goal):
+    reasoner = Reasoner(triples(TBOX))
+    before = set(reasoner.asserted())
+    assert why_entailed(reasoner, triple(goal)) is None
+    assert set(reasoner.asserted()) == before
+
+
+def test_only_the_facts_nearby_are_looked_at():
+    told = triples(TBOX + "".join(f":mug{i} a :Mug ; :on :table{i} . " for i in range(3, 300)))
+    reasoner = Reasoner(told)
+    near = nearby(reasoner, triple(":mug3 :on :table3")[::2])
+    assert set(triples(":mug3 a :Mug ; :on :table3 .")) <= set(near)
+    assert not {t for t in near if "mug4>" in t[0]}
+
+
+def test_a_value_that_is_there_needs_no_other_name():
+    """Else an individual would be the same as a value, and everything be worked out anew, in seconds."""
+    reasoner = Reasoner(
+        [
+            *household(),
+            *triples(""":Full rdfs:subClassOf [ owl:onProperty :mass ;
+        owl:someValuesFrom xsd:float ] . :mass a owl:DatatypeProperty , owl:FunctionalProperty .
+        :thing1 a :Full ; :mass "1.5"^^xsd:float ."""),
+        ]
+    )
+    engine = reasoner._engine
+    seen = []
+    supposing = reasoner.supposing
+    reasoner.supposing = lambda *given, **how: seen.append(reasoner._engine) or supposing(*given, **how)
+    assert not entails(reasoner, [triple(":thing1 a :Elsewhere")])
+    assert seen
+    assert all(one is engine for one in seen)

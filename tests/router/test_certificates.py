@@ -1,0 +1,129 @@
+"""Who gets no connection, and who gets one that carries nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import socket
+import ssl
+import time
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from nodes import bus
+from nodes.identity import Identity, authority
+from schemas import errors, keys
+from tests.conftest import free_endpoint, until
+from tests.router.conftest import opened
+
+
+@pytest.fixture
+def served(sessions):
+    def answer(query):
+        with query:
+            query.reply(query.key_expr, "served")
+
+    queryable = sessions["coordinator"].declare_queryable(f"{keys.commands_as()}/*", answer)
+    yield
+    queryable.undeclare()
+
+
+def asked(session, name):
+    return [r.ok.payload.to_string() for r in session.get(f"{keys.commands_as(name)}/get") if r.ok]
+
+
+@pytest.fixture
+def others(tmp_path):
+    """The keys of another authority."""
+    folder = tmp_path / "others"
+    authority.init(folder)
+    authority.add(folder, "operator", "operator")
+    return folder
+
+
+@pytest.fixture
+def changed(folder, tmp_path):
+    """A copy of the keys, of which the router has not heard."""
+    return shutil.copytree(folder, tmp_path / "changed")
+
+
+def refused(endpoint, identity):
+    with contextlib.ExitStack() as stack, pytest.raises(errors.SemmapError) as caught:
+        opened(stack, endpoint, identity, patience_s=0.5)
+    return caught.value
+
+
+def test_a_certificate_of_another_authority_opens_nothing(endpoint, others):
+    assert isinstance(refused(endpoint, Identity.read(others / "operator")), errors.NoAnswer)
+
+
+def test_trusting_the_right_authority_with_anothers_certificate_opens_nothing(folder, endpoint, others):
+    stranger = replace(Identity.read(others / "operator"), authority=str(folder / "ca.crt"))
+    assert isinstance(refused(endpoint, stranger), errors.NoAnswer)
+
+
+def test_an_expired_certificate_opens_nothing(changed, endpoint):
+    authority.add(changed, "late", "operator", days=0)
+    assert isinstance(refused(endpoint, Identity.read(changed / "late")), errors.NoAnswer)
+
+
+def test_no_certificate_opens_nothing(folder, endpoint):
+    """With TLS 1.3 it is told after the client's own handshake, by the first thing that comes back."""
+    host, _, port = endpoint.removeprefix("tls/").rpartition(":")
+    context = ssl.create_default_context(cafile=str(folder / "ca.crt"))
+    with (
+        socket.create_connection((host, int(port)), timeout=5) as plain,
+        context.wrap_socket(plain, server_hostname=host) as link,
+        pytest.raises(ssl.SSLError, match=r"(?i)certificate.required"),
+    ):
+        link.recv(1)
+
+
+def test_plain_tcp_opens_nothing(endpoint):
+    assert isinstance(refused(endpoint.replace("tls/", "tcp/"), None), errors.NoAnswer)
+
+
+def test_a_certificate_that_is_not_in_the_register_carries_nothing(changed, endpoint, served, sessions):
+    """As one that was revoked: it is of the right authority, so it opens a connection."""
+    authority.add(changed, "unheard-of", "admin")
+    assert asked(sessions["operator"], "operator") == ["served"]
+    with contextlib.ExitStack() as stack:
+        session = opened(stack, endpoint, Identity.read(changed / "unheard-of"))
+        assert asked(session, "unheard-of") == []
+        assert asked(session, "operator") == []
+        assert list(session.liveliness().get(keys.live_key("*"))) == []
+
+
+@pytest.mark.parametrize("impostor", ["operator", "node", "kb_node"])
+def test_only_the_router_can_be_a_server(folder, impostor):
+    """Whoever listens with another certificate of the same authority is not taken for the router."""
+    endpoint = bus.over_tls(free_endpoint())
+    posing = bus.Network(
+        mode="router", listen=(endpoint,), connect=(), identity=Identity.read(folder / impostor)
+    )
+    with bus.open_session(posing):
+        assert isinstance(refused(endpoint, Identity.read(folder / "viewer")), errors.NoAnswer)
+
+
+def test_a_router_is_trusted_at_its_own_hosts_only(folder, endpoint):
+    _, _, port = endpoint.rpartition(":")
+    with contextlib.ExitStack() as stack:
+        opened(stack, f"tls/localhost:{port}", Identity.read(folder / "viewer"))
+    assert isinstance(refused(f"tls/127.0.0.2:{port}", Identity.read(folder / "viewer")), errors.NoAnswer)
+
+
+def test_a_link_ends_when_the_certificate_expires(changed, folder, endpoint, served, monkeypatch):
+    """A name of the register, with a certificate that is about to expire."""
+    soon = datetime.now(UTC) + timedelta(seconds=4)
+    monkeypatch.setattr(authority, "_end", lambda days: soon)
+    authority.renew(changed, "viewer")
+    monkeypatch.undo()
+    with contextlib.ExitStack() as stack:
+        session = opened(stack, endpoint, Identity.read(changed / "viewer"))
+        assert asked(session, "viewer") == ["served"]
+        until(lambda: asked(session, "viewer") == [], "the end of the link")
+        assert datetime.now(UTC) > soon - timedelta(seconds=1)
+        time.sleep(1)
+        assert asked(session, "viewer") == []

@@ -1,0 +1,105 @@
+"""The router's process: it follows the register, and everybody finds it again."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from nodes import bus
+from nodes.identity import Identity, authority
+from nodes.supervisor.settings import Settings
+from schemas import codec, keys
+from schemas.commits import Effects
+from schemas.health import Health
+from tests.conftest import PATIENCE_S, free_endpoint, until
+from tests.router.conftest import opened
+
+
+@pytest.fixture
+def own(folder, tmp_path):
+    """Keys of a test's own."""
+    return shutil.copytree(folder, tmp_path / "K")
+
+
+@pytest.fixture
+def routed(own, tmp_path):
+    """Where the router's process listens."""
+    endpoint = bus.over_tls(free_endpoint())
+    settings = Settings(
+        data=str(tmp_path), tbox="none", abox=None, world="none", listen=endpoint, secure=str(own)
+    )
+    path = tmp_path / "settings.json"
+    path.write_bytes(codec.encode_json(settings))
+    command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", keys.ROUTER, str(path)]
+    with subprocess.Popen(command) as process:
+        yield endpoint
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(PATIENCE_S) == 0
+
+
+@pytest.fixture
+def joined(own, routed):
+    """Of a name, its session."""
+    with contextlib.ExitStack() as stack:
+        yield lambda name: opened(stack, routed, Identity.read(own / name), patience_s=PATIENCE_S)
+
+
+def asked(session, name):
+    return [r.ok.payload.to_string() for r in session.get(f"{keys.commands_as(name)}/get", timeout=5) if r.ok]
+
+
+def serve(session):
+    def answer(query):
+        with query:
+            query.reply(query.key_expr, "served")
+
+    session.declare_queryable(f"{keys.commands_as()}/*", answer)
+
+
+def test_who_is_added_is_let_in_and_who_is_revoked_is_shut_out(own, joined):
+    serve(joined("coordinator"))
+    viewer = joined("viewer")
+    until(lambda: asked(viewer, "viewer"), "an answer")
+    authority.add(own, "bob", "operator")
+    bob = joined("bob")
+    until(lambda: asked(bob, "bob"), "an answer to the one who was added")
+    until(lambda: asked(viewer, "viewer"), "an answer to the one who was there")
+    authority.revoke(own, "viewer")
+    until(lambda: not asked(viewer, "viewer"), "silence")
+    until(lambda: asked(bob, "bob"), "an answer after that")
+    assert asked(viewer, "viewer") == []
+
+
+def test_a_follower_loses_no_commit_while_the_register_changes(own, joined):
+    kb_node, viewer = joined("kb_node"), joined("viewer")
+    commits = bus.publisher(kb_node, keys.COMMIT)
+    seen: list[int] = []
+    bus.follow(viewer, keys.EFFECTS, lambda _, commit: seen.append(commit.seq))
+    seq = 0
+
+    def one_more():
+        nonlocal seq
+        seq += 1
+        commits.put(codec.encode(Effects(seq=seq, id=str(seq))))
+        return bool(seen)
+
+    until(one_more, "the first commit")
+    began = seen[0]
+    for n in range(3):
+        authority.add(own, f"guest{n}", "viewer")  # and the router begins anew, between any two of these
+        guest, heard = joined(f"guest{n}"), []
+        bus.follow(guest, keys.EFFECTS, lambda _, commit, heard=heard: heard.append(commit.seq))
+        until(lambda heard=heard: one_more() and heard, "a commit for the guest")
+    until(lambda: seen and seen[-1] == seq, "the last commit")
+    assert seen == list(range(began, seq + 1))
+
+
+def test_it_beats_like_a_node(joined):
+    beats: list[Health] = []
+    bus.follow(joined("viewer"), keys.HEALTH, lambda _, health: beats.append(health))
+    until(lambda: any(b.node == keys.ROUTER and b.state == "ready" for b in beats), "a beat")

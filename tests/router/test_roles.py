@@ -1,0 +1,188 @@
+"""For every role and every key of the table: what is granted works, and nothing else does.
+
+Over a router with mutual TLS. What is refused makes no sound, so each refusal stands beside a grant that has
+just been heard: the same message of a node's, after it, which would have been overtaken.
+"""
+
+from __future__ import annotations
+
+import pytest
+import zenoh
+
+from schemas import keys, roles
+from schemas.roles import GRANTS, ROLES
+
+PATIENCE_S = 10.0
+FOLLOWED = {grant.key: grant.roles for grant in GRANTS if grant.may == "follow"}
+PUBLISHED = {grant.key: grant.roles for grant in GRANTS if grant.may == "publish"}
+ASKED = {grant.key: grant.roles for grant in GRANTS if grant.may == "ask"}
+
+
+def concrete(key_expr):
+    """A key of an expression."""
+    return key_expr.replace("*", "x")
+
+
+def may(role, key, table):
+    """Does any row of the table grant it?"""
+    return any(
+        role in granted and zenoh.KeyExpr(row).includes(zenoh.KeyExpr(key)) for row, granted in table.items()
+    )
+
+
+def settle(session):
+    """Whatever was declared or sent before on this session has been seen by the router when this returns."""
+    list(session.liveliness().get(keys.live_key("*")))
+
+
+@pytest.mark.parametrize("key_expr", FOLLOWED)
+@pytest.mark.parametrize("role", ROLES)
+def test_following(sessions, heard, role, key_expr):
+    witness = type(heard)()
+    subscribers = [
+        sessions[role].declare_subscriber(key_expr, heard),
+        sessions["coordinator"].declare_subscriber(key_expr, witness),
+    ]
+    try:
+        settle(sessions[role])
+        settle(sessions["coordinator"])
+        sessions["kb_node"].put(concrete(key_expr), b"")
+        assert witness.anything(PATIENCE_S)
+        allowed = role in FOLLOWED[key_expr]
+        assert heard.anything(PATIENCE_S if allowed else 0.1) == allowed
+    finally:
+        for subscriber in subscribers:
+            subscriber.undeclare()
+
+
+@pytest.mark.parametrize("key_expr", PUBLISHED)
+@pytest.mark.parametrize("role", ROLES)
+def test_publishing(sessions, heard, role, key_expr):
+    key = concrete(key_expr)
+    subscriber = sessions["coordinator"].declare_subscriber(key_expr, heard)
+    try:
+        settle(sessions["coordinator"])
+        settle(sessions[role])
+        sessions[role].put(key, b"")
+        settle(sessions[role])
+        allowed = role in PUBLISHED[key_expr]
+        assert heard.anything(PATIENCE_S if allowed else 0.1) == allowed
+    finally:
+        subscriber.undeclare()
+
+
+@pytest.fixture(scope="module")
+def served(sessions):
+    """Nodes serve all that can be asked, and say by which key."""
+
+    def answer(query):
+        with query:
+            query.reply(query.key_expr, str(query.key_expr))
+
+    prefixes = {**keys.SERVED_BY, keys.commands_as(): "coordinator"}
+    queryables = [sessions[node].declare_queryable(f"{p}/*", answer) for p, node in prefixes.items()]
+    yield
+    for queryable in queryables:
+        queryable.undeclare()
+
+
+def asked(session, key, patience_s=PATIENCE_S):
+    """What is answered to a query."""
+    return [reply.ok.payload.to_string() for reply in session.get(key, timeout=patience_s) if reply.ok]
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        *(key for key in ASKED if "*" not in key),
+        *(f"{prefix}/{verb}" for prefix in keys.SERVED_BY for verb in ("commit", "add", "spawn")),
+    ],
+)
+@pytest.mark.parametrize("role", ROLES)
+def test_asking(sessions, served, role, key):
+    assert asked(sessions["node"], key) == [key]
+    assert asked(sessions[role], key) == ([key] if may(role, key, ASKED) else [])
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_commands_are_asked_under_ones_own_name_only(sessions, served, role):
+    own = f"{keys.commands_as(role)}/get"
+    assert asked(sessions[role], own) == [own]
+    for other in {*ROLES, "kb_node"} - {role}:
+        assert asked(sessions[role], f"{keys.commands_as(other)}/get") == []
+
+
+@pytest.mark.parametrize("role", [role for role in ROLES if role != "node"])
+@pytest.mark.parametrize(
+    "key_expr", ["semmap/as/*/cmd/get", "semmap/as/**", "semmap/**", "**", "semmap/*/get"]
+)
+def test_a_wildcard_asks_nobody(sessions, served, role, key_expr):
+    replies = sessions[role].get(key_expr, target=zenoh.QueryTarget.ALL, timeout=PATIENCE_S)
+    assert [str(r.ok.key_expr) for r in replies if r.ok and str(r.ok.key_expr).startswith("semmap")] == []
+
+
+@pytest.mark.parametrize("role", [role for role in ROLES if role != "node"])
+@pytest.mark.parametrize(
+    "key",
+    [f"{keys.CMD}/add", f"{keys.commands_as()}/add", "semmap/as/operator/cmd/add", f"{keys.BRIDGE}/commit"],
+)
+def test_outsiders_serve_nothing(sessions, served, role, key):
+    """A queryable of theirs, however complete, is never asked."""
+    stolen = []
+
+    def steal(query):
+        stolen.append(str(query.key_expr))
+        query.drop()
+
+    concrete_key = key.replace("*", "operator")
+    queryable = sessions[role].declare_queryable(key, steal, complete=True)
+    try:
+        settle(sessions[role])
+        for target in (
+            zenoh.QueryTarget.ALL,
+            zenoh.QueryTarget.ALL_COMPLETE,
+            zenoh.QueryTarget.BEST_MATCHING,
+        ):
+            list(sessions["node"].get(concrete_key, target=target, timeout=PATIENCE_S))
+        assert stolen == []
+    finally:
+        queryable.undeclare()
+
+
+@pytest.mark.parametrize("role", [role for role in ROLES if role != "node"])
+def test_outsiders_do_not_pass_for_nodes(sessions, role):
+    forged, true = keys.live_key("sim_node", "forged"), keys.live_key("sim_node", "true")
+    tokens = [
+        sessions[role].liveliness().declare_token(forged),
+        sessions["sim_node"].liveliness().declare_token(true),
+    ]
+    try:
+        settle(sessions[role])
+        settle(sessions["sim_node"])
+        seen = {
+            str(r.ok.key_expr) for r in sessions["coordinator"].liveliness().get(keys.live_key("*")) if r.ok
+        }
+        assert true in seen
+        assert forged not in seen
+    finally:
+        for token in tokens:
+            token.undeclare()
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_everybody_sees_which_nodes_are_there(sessions, role):
+    token = sessions["kb_node"].liveliness().declare_token(keys.live_key("kb_node", "1"))
+    try:
+        settle(sessions["kb_node"])
+        seen = [str(r.ok.key_expr) for r in sessions[role].liveliness().get(keys.live_key("*")) if r.ok]
+        assert seen == [keys.live_key("kb_node", "1")]
+    finally:
+        token.undeclare()
+
+
+def test_the_table_has_every_key():
+    """A topic or a prefix that is new must say who may use it."""
+    topics = {topic.key for topic in keys.TOPICS}
+    assert topics == set(FOLLOWED) == set(PUBLISHED)
+    assert {f"{prefix}/*" for prefix in keys.SERVED_BY} <= set(ASKED)
+    assert roles.granted("viewer", "publish") == ()
