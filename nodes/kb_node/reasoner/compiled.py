@@ -233,9 +233,9 @@ class CompiledEngine:
                 if triple in self._schema_triples:
                     yield triple
 
-    def computed(self) -> Iterator[Triple]:
-        """The computed triples."""
-        return self._view.computed()
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
+        return self._view.computed(s, p, o)
 
     def is_computed(self, triple: Triple) -> bool:
         """Whether a triple is computed, and not asserted."""

@@ -174,7 +174,7 @@ class Reasoner:
         for triple in delete:
             after.pop(triple, None)
         after.update(dict.fromkeys(insert))
-        computed = dict.fromkeys(self._engine.computed())
+        computed = dict.fromkeys(self.computed())
         for triple in gone:
             computed.pop(triple, None)
         computed.update(dict.fromkeys(come))
@@ -218,7 +218,7 @@ class Reasoner:
         elif not anew:
             raise NotCompilable("the engine works everything out anew")
         said = engine.asserted(None, None, None)
-        self._engine = _engine_for([*said, *new], fast=self._fast, computed=engine.computed())
+        self._engine = _engine_for([*said, *new], fast=self._fast, computed=list(self.computed()))
         try:
             yield
         finally:
@@ -231,9 +231,15 @@ class Reasoner:
         found = self._engine.asserted(s, p, o)
         return chain(found, self._aside.match(s, p, o)) if self._aside else found
 
-    def computed(self) -> Iterator[Triple]:
-        """The computed triples that are not asserted besides."""
-        return self._engine.computed()
+    def computed(
+        self, s: Term | None = None, p: Term | None = None, o: Term | None = None
+    ) -> Iterator[Triple]:
+        """The computed triples of a pattern that are not asserted besides."""
+        return self._engine.computed(s, p, o)
+
+    def given(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterator[Triple]:
+        """What holds by itself: the asserted triples of a pattern, not set aside, and the computed."""
+        return chain(self._engine.asserted(s, p, o), self._engine.computed(s, p, o))
 
     def is_computed(self, triple: Triple) -> bool:
         """Whether a triple is computed, and not asserted."""
@@ -244,8 +250,8 @@ class Reasoner:
         return iter(self._aside)
 
     def held(self) -> Held:
-        """All that holds without following from anything, for a reasoner elsewhere: `Reasoner.of`."""
-        return Held(list(self._engine.asserted(None, None, None)), list(self._engine.computed()))
+        """All that is `given`, for a reasoner elsewhere: `Reasoner.of`."""
+        return Held(list(self._engine.asserted(None, None, None)), list(self.computed()))
 
     @classmethod
     def of(cls, held: Held) -> Reasoner:

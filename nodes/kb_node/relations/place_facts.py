@@ -111,21 +111,20 @@ class _Kept:
         for name in moved:
             concerned.update(dict.fromkeys(self.about.get(name, ())))
             concerned[name] = None
-        for solid in fresh:
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
-        for solid in left if self.rule.when_gone else ():
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
+        if len(concerned) < len(space.solids):  # else all are
+            for solid in (*fresh, *left) if self.rule.when_gone else fresh:
+                self._add_whom_it_concerns(space, solid, concerned)
         for name in concerned:
             before = self.of.get(name, ())
             now = self._work_out(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
 
-    def _whom_it_concerns(self, space: Space, solid: Solid) -> Iterator[str]:
+    def _add_whom_it_concerns(self, space: Space, solid: Solid, found: dict[str, None]) -> None:
         concerns = self.rule.concerns
         for other in space.around(solid, self.rule.margin_m(space.limits)):
-            if not other.is_place and concerns(space, solid, other):
-                yield other.name
+            if other.name not in found and not other.is_place and concerns(space, solid, other):
+                found[other.name] = None
 
     def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)

@@ -74,7 +74,7 @@ def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
         "closure": digest(closed),
         "entities": digest(entities),
     }
-    assert (FORMAT, found) == (2, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (3, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def digest(lines):

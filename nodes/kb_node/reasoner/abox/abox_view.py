@@ -37,11 +37,16 @@ class View:
             for edge in self._asserted_edges(s, p, o):
                 yield self._triple(edge)
 
-    def computed(self) -> Iterator[Triple]:
-        """The computed triples."""
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
         source, edge = self._store.source, -1
-        while (edge := source.find(COMPUTED, edge + 1)) >= 0:
-            yield self._triple(edge)
+        if s is None and p is None and o is None:
+            while (edge := source.find(COMPUTED, edge + 1)) >= 0:
+                yield self._triple(edge)
+            return
+        for edge in self._stored_edges(s, p, o):
+            if source[edge] == COMPUTED:
+                yield self._triple(edge)
 
     def is_computed(self, triple: Triple) -> bool:
         """Whether a triple is computed, and not asserted."""
@@ -109,15 +114,16 @@ class View:
         return self._abox.kinds.given(self._store.kind[node])
 
     def _asserted_edges(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[int]:
+        return (e for e in self._stored_edges(s, p, o) if self._store.source[e] == ASSERTED)
+
+    def _stored_edges(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[int]:
         store = self._store
         subject = None if s is None else store.find(s)
         object_ = None if o is None else store.find(o)
         predicate = None if p is None else self._schema.find_property(p)
         if (s and subject is None) or (o and object_ is None) or (p and predicate is None):
             return
-        for edge in self._edges(subject, predicate, object_):
-            if store.source[edge] == ASSERTED:
-                yield edge
+        yield from self._edges(subject, predicate, object_)
 
     def _edges(self, s: int | None, p: int | None, o: int | None) -> Iterator[int]:
         store = self._store

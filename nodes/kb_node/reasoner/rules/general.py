@@ -47,9 +47,13 @@ class GeneralEngine:
         """The asserted triples of a pattern."""
         return (triple for triple in self._closure.match(s, p, o) if triple in self._asserted)
 
-    def computed(self) -> Iterator[Triple]:
-        """The computed triples."""
-        return iter(self._computed)
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
+        return (
+            triple
+            for triple in self._computed
+            if all(mine in (None, its) for mine, its in zip((s, p, o), triple, strict=True))
+        )
 
     def is_computed(self, triple: Triple) -> bool:
         """Whether a triple is computed, and not asserted."""
