@@ -111,7 +111,7 @@ class _Kept:
         for name in moved:
             concerned.update(dict.fromkeys(self.about.get(name, ())))
             concerned[name] = None
-        if len(concerned) < len(space.solids):  # else all are
+        if not concerned.keys() >= space.solids.keys():
             for solid in (*fresh, *left) if self.rule.when_gone else fresh:
                 self._add_whom_it_concerns(space, solid, concerned)
         for name in concerned:

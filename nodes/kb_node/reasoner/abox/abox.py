@@ -101,12 +101,10 @@ class ABox:
             yield from self._among_all(node, group)
             return
         for member in self.members(node):
-            for p in group.out:
-                for edge in store.out.of(member, p):
-                    yield edge, member, store.object[edge]
-            for p in group.into:
-                for edge in store.into.of(member, p):
-                    yield edge, member, store.subject[edge]
+            for edge in store.out.among(member, group.out):
+                yield edge, member, store.object[edge]
+            for edge in store.into.among(member, group.into):
+                yield edge, member, store.subject[edge]
 
     def _among_all(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
         store, out, into = self.store, frozenset(group.out), frozenset(group.into)
@@ -146,12 +144,11 @@ class ABox:
             return NONE
         for x in self.members(one):
             for y in self.members(other):
-                for p in group.out:
-                    if (edge := store.edge(x, p, y)) != NONE:
-                        return edge
-                for p in group.into:
-                    if (edge := store.edge(y, p, x)) != NONE:
-                        return edge
+                edge = store.edge_of(x, group.out, y)
+                if edge == NONE:
+                    edge = store.edge_of(y, group.into, x)
+                if edge != NONE:
+                    return edge
         return NONE
 
     def is_plain(self, edge: int) -> bool:

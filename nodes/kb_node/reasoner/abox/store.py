@@ -274,14 +274,32 @@ class Store:
 
     def edge(self, subject: int, predicate: int, object_: int) -> int:
         """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""
-        if self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+        leaving = self.out.first(subject, predicate)
+        if leaving == NONE:
             return NONE
-        leaving, entering = self.out.of(subject, predicate), self.into.of(object_, predicate)
-        for one, other in zip(leaving, entering, strict=False):
-            if self.object[one] == object_:
-                return one
-            if self.subject[other] == subject:
-                return other
+        return self._edge(subject, object_, leaving, self.into.first(object_, predicate))
+
+    def edge_of(self, subject: int, predicates: tuple[int, ...], object_: int) -> int:
+        """The first edge of two with one of some predicates, or NONE."""
+        if not predicates or self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+            return NONE
+        leaving, entering = self.out.firsts(subject), self.into.firsts(object_)
+        for p in predicates:
+            if p in leaving and p in entering:
+                edge = self._edge(subject, object_, leaving[p], entering[p])
+                if edge != NONE:
+                    return edge
+        return NONE
+
+    def _edge(self, subject: int, object_: int, leaving: int, entering: int) -> int:
+        """The one among the edges that leave and that enter, from two of one predicate on."""
+        subjects, objects, after, before = self.subject, self.object, self.out.after, self.into.after
+        while leaving != NONE and entering != NONE:
+            if objects[leaving] == object_:
+                return leaving
+            if subjects[entering] == subject:
+                return entering
+            leaving, entering = after[leaving], before[entering]
         return NONE
 
 
