@@ -67,6 +67,18 @@ class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknow
     names: tuple[str, ...]
 
 
+class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a thing bears: all that stands on it or is inside it, what bears before what is borne.
+
+    Not what `leave` names, nor what only that bears. Refused for a place, and for what has no position.
+    """
+
+    VERB: ClassVar[str] = "load-of"
+
+    name: str
+    leave: tuple[str, ...] = ()
+
+
 class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The commits that these commands have made already; None for a command that has made none."""
 

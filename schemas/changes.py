@@ -151,6 +151,11 @@ def _values(stated: Pose | Stated | None) -> tuple[Value, ...]:
     return stated if isinstance(stated, tuple) else (stated,)
 
 
+def stated_in_words(stated: Stated) -> str:
+    """What is stated by a property: "true", "color_blue, color_red"."""
+    return _shown(_values(stated))
+
+
 def _shown(values: Iterable[Value]) -> str:
     return ", ".join(str(value).lower() if isinstance(value, bool) else str(value) for value in values)
 

@@ -102,7 +102,9 @@ class Update(Command[Changed], frozen=True, tag="update"):
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
     `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
-    that would make an object a place, or a place an object, is refused without `force`.
+    that would make an object a place, or a place an object, is refused without `force`. With `carry`, what
+    stands on the entity or is inside it moves with it as one rigid body, in the same commit; not what `leave`
+    names, and what stands on that.
     """
 
     name: str
@@ -119,6 +121,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     set: tuple[Text, ...] = ()
     unset: tuple[Text, ...] = ()
     force: bool = False
+    carry: bool = False
+    leave: tuple[str, ...] = ()
     dry_run: bool = False
 
 
@@ -352,16 +356,30 @@ class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
 
 
 class Watch(Command[Watching], frozen=True, tag="watch"):
-    """A standing SELECT: its current rows, and their changes on `semmap/jena/query/<watch>`.
+    """A standing question: its current rows, and their changes on `semmap/jena/query/<watch>`.
+
+    A SELECT; or, instead of a `query`, who is `on`, `in` or `near` something (`within` so many metres), as
+    for `List`: then a row is an entity's IRI.
 
     `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
     evaluated again when a commit may touch it, and ends `lease` seconds after the last `renew`.
     """
 
-    query: QueryText
+    query: QueryText | None = None
     inferred: bool = False
+    class_: ClassName | None = field(name="class", default=None)
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
+    near: Text | None = None
+    within: Annotated[float, Meta(gt=0.0, le=20_000.0)] | None = None
     watch: Name | None = None
     lease: Annotated[float, Meta(ge=1.0, le=3600.0)] = 30.0
+
+    @property
+    def where(self) -> Where | None:
+        """What it asks of where things are, if it does."""
+        where = Where(on=self.on, in_=self.in_, near=self.near, within=self.within)
+        return None if where == Where() else where
 
 
 class Renew(Command[Done], frozen=True, tag="renew"):
@@ -375,11 +393,17 @@ class Renew(Command[Done], frozen=True, tag="renew"):
 
 
 class Move(Command[Moved], frozen=True, tag="move"):
-    """Move the body of an entity by hand; the map follows when it comes to rest."""
+    """Move the body of an entity by hand; the map follows when it comes to rest.
+
+    With `carry`, the bodies of what stands on it or is inside it (as the map has it) are moved with it as one
+    rigid body, and the map follows all of them in one commit; not those that `leave` names.
+    """
 
     name: str
     at: Vector
     yaw: Angle | None = None
+    carry: bool = False
+    leave: tuple[str, ...] = ()
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):

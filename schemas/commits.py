@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from msgspec import Struct, structs
 
+from schemas import errors
 from schemas.calls import Call
 from schemas.entities import (
     Angle,
@@ -23,6 +24,7 @@ from schemas.entities import (
     Vector,
 )
 from schemas.explanations import Term, Triple
+from schemas.scene_files import pose_of
 
 
 class Statement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -52,7 +54,8 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
     `alt` replaces all alternative references. An empty `conflict` takes the present one back. `unset` goes
     before `set`, which replaces the value of a functional property and adds those of another. All of it is
     refused with `PreconditionFailed` unless the properties of `only_if` have one of these values now (no
-    value, where none is given).
+    value, where none is given). With `carry`, what stands on the entity or is inside it moves with it as one
+    rigid body, except what `leave` names.
     """
 
     name: str
@@ -67,11 +70,20 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
     only_if: tuple[Statement, ...] = ()
     unset: tuple[Statement, ...] = ()
     set: tuple[Statement, ...] = ()
+    carry: bool = False
+    leave: tuple[str, ...] = ()
 
     @property
     def places(self) -> bool:
         """Does it say where the entity is?"""
         return not (self.at is None and self.yaw is None and self.orientation is None)
+
+    def pose_after(self, before: Pose | None) -> Pose:
+        """Where the entity is to be. Raises BadRequest for a pose that is none."""
+        at = self.at or (before.position_m if before is not None else None)
+        if at is None:
+            raise errors.BadRequest(f"{self.name} has no position yet; give one with --at")
+        return pose_of(at, self.yaw, self.orientation, before)
 
 
 class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -115,6 +127,8 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     inserted: tuple[Triple, ...] = ()
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What else there is to know of it, in words: what it took back, carried along or left behind."""
 
     @property
     def provenance(self) -> Provenance:
@@ -172,6 +186,7 @@ class Effects(Struct, frozen=True, kw_only=True):
     abridged: Extent | None = None
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+    notes: tuple[str, ...] = ()
     trial: Trial | None = None
     """Of a dry run: nothing was done."""
 
@@ -188,6 +203,7 @@ class Effects(Struct, frozen=True, kw_only=True):
             abridged=commit.abridged,
             changed=commit.changed,
             removed=commit.removed,
+            notes=commit.notes,
         )
 
     @property
@@ -229,6 +245,8 @@ class Transaction(
     insert: tuple[Triple, ...] = ()
     dry_run: bool = False
     """Answered with what it would do, and not done."""
+    told: bool = False
+    """The coordinator asks: it takes the commit from the reply, and need not hear of it a second time."""
 
 
 MANY_ENTITIES = 10_000

@@ -103,6 +103,39 @@ def rounded(pose: Pose) -> Pose:
     return Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz))
 
 
+def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
+    """Where a thing at `pose` comes to be when its bearer goes from `was` to `now`, as one rigid body."""
+    turn = _product(now.orientation_wxyz, _inverse(was.orientation_wxyz))
+    px, py, pz = (p - o for p, o in zip(pose.position_m, was.position_m, strict=True))
+    _, *offset = _product(_product(turn, (0.0, px, py, pz)), _inverse(turn))
+    x, y, z = (o + d for o, d in zip(now.position_m, offset, strict=True))
+    if was.orientation_wxyz == now.orientation_wxyz:
+        return rounded(Pose(position_m=(x, y, z), orientation_wxyz=pose.orientation_wxyz))
+    turned = _product(turn, pose.orientation_wxyz)
+    length = math.hypot(*turned)
+    qw, qx, qy, qz = (value / length for value in turned)
+    return rounded(Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz)))
+
+
+def _product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """The rotation `b`, then `a`."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def _inverse(q: Quaternion) -> Quaternion:
+    """The rotation back; `q` may be off unit length by what `require_unit` allows."""
+    w, x, y, z = q
+    square = w * w + x * x + y * y + z * z
+    return (w / square, -x / square, -y / square, -z / square)
+
+
 def distance_m(a: Pose, b: Pose) -> float:
     """Distance of two positions [m]."""
     return math.dist(a.position_m, b.position_m)

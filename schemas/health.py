@@ -20,5 +20,7 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     state: Literal["starting", "ready"]
     detail: str = ""
     last_error: str = ""
+    commit: int | None = None
+    """Of the knowledge base: the number of the last commit, so that a follower notices what it has missed."""
     notes: tuple[str, ...] = ()
     """What whoever runs the system should know once, and `status` goes on to show."""

@@ -53,6 +53,8 @@ ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 EFFECTS = Topic(COMMIT.key, Effects, "lossless")
 """The same publication, read without its triples."""
+UNTOLD = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
+"""The effects of the commits that no reply tells the coordinator of."""
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
@@ -62,7 +64,7 @@ OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
-TOPICS = (ACK, COMMIT, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
+TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
 
 
 def entity_key(class_name: str, name: str) -> str:

@@ -9,8 +9,8 @@ from msgspec import Meta, Struct
 from schemas.entities import Entity, Metres, Text
 
 RelationName = Literal[
-    "isOn", "isInside", "isLocatedIn", "isUnder", "isAbove", "isNear",
-    "isLeftOf", "isRightOf", "isInFrontOf", "isBehind"
+    "isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches", "isUnder", "isAbove", "isNear", "isNextTo",
+    "isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"
 ]  # fmt: skip
 
 ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
@@ -21,13 +21,16 @@ class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """`subject` is on, in, near ... `object`, worked out from their poses, sizes and shapes.
 
     `gap_m` is the distance that counts for the relation [m], `share` the part of the base, volume or
-    footprint that it is about (0 to 1); `text` says both in one sentence. `holds` is False only where a pair
-    was asked for.
+    footprint that it is about (0 to 1), or of the lines of sight; `text` says both in one sentence. `holds`
+    is False only where a pair was asked for, and of what a viewer cannot see.
     """
 
     relation: RelationName
     subject: str
     object: str
+    """Of `isVisibleFrom` a pose it is ""."""
+    and_object: str | None = None
+    """Of `isBetween` the second of the two."""
     holds: bool = True
     gap_m: float = 0.0
     share: float = 1.0
@@ -62,3 +65,8 @@ class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     within: float | None = None
     nearest: int | None = None
     to: Text | None = None
+
+    @property
+    def words(self) -> tuple[str | None, str | None, str | None, str | None]:
+        """What is meant by name, reference or class: on, in, near, to."""
+        return self.on, self.in_, self.near, self.to

@@ -120,6 +120,8 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     removed: tuple[str, ...]
     changes: tuple[Change, ...] = ()
     """What was and what is, of the first entities that it touched."""
+    notes: tuple[str, ...] = ()
+    """What else there is to know of it: see `schemas.commits.Commit`."""
     authenticated: bool = False
     """A certificate has proved the agent's name; else it is as somebody said."""
 

@@ -68,6 +68,7 @@ def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = _NODE
 
 GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.COMMIT),
+    *_topic(keys.UNTOLD, follow=_NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES),
@@ -88,6 +89,11 @@ GRANTS: Final[tuple[Grant, ...]] = (
 def granted(role: Role, may: Literal["ask", "follow", "publish"]) -> tuple[str, ...]:
     """The key expressions that a role may ask, follow or publish."""
     return tuple(grant.key for grant in GRANTS if grant.may == may and role in grant.roles)
+
+
+def followed(role: str) -> tuple[str, ...]:
+    """The key expressions that somebody may follow; nothing for a role that there is not."""
+    return tuple(grant.key for grant in GRANTS if grant.may == "follow" and role in grant.roles)
 
 
 def default_source(role: str) -> Source:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from msgspec import DecodeError, ValidationError, inspect
@@ -30,6 +30,20 @@ def entities(count: int) -> str:
 def bodies(count: int) -> str:
     """`1 body`, `2 bodies`."""
     return counted(count, "body", "bodies")
+
+
+def few(names: Collection[str], most: int = 10) -> str:
+    """`cup1, plate1 and spoon1`; of more than `most` the first, and the number of the others."""
+    shown = list(names) if len(names) <= most else [*list(names)[: most - 1], f"{len(names) - most + 1} more"]
+    *rest, last = shown or ["nothing"]
+    return f"{', '.join(rest)} and {last}" if rest else last
+
+
+def carried(name: str, load: Collection[str]) -> str:
+    """What a thing carried along."""
+    if not load:
+        return f"nothing stands on {name} or is inside it"
+    return f"{name} carried {few(load)} along"
 
 
 def commits(seqs: Sequence[int]) -> str:

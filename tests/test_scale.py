@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
+import signal
+import sqlite3
 import subprocess
+from contextlib import closing
 
 import pytest
 
+from benchmarks.kb import big_files
 from ontology import vocabulary as v
 from schemas.commits import MANY_ENTITIES
 from tests.conftest import running, until
@@ -50,6 +56,33 @@ def test_a_commit_that_is_told_of_in_brief_is_known_to_everybody(tmp_path):
     with running(tmp_path / "data", *UP) as system, system.client() as client:
         assert client.status().entities == COUNT
         assert counted(client) == COUNT - COUNT // 100
+
+
+def checkpointed(data, copy):
+    """The commit of the newest checkpoint, as a copy of the journal tells, which is locked itself."""
+    copy.mkdir(exist_ok=True)
+    for name in ("journal.sqlite", "journal.sqlite-wal"):
+        shutil.copyfile(data / name, copy / name)
+    with closing(sqlite3.connect(copy / "journal.sqlite")) as db:
+        return db.execute("SELECT max(seq) FROM checkpoints").fetchone()[0]
+
+
+def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(tmp_path):
+    data, count = tmp_path / "data", 8000
+    big_files.write_turtle(tmp_path / "many.ttl", count)
+    with running(data, *UP) as system, system.client() as client:
+        loaded = client.load(tmp_path / "many.ttl")
+        client.add("Cup", "later", at=(0, 0, 0))
+        until(lambda: checkpointed(data, tmp_path / "copy") >= loaded.commit, "a checkpoint is written")
+        client.remove("thing7")
+        pid = system.pid("kb_node")
+        os.kill(pid, signal.SIGKILL)
+        until(lambda: system.pid("kb_node") not in (0, pid), "it is back")
+        assert {entity.name for entity in client.list()} == {
+            "later",
+            *(f"thing{i}" for i in range(count) if i != 7),
+        }
+        assert client.check().consistent
 
 
 @pytest.mark.parametrize("kind", [pytest.param("scene", marks=pytest.mark.long), "turtle"])

@@ -1,8 +1,9 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
+from nodes.bus import own_config
 from nodes.bus.asking import TIMEOUT_S, Encoded, ask, ask_later, read_reply
 from nodes.bus.lifelines import Lifelines, appear, follow_presence
-from nodes.bus.pubsub import follow, follow_cameras, listen, publisher, watched
+from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import (
     DEFAULT_ENDPOINT,
@@ -10,6 +11,7 @@ from nodes.bus.session import (
     PATIENCE_S,
     RESTART_S,
     TLS,
+    HungUp,
     Network,
     Session,
     host_of,
@@ -26,6 +28,7 @@ __all__ = [
     "TIMEOUT_S",
     "TLS",
     "Encoded",
+    "HungUp",
     "Lifelines",
     "Network",
     "Request",
@@ -37,10 +40,12 @@ __all__ = [
     "follow_cameras",
     "follow_presence",
     "host_of",
+    "includes",
     "is_local",
     "listen",
     "open_session",
     "over_tls",
+    "own_config",
     "publisher",
     "read_reply",
     "serve",

@@ -147,16 +147,22 @@ def ask_later(
 
 def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
     """The message of a reply, of type `kind`; raises the error that it carries."""
-    if reply.ok is not None:
-        return Encoded(reply.ok.payload, reply.ok.encoding, kind)
-    assert reply.err is not None
-    if str(reply.err.encoding) != _ERROR_ENCODING:
+    if (sample := reply.ok) is not None:
+        return Encoded(sample.payload, sample.encoding, kind)
+    error = reply.err
+    assert error is not None
+    if str(error.encoding) != _ERROR_ENCODING:
         raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
-    raise errors.from_message(codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage))
+    raise errors.from_message(codec.decode(error.payload.to_bytes(), errors.ErrorMessage))
 
 
 def _nobody(key: str) -> NoReturn:
     node = keys.SERVED_BY.get(keys.served(key.rpartition("/")[0]))
+    if name := keys.asked_as(key):
+        raise errors.NoAnswer(
+            f"no answer on {key}: not permitted, or not there: {name}'s certificate may have been revoked,"
+            f" or {node} is not running, or is starting"
+        )
     why = f"{node} is not running" if node else "no node serves it"
     raise errors.NoAnswer(
         f"no answer on {key}: {why}, or is starting (see: semmap status), or this client lacks permission"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Literal
 
 import zenoh
@@ -78,6 +78,15 @@ def follow_cameras(
             refuse(f"{sample.key_expr}: {error.text}")
 
     session.declare_subscriber(keys.camera_key("*", plane), on_sample)
+
+
+def includes(key_exprs: Iterable[str], key_expr: str) -> bool:
+    """Is all of `key_expr` in one of `key_exprs`? So it is for what is no key expression: nobody is asked."""
+    try:
+        wanted = zenoh.KeyExpr(key_expr)
+    except zenoh.ZError:
+        return True
+    return any(zenoh.KeyExpr(one).includes(wanted) for one in key_exprs)
 
 
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:

@@ -17,6 +17,7 @@ import zenoh
 from msgspec import Struct
 from zenoh import Session as Session
 
+from nodes.bus import own_config
 from nodes.identity import Identity
 from schemas import errors, keys
 from schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
@@ -32,6 +33,7 @@ _MEET_MS = 100
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
+_HUNG_UP = "Read error on T"
 
 
 class Network(Struct, frozen=True):
@@ -52,6 +54,8 @@ class Network(Struct, frozen=True):
     patience_s: float = PATIENCE_S
     identity: Identity | None = None
     access: Mapping[str, Any] | None = None
+    own_config: str | None = None
+    """A Zenoh configuration file, in which all that is not said here holds."""
 
     @property
     def commands(self) -> str:
@@ -61,7 +65,8 @@ class Network(Struct, frozen=True):
     def as_config(self) -> zenoh.Config:
         """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
         node = bool(self.listen) or self.patience_s == FOREVER_S
-        retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
+        first_ms, last_ms = (100, 500) if self.identity is None else (50, 200)  # a router begins anew, too
+        retry = {"period_init_ms": first_ms, "period_max_ms": last_ms, "period_increase_factor": 2}
         values: dict[str, Any] = {
             "mode": self.mode,
             "connect/endpoints": list(self.connect),
@@ -81,10 +86,14 @@ class Network(Struct, frozen=True):
             values |= _tls(self.identity, listens=bool(self.listen))
         if self.access is not None:
             values["access_control"] = self.access
-        config = zenoh.Config()
+        config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config
+
+
+class HungUp(errors.NoAnswer):
+    """Somebody listens there, and does not want to talk with us."""
 
 
 def host_of(endpoint: str) -> str:
@@ -128,7 +137,17 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
     except zenoh.ZError as error:
         where = ", ".join((*network.listen, *network.connect))
         if not network.listen and any(said in str(error) for said in _NOT_REACHED):
+            if network.identity is not None:
+                raise errors.NoAnswer(
+                    f"no system answers at {where}: none runs there, or it does not admit the certificate of"
+                    f" {network.identity.name}, or it is none that {network.identity.authority} vouches for"
+                ) from None
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
+        if not network.listen and _HUNG_UP in str(error):
+            raise HungUp(
+                f"whoever listens at {where} hung up; a secure system wants to know who you are:"
+                " --identity DIR/NAME"
+            ) from None
         if "Endpoints must be of the form" in str(error):
             raise errors.BadRequest(
                 f"'{where}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}"

@@ -42,7 +42,7 @@ class Admission:
             raise errors.Refused(f"'{who}' is not one name; ask for commands under your own")
         role = self._register.role_of(who)
         if role is None:
-            raise errors.Refused(f"the certificate of {who} has been revoked")
+            raise errors.NoAnswer(f"the certificate of {who} has been revoked")
         if (refusal := roles.refusal(role, command)) is not None:
             raise errors.Refused(refusal)
         return structs.replace(command, agent=agents.proved(who))

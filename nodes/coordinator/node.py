@@ -28,7 +28,6 @@ from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import calls, errors, keys, wording
 from schemas import commands as c
-from schemas.commits import Effects
 from schemas.entities import BodyState
 from schemas.health import Health
 from schemas.replies import Changed
@@ -54,12 +53,11 @@ class Coordinator:
         self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
-        self._changed: set[str] = set()
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
-        running = Running(config.truth, door, self._keeping, self._ask_sim)
+        running = Running(config.truth, door, self._keeping, self._ask_sim, self._bridge.ask_later)
         relay = self._bridge.relay
         of_the_map = calls.by_verb(
             c.Add.answered_by(self._with_body),
@@ -95,7 +93,7 @@ class Coordinator:
             **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
             **calls.by_verb(c.Status.answered_by(answers.status)),
         }
-        Follower(node, door.map, keys.EFFECTS, heard=self._on_commit, begun=self._on_map)
+        Follower(node, door.map, keys.UNTOLD, heard=lambda commit, known: None, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map, admit=admission.claimed)
@@ -110,9 +108,6 @@ class Coordinator:
         return verb in keys.OF_THE_MAP and self._node.is_there("kb_node")
 
     # Following
-
-    def _on_commit(self, commit: Effects, _: bool) -> None:
-        self._changed.update(commit.names)
 
     def _on_map(self, begun: Begun) -> None:
         self._door.map.classes = ClassNames(begun.classes)
@@ -147,8 +142,8 @@ class Coordinator:
     def _catch_up(self) -> None:
         """Begin the changes that wait, and look at what commits changed; all the rest at each tick."""
         self._turns.go_on()
-        if self._changed:
-            names, self._changed = self._changed, set()
+        if names := self._door.map.touched:
+            self._door.map.touched = set()
             self._keeping.keep(names)
             self._answer_waiting()
 

@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 from ontology.model_shapes import own_size_m
 from schemas import errors
+from schemas.commands import Move, Update
 from schemas.entities import ClassInfo, Entity, Pose, Size
 
 FAR_OFF = 10.0
@@ -22,6 +23,12 @@ def require_same_nature(entity: Entity, found: ClassInfo | None, *, force: bool)
         f"{entity.name} is {is_} ({entity.class_}), and as a {found.name} it would be {would_be};"
         " if that is intended, add --force"
     )
+
+
+def require_carrying(command: Update | Move) -> None:
+    """Raises BadRequest where something is to be left of what is not carried."""
+    if command.leave and not command.carry:
+        raise errors.BadRequest("--leave says what is not to be carried along: add --carry")
 
 
 def doubts(

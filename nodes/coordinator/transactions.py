@@ -31,6 +31,7 @@ def transaction(
         edit=tuple(edit),
         add=tuple(add),
         dry_run=getattr(command, "dry_run", False),
+        told=True,
     )
 
 
@@ -62,6 +63,8 @@ def update(command: Update, found: ClassInfo | None = None) -> Transaction:
         conflict=command.conflict,
         unset=tuple(map(_unassignment, command.unset)),
         set=tuple(map(_assignment, command.set)),
+        carry=command.carry,
+        leave=command.leave,
     )
     return transaction(command, f"update {command.name}", edit=[edit])
 

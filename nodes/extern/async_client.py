@@ -81,9 +81,25 @@ class AsyncClient(Verbs):
             yield _handed_over(commits, "no commit came", timeout)
 
     @contextlib.asynccontextmanager
-    async def watch(self, query: str, *, inferred: bool = False) -> AsyncIterator[AsyncStandingQuery]:
-        """`async with client.watch(select) as standing: async for change in standing.changes(): ...`."""
-        async with self._entered(self._client.watch(query, inferred=inferred)) as standing:
+    async def watch(
+        self,
+        query: str | None = None,
+        *,
+        inferred: bool = False,
+        class_: str | None = None,
+        on: str | None = None,
+        in_: str | None = None,
+        near: str | None = None,
+        within: float | None = None,
+    ) -> AsyncIterator[AsyncStandingQuery]:
+        """`async with client.watch(select) as standing: async for change in standing.changes(): ...`.
+
+        Or, instead of a query, `on`, `in_` and `near` as for `list`: a row is an entity's IRI.
+        """
+        watching = self._client.watch(
+            query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
+        )
+        async with self._entered(watching) as standing:
             yield AsyncStandingQuery(standing)
 
     @contextlib.asynccontextmanager

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import os
 import queue
 import time
-import uuid
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
@@ -31,7 +31,7 @@ from nodes.identity import Identity
 from nodes.runtime import version
 from schemas import codec, errors, keys, roles
 from schemas.calls import reply_type
-from schemas.commands import Command, Status
+from schemas.commands import Command, Status, Watch
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
@@ -122,9 +122,25 @@ class Client(Verbs):
         return reply if read is None else read(reply)
 
     @contextlib.contextmanager
-    def watch(self, query: str, *, inferred: bool = False) -> Iterator[StandingQuery]:
-        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news."""
-        standing = StandingQuery(self.session, self._ask, query, inferred)
+    def watch(
+        self,
+        query: str | None = None,
+        *,
+        inferred: bool = False,
+        class_: str | None = None,
+        on: str | None = None,
+        in_: str | None = None,
+        near: str | None = None,
+        within: float | None = None,
+    ) -> Iterator[StandingQuery]:
+        """`with client.watch(select) as standing: ...`: its rows, and in `standing.changes()` the news.
+
+        Or, instead of a query, `on`, `in_` and `near` as for `list`: a row is an entity's IRI.
+        """
+        wanted = Watch(
+            query=query, inferred=inferred, class_=class_, on=on, in_=in_, near=near, within=within
+        )
+        standing = StandingQuery(self.session, self._ask, _checked(wanted, {}))
         try:
             yield standing
         finally:
@@ -177,11 +193,16 @@ def _checked(command: C, signature: dict[str, Any]) -> C:
     for moment in _moments(type(command)) & fields.keys():
         fields[moment] = with_offset(fields[moment])
     if reply_type(type(command)) is Changed and not command.id:
-        fields["id"] = uuid.uuid4().hex
+        fields["id"] = _new_id()
     try:
         return codec.convert({**signature, **fields}, type(command))
     except errors.BadRequest as error:  # a message is not what the caller knows of
         raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
+
+
+def _new_id() -> str:
+    """Unique, and later ones after earlier ones: then the journal's index of them grows at its end."""
+    return f"{time.time_ns():016x}{os.urandom(8).hex()}"
 
 
 @functools.cache

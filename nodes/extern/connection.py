@@ -11,7 +11,7 @@ from nodes import bus
 from nodes.identity import Identity
 from nodes.supervisor import presence, registry
 from schemas import errors
-from schemas.endpoints import CONNECT_VARIABLE, IDENTITY_VARIABLE
+from schemas.endpoints import CONFIG_VARIABLE, CONNECT_VARIABLE, IDENTITY_VARIABLE
 
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
@@ -51,10 +51,11 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
     With an identity it is a client of the router, and the endpoint one of TLS. Raises NoAnswer when nothing
     answers there, the system takes too long to start, or it wants to know who this is.
     """
+    own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
         identity.require_valid()
         where = bus.over_tls(where)
-    elif where.startswith(bus.TLS):
+    elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
             f"the system at {where} only answers those who show a certificate; say who you are:"
             f" --identity DIR/NAME or {IDENTITY_VARIABLE}"
@@ -66,6 +67,7 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
         namespace=namespace,
         patience_s=0.0 if here else bus.PATIENCE_S,
         identity=identity,
+        own_config=own_config,
     )
     deadline_s = time.monotonic() + _START_S
     with contextlib.ExitStack() as stack:
@@ -73,8 +75,11 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
             try:
                 session = stack.enter_context(bus.open_session(network))
                 break
-            except errors.NoAnswer:
-                if not presence.is_announced(where):
+            except errors.NoAnswer as error:
+                turned_away = isinstance(error, bus.HungUp) or (
+                    identity is not None and presence.is_listening(where)
+                )
+                if turned_away or not presence.is_announced(where):
                     raise
                 if time.monotonic() > deadline_s:
                     raise errors.NoAnswer(f"the system at {where} has not started yet") from None

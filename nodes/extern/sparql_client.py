@@ -11,6 +11,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from msgspec import structs
+
 from nodes import bus
 from schemas import commands, errors, keys, replies
 from schemas.sparql import Row, RowsChanged, Watching
@@ -27,11 +29,11 @@ class StandingQuery:
     asks again and tells what changed in between, too.
     """
 
-    def __init__(self, session: bus.Session, ask: Callable[..., Any], query: str, inferred: bool) -> None:
-        """`ask(verb, command, kind)` asks the system. Raises BadRequest, Refused for no query to watch."""
+    def __init__(self, session: bus.Session, ask: Callable[..., Any], wanted: commands.Watch) -> None:
+        """`ask(verb, command, kind)` asks the system. Raises BadRequest, Refused for nothing to watch."""
         self._ask = ask
         self._name = f"q{uuid.uuid4().hex[:12]}"
-        self._command = commands.Watch(query=query, inferred=inferred, watch=self._name, lease=_LEASE_S)
+        self._command = structs.replace(wanted, watch=self._name, lease=_LEASE_S)
         self._news: queue.SimpleQueue[RowsChanged | None] = queue.SimpleQueue()
         topic = keys.QUERY._replace(key=keys.query_key(self._name))
         self._subscriber = bus.follow(session, topic, lambda _, news: self._news.put(news))

@@ -17,11 +17,13 @@ _READY = "stop "
 
 
 @contextmanager
-def own_system(data: Path, *words: str, endpoint: str | None = None) -> Iterator[Client]:
+def own_system(
+    data: Path, *words: str, endpoint: str | None = None, identity: str | None = None
+) -> Iterator[Client]:
     """A client of `semmap up --data DATA WORDS...`, which is stopped at the end.
 
-    It listens at `endpoint`, or else on a free port of this machine. Raises RuntimeError, with what it
-    printed, when it does not start.
+    It listens at `endpoint`, or else on a free port of this machine; with `--secure` among the words,
+    `identity` is the client's. Raises RuntimeError, with what it printed, when it does not start.
     """
     endpoint = endpoint or free_endpoint()
     up = [str(Path(sys.executable).with_name("semmap")), "up", "--data", str(data), "--listen", endpoint]
@@ -38,7 +40,7 @@ def own_system(data: Path, *words: str, endpoint: str | None = None) -> Iterator
             else:
                 raise RuntimeError("the system did not start:\n" + "".join(said))
             threading.Thread(target=process.stdout.read, daemon=True).start()  # or a full pipe would stop it
-            with connect(endpoint) as client:
+            with connect(endpoint, identity=identity) as client:
                 yield client
         finally:
             process.terminate()

@@ -103,10 +103,13 @@ def add(folder: Path, name: str, role: Role, days: int = DAYS) -> Member:
 
 
 @_alone
-def renew(folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS) -> Member:
-    """A new key and certificate for somebody; `hosts` are added to the router's.
+def renew(
+    folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS, role: Role | None = None
+) -> Member:
+    """A new key and certificate for somebody, in another role if one is given.
 
-    Raises UnknownName, Refused for one who was revoked.
+    `hosts` are added to the router's. Raises UnknownName, and Refused for one who was revoked and for another
+    role of the system's own.
     """
     register = Register.read(folder)
     member = _member(register, name)
@@ -116,8 +119,10 @@ def renew(folder: Path, name: str, hosts: tuple[str, ...] = (), days: int = DAYS
         raise errors.BadRequest(
             f"only the router's certificate carries hosts: semmap keys renew {ROUTER} --host"
         )
+    if name in OWN and role not in (None, member.role):
+        raise errors.Refused(f"{name} is the system's own and stays a {member.role}")
     register = structs.replace(register, hosts=tuple(dict.fromkeys((*register.hosts, *hosts))))
-    return _in_register(folder, register, name, member.role, days)
+    return _in_register(folder, register, name, role or member.role, days)
 
 
 @_alone

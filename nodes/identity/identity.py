@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
+from msgspec import Struct
+
 from nodes.identity import certificate
 from schemas import errors
+from schemas.roles import ROLES
 
 AUTHORITY: Final = "ca.crt"
 SUPERVISOR: Final = "supervisor"
 """The name of `semmap up` itself."""
 
 
-@dataclass(frozen=True)
-class Identity:
+class Identity(Struct, frozen=True):
     """Paths of the files, and what the certificate says: a name, a role, and until when."""
 
     authority: str
@@ -48,6 +49,8 @@ class Identity:
             raise errors.BadFile(f"{crt} cannot be read: {error}") from None
         except OSError as error:
             raise errors.BadFile(f"{error.filename} cannot be read: {error.strerror}") from None
+        if said.role not in ROLES:
+            raise errors.BadFile(f"{crt} is not an identity: it says no role")
         return cls(str(authority.resolve()), str(crt.resolve()), str(key.resolve()), *said)
 
     def require_valid(self) -> None:

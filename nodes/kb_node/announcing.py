@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from nodes import bus
 from schemas import codec, keys
-from schemas.commits import Commit, abridged
+from schemas.commits import Commit, Effects, abridged
 from schemas.entities import Entity
 
 
@@ -17,12 +17,19 @@ class Announcer:
         """`entities` are those that are in the map already."""
         self._session = session
         self._commits = bus.publisher(session, keys.COMMIT)
+        self._untold = bus.publisher(session, keys.UNTOLD)
         self._entities_are_watched = bus.watched(session, keys.ENTITY)
         self._types = {entity.name: entity.types for entity in entities}
 
-    def announce(self, commit: Commit) -> None:
-        """Tell of the commit, abridged if it is very large; of its entities only if somebody follows them."""
+    def announce(self, commit: Commit, *, told: bool) -> None:
+        """Tell of the commit, abridged if it is very large; of its entities only if somebody follows them.
+
+        If the coordinator is `told` of it by the reply, it is not told of it here.
+        """
         passed_on = abridged(commit)
+        if not told:
+            effects = Effects.of(passed_on)
+            self._untold.put(codec.encode(effects), encoding=codec.encoding_of(effects))
         self._commits.put(codec.encode(passed_on), encoding=codec.encoding_of(passed_on))
         if self._entities_are_watched():
             for gone in commit.removed:

@@ -17,6 +17,7 @@ from nodes.kb_node.reasoner.explanations import Explanation
 from nodes.kb_node.relations.computed import Computed, Known, Step
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.thresholds import Thresholds
 from ontology import vocabulary as v
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
@@ -42,11 +43,16 @@ UNCHANGED = Believed()
 class Beliefs:
     """Keeps a reasoner's beliefs in step with a map."""
 
-    def __init__(self, reasoner: Reasoner, progress: Callable[[], None] = lambda: None) -> None:
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        limits: Thresholds | None = None,
+        progress: Callable[[], None] = lambda: None,
+    ) -> None:
         """`reasoner` holds what is asserted; `progress` is called between the steps of long work."""
         self._reasoner = reasoner
         self._progress = progress
-        self.computed = Computed(_declared(reasoner))
+        self.computed = Computed(_declared(reasoner), limits)
         self.withheld: dict[Triple, Explanation] = {}
         """Facts that contradict the rest, and how."""
         self._rests: dict[Triple, set[Triple]] = {}
@@ -130,7 +136,10 @@ class Beliefs:
         if self.computed.is_idle:
             return
         said = [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
-        self._carry_out(self.computed.after(entities, (), lambda _: None, (), said), ())
+        step = self.computed.after(entities, (), lambda _: None, (), said)
+        gone = set(self._reasoner.computed()) - step.come
+        back = {t for t in self._reasoner.set_aside() if t not in step.denied and t not in self.withheld}
+        self._carry_out(step._replace(gone=gone, undenied=back), ())
 
     def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
         lost = [*step.gone, *step.denied, *retracted]

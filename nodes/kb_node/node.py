@@ -16,6 +16,7 @@ from nodes.kb_node import gc_pause, undo
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import answers, questions, trials, whereabouts
 from nodes.kb_node.answers.pages import Pages
+from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
@@ -36,6 +37,7 @@ from schemas.bridge import (
     Entities,
     LoadDocument,
     Loaded,
+    LoadOf,
     LoadTBox,
     MadeBy,
     Outcome,
@@ -71,6 +73,8 @@ from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Pos
 from schemas.sparql import SparqlResult, Watching
 
 CHECKPOINT_PERIOD_S = 10.0
+CHECKPOINT_DELAY_S = 3.0
+"""After a very large commit, which others fetch first."""
 _FEW = 1000
 """Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
@@ -90,19 +94,26 @@ class KnowledgeBase:
         self._now, self._then = whereabouts.Now(self.map), whereabouts.Then(self.map, self._past)
         self._announcer = Announcer(node.session, self.map.entities())
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
+        self._writing: Future[int] | None = None
+        """While a checkpoint is written: the number of its last commit."""
         self._sparql = SparqlService(
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.all_believed,
         )
+        self.map.foretell = self._sparql.foretell
+        self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
+        node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
+        node.count(lambda: self.map.seq)
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -113,6 +124,7 @@ class KnowledgeBase:
             SnapshotQuery.answered_by(self.on_snapshot),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
+            LoadOf.answered_by(self.on_load_of),
             MadeBy.answered_by(self.on_made_by),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
@@ -137,19 +149,27 @@ class KnowledgeBase:
         """One transaction: journal (durable), publish, reply."""
         term_syntax.require_triples(transaction.insert)
         if len(transaction.add) <= _FEW:
-            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+            return self._changed(
+                lambda: self.map.commit(transaction), transaction.dry_run, told=transaction.told
+            )
         with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
             tell(f"{len(transaction.add):,} entities to check and write")
-            return self._changed(lambda: self.map.commit(transaction), transaction.dry_run)
+            return self._changed(
+                lambda: self.map.commit(transaction), transaction.dry_run, told=transaction.told
+            )
 
-    def _changed(self, change: Callable[[], Commit | None], dry_run: bool) -> Effects | None:
+    def _changed(
+        self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
+    ) -> Effects | None:
         """What `change` commits, and publishes; or would commit, in a dry run."""
-        return trials.of(self.map, change) if dry_run else _effects(self._published_if_new(change))
+        if dry_run:
+            return trials.of(self.map, change)
+        return _effects(self._published_if_new(change, told=told))
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._published_if_new(lambda: self.map.commit(transaction))
 
-    def _published_if_new(self, change: Callable[[], C]) -> C:
+    def _published_if_new(self, change: Callable[[], C], *, told: bool = False) -> C:
         """What `change` commits; published unless it is the answer to an old command."""
         before = self.map.seq
         try:
@@ -158,21 +178,23 @@ class KnowledgeBase:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit)
+            self._spread(commit, told=told)
         return commit
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
-    def _spread(self, commit: Commit) -> None:
+    def _spread(self, commit: Commit, *, told: bool) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._now.touch(commit.names)
-        self._announcer.announce(commit)
+        self._announcer.announce(commit, told=told)
         self._node.afterwards(partial(self._sparql.follow, commit, self.map.believed_of(commit)))
-        self._node.afterwards(lambda: self._node.describe(self._summary()))
+        self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
+        self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
+        if self.map.checkpoint_is_urgent:
+            self._node.later(CHECKPOINT_DELAY_S, self._checkpoint_if_urgent)
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself: journal (durable, once for all), publish, reply.
@@ -188,9 +210,10 @@ class KnowledgeBase:
         for error in results:
             if isinstance(error, NotWritten):
                 self._not_written(error)
-        new = {result.seq: result for result in results if isinstance(result, Commit) and result.seq > before}
-        for commit in new.values():
-            self._spread(commit)
+        for transaction, result in zip(several.transactions, results, strict=True):
+            if isinstance(result, Commit) and result.seq > before:
+                before = result.seq
+                self._spread(result, told=transaction.told)
         return tuple(map(_outcome, results))
 
     def on_load(self, load: LoadDocument) -> Loaded:
@@ -242,7 +265,7 @@ class KnowledgeBase:
                 yield tell
         finally:
             self._node.afterwards(heap.trim)
-            self._node.describe(self._summary())
+            self._node.describe(self._summary)
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
@@ -255,6 +278,10 @@ class KnowledgeBase:
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
         """The triples about some entities."""
         return self.map.stars(query.names)
+
+    def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
+        """What a thing bears."""
+        return tuple(self.map.places.borne_by(query.name, query.leave))
 
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
         """The commits that some commands have made."""
@@ -303,7 +330,7 @@ class KnowledgeBase:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
         reasoner, names = self.map.reasoner, self.map.classes.prefixed
         needed: list[Triple] | None = None
-        self.map.follow_places()
+        self.map.believe_places()
         if questions.is_quick(reasoner, asked):
             try:
                 return answer(reasoner, asked, anew=False)
@@ -347,6 +374,8 @@ class KnowledgeBase:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
+        except errors.Inconsistent as error:
+            raise document_change.refused_tbox(self.map, load, tbox, error) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
@@ -363,29 +392,62 @@ class KnowledgeBase:
         """A query, evaluated beside the node's own work."""
         return self._sparql.ask(query, self.map.seq)
 
-    def on_watch(self, query: Watch) -> Future[Watching]:
-        """A standing query."""
-        return self._sparql.ask(query, self.map.seq)
+    def on_watch(self, query: Watch) -> Watching | Future[Watching]:
+        """A standing query, or a standing question of where things are."""
+        asks_where = query.where is not None or query.class_ is not None
+        if (query.query is None) != asks_where:
+            raise errors.BadRequest(
+                "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
+            )
+        if not asks_where:
+            return self._sparql.ask(query, self.map.seq)
+        if query.where is None or query.inferred:
+            raise errors.BadRequest(
+                "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
+            )
+        return self._standing_places.watch(query)
 
-    def on_renew(self, renewal: Renew) -> Future[Done]:
+    def on_renew(self, renewal: Renew) -> Done | Future[Done]:
         """A standing query goes on, or ends."""
-        return self._sparql.ask(renewal, self.map.seq)
+        return self._standing_places.renew(renewal) or self._sparql.ask(renewal, self.map.seq)
 
     def close(self) -> None:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._aside.shutdown(wait=False, cancel_futures=True)
-        if self.map.is_large and not self.map.checkpoint_is_due(quiet=True):
-            return
         with suppress(errors.Refused):
-            self.map.checkpoint()
+            if self._writing is not None:
+                self.map.written(self._writing.result())
+            if not self.map.is_large or self.map.checkpoint_is_due(quiet=True):
+                self.map.checkpoint()
 
     def _checkpoint(self) -> None:
-        """In a quiet moment, if there is one: nobody is answered meanwhile."""
+        """In a quiet moment, if there is one."""
         quiet, self._seq_then = self.map.seq == self._seq_then, self.map.seq
         if self.map.checkpoint_is_due(quiet=quiet):
-            self.map.checkpoint()
+            self._begin_checkpoint()
+
+    def _checkpoint_if_urgent(self) -> None:
+        if self.map.checkpoint_is_urgent:
+            self._begin_checkpoint()
+
+    def _begin_checkpoint(self) -> None:
+        """Write the map down as it is now, beside the node's other work."""
+        if self._writing is not None:
+            return
+        picture = self.map.picture()
+
+        def write() -> int:
+            self._journal.checkpoint(picture)
+            return picture.seq
+
+        def end(done: Future[int]) -> None:
+            self._writing = None
             heap.trim()
+            self.map.written(done.result())
+
+        self._writing = self._beside.submit(write)
+        self._writing.add_done_callback(lambda done: self._node.soon(lambda: end(done)))
 
     def _notes(self) -> tuple[str, ...]:
         return tbox_notes.notes(self.map.tbox, self.map.reasoner, self.map.classes)

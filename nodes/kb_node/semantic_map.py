@@ -15,13 +15,15 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
+from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.relations.space import Space
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
-from schemas import agents, errors
+from schemas import agents, errors, wording
 from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
@@ -29,6 +31,7 @@ from schemas.explanations import Term, Triple
 CHECKPOINT_EVERY = 5000
 CHECKPOINT_AT_LATEST = 20_000
 CHECKPOINT_EVERY_TRIPLES = 100_000
+"""Triples that changed; at once if they are half of the map."""
 LARGE = 1_000_000
 """Triples."""
 PART = 250_000
@@ -74,21 +77,34 @@ class SemanticMap:
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
-        self.beliefs = Beliefs(self.reasoner, progress)
+        self.beliefs = Beliefs(self.reasoner, self.classes.limits, progress)
         self._believed: dict[int, Believed] = {}
         """What the last commits changed of what is computed, until somebody asks."""
         self._follows = False
-        """Whether the reasoner has what is computed; not yet after a start."""
+        """Whether what is computed is worked out at each commit; not yet after a start."""
+        self._believes = False
+        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
+        self.places = Places(
+            self._entities,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+            self._space,
+        )
+        self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
+        """Told of each commit before it is checked; what it returns is called if that is not made."""
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
         self._checkpointed = 0
-        self._changed_since = 0
-        """Triples that changed since the checkpoint."""
+        self._changed = self._changed_then = 0
+        """Triples that changed, and those of them that are in the checkpoint."""
+        self._pictured = (0, 0)
+        """The number of the last commit in the last picture, and how many triples had changed."""
         self._replay(start)
 
     # Asking
@@ -103,13 +119,23 @@ class SemanticMap:
         """
         if self._follows:
             return
-        self._follows = True
+        self._follows = self._believes = True
         self.beliefs.begin()
         self.beliefs.fill(self._entities.values())
         for name, entity in self._entities.items():
             types = self._types(entity)
             if types != entity.types:
                 self._entities[name] = structs.replace(entity, types=types)
+
+    def believe_places(self) -> None:
+        """Let the reasoner have what is computed of where things are, if it has not."""
+        if not self._believes:
+            self.follow_places()
+
+    def _space(self) -> Space | None:
+        """The solids that relations are computed of, if any are."""
+        self.follow_places()
+        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -130,7 +156,7 @@ class SemanticMap:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
-        self.follow_places()
+        self.believe_places()
         found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
@@ -158,7 +184,7 @@ class SemanticMap:
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
-        self.follow_places()
+        self.believe_places()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
@@ -168,7 +194,7 @@ class SemanticMap:
 
     def all_believed(self) -> Believed:
         """What is computed and what is set aside."""
-        self.follow_places()
+        self.believe_places()
         return self.beliefs.all()
 
     def believed_of(self, commit: Commit) -> Believed:
@@ -207,7 +233,7 @@ class SemanticMap:
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         self.follow_places()
-        transaction = self._spelled_out(transaction)
+        transaction, notes = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(transaction, held)
         wanted = dict.fromkeys(transaction.insert)
@@ -215,15 +241,28 @@ class SemanticMap:
         inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
         if not retracted and not inserted:
             return None
+        denied = self.places.taken_back(self.reasoner, self.classes, retracted, inserted)
+        retracted += tuple(t for t in denied.triples if t not in self.tbox and t not in wanted)
         for triple in retracted:
             if triple in self.tbox:
                 raise errors.Refused(
                     f"the TBox says that {v.spoken(triple)}, and no command changes the TBox"
                 )
         with gc_pause.uncollected():
-            commit = self._signed(transaction, retracted, inserted)
-            begun = commit_encoding.early(commit) if self._look is None else None
-            return self._apply(commit, lambda whole: self._write(whole, begun=begun))
+            commit = self._signed(transaction, retracted, inserted, notes=(*notes, *denied.notes))
+            if self._look is not None:
+                return self._apply(commit, self._write, self._with_doubts)
+            give_up, begun = self.foretell(commit), commit_encoding.early(commit)
+            try:
+                return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+            except BaseException:
+                give_up()
+                raise
+
+    def _with_doubts(self, commit: Commit) -> Commit:
+        """With a word on what it says of places and is not so."""
+        doubts = self.places.doubts(commit)
+        return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
     def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
         """What `look(commit)` sees once `change` would be durable; then all is taken back.
@@ -302,6 +341,7 @@ class SemanticMap:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
         self._reverse(commit, before)
+        self.places.take(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
                 self._entities.pop(name, None)
@@ -311,58 +351,85 @@ class SemanticMap:
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
-        if quiet and self._changed_since > CHECKPOINT_EVERY_TRIPLES:
+        if quiet and self._changed - self._changed_then > CHECKPOINT_EVERY_TRIPLES:
             return True
         if quiet and self._journal.tbox_changes(after=self._checkpointed):
             return True
         return self.seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     @property
+    def checkpoint_is_urgent(self) -> bool:
+        """Would the next start have to replay most of the map?"""
+        changed = self._changed - self._changed_then
+        return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= len(self.reasoner)
+
+    @property
     def is_large(self) -> bool:
-        """Does a checkpoint take longer than a node has to stop?"""
+        """Does a checkpoint take so long that nobody should wait for it without need?"""
         return len(self.reasoner) > LARGE
+
+    def picture(self) -> Checkpoint:
+        """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        self.believe_places()
+        self._pictured = self.seq, self._changed
+        columns = self.reasoner.columns()
+        return Checkpoint(
+            seq=self.seq,
+            triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),
+            columns=columns,
+            entities=tuple(self._entities.values()),
+            read_by=conclusions_format.mark(),
+        )
 
     def checkpoint(self) -> None:
         """Write down the whole map, so that the next start need not replay its history.
 
         Raises Refused when the disk does not take it; then the history is replayed.
         """
-        if self.seq == self._checkpointed:
-            return
-        self._journal.checkpoint(
-            Checkpoint(
-                seq=self.seq,
-                triples=tuple(self.abox()),
-                entities=tuple(self._entities.values()),
-                read_by=conclusions_format.mark(),
-            ),
-            self._progress,
-        )
-        self._checkpointed, self._changed_since = self.seq, 0
+        if self.seq != self._checkpointed:
+            self._journal.checkpoint(self.picture(), self._progress)
+            self.written(self.seq)
 
-    def _spelled_out(self, transaction: Transaction) -> Transaction:
-        """The transaction with its intents said in triples, too."""
+    def written(self, seq: int) -> None:
+        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
+        self._checkpointed, self._changed_then = seq, self._pictured[1]
+
+    def _spelled_out(self, transaction: Transaction) -> tuple[Transaction, tuple[str, ...]]:
+        """The transaction with its intents said in triples, too; and what is to be known of them."""
         remove, edit, add = transaction.remove, transaction.edit, transaction.add
         if not (remove or edit or add):
-            return transaction
+            return transaction, ()
         draft = entity_writing.Draft(self.reasoner, self.classes, self.tbox, self._entities)
         draft.remove([self.entity(name) for name in self.steadily(remove)])
+        notes = list(self.places.left_behind(remove)) if remove else []
         for one in self.steadily(edit):
             draft.edit(self.entity(one.name), one)
+            if one.carry:
+                load = self.places.load_of(one, edit)
+                for other in load:
+                    draft.edit(self._entities[other.name], other)
+                if load or transaction.source == "operator":
+                    notes.append(wording.carried(one.name, [other.name for other in load]))
         for new in self.steadily(add):
             draft.add(new)
-        return structs.replace(
+        spelled_out = structs.replace(
             transaction,
             retract=(*transaction.retract, *draft.retract),
             insert=(*transaction.insert, *draft.insert),
         )
+        return spelled_out, tuple(notes)
 
     def _replay(self, start: Checkpoint) -> None:
-        self._change(insert=start.triples, lenient=True)
+        is_ours = start.read_by == conclusions_format.mark()
+        if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
+            self.reasoner.believe(aside=start.triples)
+            self._believes = True
+        else:
+            self._change(insert=tuple(start.said()), lenient=True)
         self.seq = self._checkpointed = start.seq
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
-        elif start.read_by == conclusions_format.mark():
+        elif is_ours:
             self._show(start.entities)
         else:
             self._show(entity for known in start.entities if (entity := self._read_again(known)) is not None)
@@ -385,6 +452,7 @@ class SemanticMap:
         inserted: tuple[Triple, ...],
         *,
         tbox: bool = False,
+        notes: tuple[str, ...] = (),
     ) -> Commit:
         """The next commit, by the transaction's author."""
         return Commit(
@@ -401,6 +469,7 @@ class SemanticMap:
             tbox=tbox,
             retracted=retracted,
             inserted=inserted,
+            notes=notes,
         )
 
     def _switch(
@@ -412,7 +481,7 @@ class SemanticMap:
         try:
             self.tbox, self.reasoner = tbox, tbox_validation.compiled(tbox)
             self.classes = ClassTable(self.reasoner)
-            self.beliefs = Beliefs(self.reasoner, self._progress)
+            self.beliefs = Beliefs(self.reasoner, self.classes.limits, self._progress)
             self._change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
@@ -425,7 +494,12 @@ class SemanticMap:
             raise
         return self._taken(commit)
 
-    def _apply(self, commit: Commit, make_durable: Callable[[Commit], None]) -> Commit:
+    def _apply(
+        self,
+        commit: Commit,
+        make_durable: Callable[[Commit], None],
+        noted: Callable[[Commit], Commit] = lambda commit: commit,
+    ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = self.reasoner.mentioned(subjects)
@@ -435,7 +509,7 @@ class SemanticMap:
         self.beliefs.begin()
         change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=not self._follows)
         try:
-            commit = self._with_effects(commit, owners, change, subjects - known)
+            commit = noted(self._with_effects(commit, owners, change, subjects - known))
             if self._follows:
                 commit = self._with_places(commit)
             make_durable(commit)
@@ -527,7 +601,8 @@ class SemanticMap:
 
     def _taken(self, commit: Commit) -> Commit:
         self.seq = commit.seq
-        self._changed_since += len(commit.inserted) + len(commit.retracted)
+        self.places.take(commit.names, commit.retracted, commit.inserted)
+        self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
             before = {name: self._entities.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))

@@ -7,7 +7,8 @@ session. Everybody connects again by themselves, within a fraction of a second.
 from __future__ import annotations
 
 import signal
-from dataclasses import replace
+
+from msgspec import structs
 
 from nodes import bus
 from nodes.identity.register import LiveRegister
@@ -39,7 +40,7 @@ def run(config: RouterConfig) -> None:
     signals, live = _Signals(), LiveRegister(config.keys)
     while not signals.stopped:
         register = live.now
-        network = replace(config.network, access=access_control(register.admitted))
+        network = structs.replace(config.network, access=access_control(register.admitted))
         with bus.open_session(network) as session:
             node = signals.node = Node(keys.ROUTER, session)
             node.ready(f"{len(register.admitted)} certificates")

@@ -57,6 +57,8 @@ class Follower(Generic[C]):
         self._fetching = False
         self._begun_ns = 0
         self._kb_started_ns = 0
+        self._there = -1
+        """The last commit, as of the knowledge base's last beat but one."""
         node.follow(topic, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(_LOOK_S, self._look)
@@ -69,12 +71,22 @@ class Follower(Generic[C]):
 
     def _on_health(self, health: Health) -> None:
         """Another process of the knowledge base may know another map, or less of the same."""
-        if health.node != "kb_node" or health.started_ns == self._kb_started_ns:
+        if health.node != "kb_node":
+            return
+        self._notice(health.commit)
+        if health.started_ns == self._kb_started_ns:
             return
         is_another = self._kb_started_ns or health.started_ns > self._begun_ns
         self._kb_started_ns = health.started_ns
         if self._replica.seq >= 0 and is_another:
             self._replica.doubt()
+            self._fetch()
+
+    def _notice(self, commit: int | None) -> None:
+        """What the knowledge base had at its last beat and is not here by now has been missed."""
+        missed = 0 <= self._replica.seq < self._there
+        self._there = -1 if commit is None else commit
+        if missed:
             self._fetch()
 
     def _look(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import time
+from collections.abc import Callable
 from typing import Literal
 
 from nodes import bus
@@ -27,7 +28,8 @@ class Heartbeat:
         self._session = session
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
-        self._detail = ""
+        self._detail: Callable[[], str] = str
+        self._commit: Callable[[], int] | None = None
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
@@ -45,8 +47,9 @@ class Heartbeat:
             started_ns=self._started_ns,
             stamp_ns=time.time_ns(),
             state=self._state,
-            detail=self._detail,
+            detail=self._detail(),
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
+            commit=None if self._commit is None else self._commit(),
             notes=self._notes,
         )
         self._health.put(codec.encode(health))
@@ -61,9 +64,13 @@ class Heartbeat:
         self.describe(detail)
         self.beat()
 
-    def describe(self, detail: str) -> None:
-        """Say this of the node's state, from the next beat on."""
-        self._detail = detail
+    def describe(self, detail: str | Callable[[], str]) -> None:
+        """Say this of the node's state, from the next beat on; a function is asked at each beat."""
+        self._detail = detail if callable(detail) else lambda: detail
+
+    def count(self, commit: Callable[[], int]) -> None:
+        """Tell the number of the last commit with each beat, from the next one on."""
+        self._commit = commit
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Say this of what the node works with, from now on."""

@@ -126,6 +126,10 @@ class Node:
 
         self._at(due_s, repeat)
 
+    def later(self, delay_s: float, handle: Callable[[], None]) -> None:
+        """Call `handle()` once, after that time, as well as the load allows."""
+        self._at(time.monotonic() + delay_s, handle)
+
     def _at(self, due_s: float, handle: Callable[[], None]) -> None:
         heapq.heappush(self._timers, (due_s, next(self._timer_numbers), handle))
 
@@ -226,9 +230,13 @@ class Node:
         """Tell the others: the liveliness token appears and the next heartbeat says so."""
         self._heartbeat.ready(detail)
 
-    def describe(self, detail: str) -> None:
-        """What the heartbeats say of the node's state, from the next one on."""
+    def describe(self, detail: str | Callable[[], str]) -> None:
+        """What the heartbeats say of the node's state, from the next one on; a function is asked by each."""
         self._heartbeat.describe(detail)
+
+    def count(self, commit: Callable[[], int]) -> None:
+        """Let the heartbeats tell the number of the last commit."""
+        self._heartbeat.count(commit)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """What the heartbeats say of what the node works with, from now on."""

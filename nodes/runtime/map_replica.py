@@ -13,6 +13,10 @@ PAGE: Final = 5000
 """Entities in a page of a snapshot: some megabytes, and some milliseconds of the knowledge base."""
 
 
+_MOST_AHEAD: Final = 100
+"""Commits that are kept for when those before them have come."""
+
+
 class SnapshotPages:
     """A snapshot that is fetched page by page."""
 
@@ -55,6 +59,8 @@ class MapReplica(Generic[C]):
         self.entities: dict[str, Entity] = {}
         self._heard = -1
         self._doubted = False
+        self._ahead: dict[int, C] = {}
+        """Commits that came before those they follow: a reply may be read while others wait to be."""
         self._during_pages: dict[int, C] | None = None
 
     @property
@@ -81,7 +87,8 @@ class MapReplica(Generic[C]):
         self._doubted = False
         self.seq = snapshot.seq
         self.entities = {entity.name: entity for entity in snapshot.entities}
-        since, self._during_pages = self._during_pages or {}, None
+        since, self._during_pages = {**self._ahead, **(self._during_pages or {})}, None
+        self._ahead.clear()
         for _, commit in sorted(since.items()):
             self.take(commit)
         return True
@@ -94,14 +101,24 @@ class MapReplica(Generic[C]):
         self._heard = max(self._heard, commit.seq)
         if self._during_pages is not None:
             self._during_pages[commit.seq] = commit
-        if commit.seq == self.seq + 1 and commit.abridged is None:
-            self.seq = commit.seq
-            for gone in commit.removed:
-                self.entities.pop(gone.name, None)
-            self.entities.update({entity.name: entity for entity in commit.changed})
+        following: C | None = commit
+        if commit.seq > self.seq + 1 and len(self._ahead) < _MOST_AHEAD:
+            self._ahead[commit.seq] = commit
+        while following is not None and following.seq == self.seq + 1 and following.abridged is None:
+            self._apply(following)
+            following = self._ahead.pop(self.seq + 1, None)
         return commit.seq <= self.seq and not self._doubted
+
+    def _apply(self, commit: C) -> None:
+        """Let the entities be as the next commit leaves them."""
+        self.seq = commit.seq
+        for gone in commit.removed:
+            self.entities.pop(gone.name, None)
+        for entity in commit.changed:
+            self.entities[entity.name] = entity
 
     def doubt(self) -> None:
         """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
         self._heard = -1
         self._doubted = True
+        self._ahead.clear()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import configparser
+import contextlib
 import hashlib
 import io
 import os
@@ -17,12 +18,17 @@ from typing import Any
 from supervisor.xmlrpc import SupervisorTransport
 
 from nodes.supervisor import registry
+from nodes.supervisor.privacy import UMASK, make_private
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}.sock"
 _STOP_WAIT_S = 3
+_STOP_WAITS_S = {"kb_node": 30}
+"""Longer for those who may be writing: a checkpoint of a million entities takes some time."""
+LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
+"""Until supervisord itself has ended."""
 _WONT_MEND = "0,1,2"
 """Exit statuses after which a restart would fail the same way: stopped, refused, bad request."""
 
@@ -54,19 +60,25 @@ class Supervisor:
         self._conf_path.write_text(self._conf(settings))
         command = [sys.executable, "-P", "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
         with (self.logs / "supervisord.out").open("wb") as out:
+            make_private(self.data)
             return subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=out,
+                start_new_session=True,
+                umask=UMASK,
             )
 
     def seed(self, settings: Settings) -> str:
         """Make the journal; what was done, in words. Raises the reason why it could not be made."""
         try:
-            self.data.mkdir(parents=True, exist_ok=True)
+            make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
             raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
         command = [sys.executable, "-P", "-m", "nodes.supervisor.launch", "seed", str(self._settings_path)]
-        run = subprocess.run(command, capture_output=True, text=True)
+        run = subprocess.run(command, capture_output=True, text=True, umask=UMASK)
         if run.returncode != 0:
             reason = (
                 run.stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
@@ -91,9 +103,11 @@ class Supervisor:
 
     def restart(self, node: str) -> None:
         """Kill a node that hangs, then start it anew: there are never two of one kind."""
-        rpc = self._rpc().supervisor
-        rpc.stopProcess(f"{GROUP}:{node}")
-        rpc.startProcess(f"{GROUP}:{node}")
+        rpc, name = self._rpc().supervisor, f"{GROUP}:{node}"
+        with contextlib.suppress(xmlrpc.client.Fault):  # it has ended by itself
+            rpc.signalProcess(name, "KILL")  # it would not heed anything else, however long it may take
+            rpc.stopProcess(name)
+        rpc.startProcess(name)
 
     def shut_down(self) -> None:
         """Stop the nodes and supervisord itself. Raises NoAnswer when it does not run."""
@@ -103,7 +117,7 @@ class Supervisor:
             others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
             hint = f"; running systems: {others}" if others else ""
             raise errors.NoAnswer(f"no system is running on {self.data}{hint}") from None
-        deadline = time.monotonic() + 2 * _STOP_WAIT_S
+        deadline = time.monotonic() + LONGEST_STOP_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)
 
@@ -128,6 +142,7 @@ class Supervisor:
             "pidfile": str(self.data / "supervisord.pid"),
             "childlogdir": str(self.logs),
             "identifier": GROUP,
+            "umask": f"{UMASK:03o}",
         }
         conf["rpcinterface:supervisor"] = {
             "supervisor.rpcinterface_factory": "supervisor.rpcinterface:make_main_rpcinterface"
@@ -142,7 +157,7 @@ class Supervisor:
                 "startretries": "10",
                 "autorestart": "unexpected",
                 "exitcodes": _WONT_MEND,
-                "stopwaitsecs": str(_STOP_WAIT_S),
+                "stopwaitsecs": str(_STOP_WAITS_S.get(node, _STOP_WAIT_S)),
                 "stopasgroup": "true",
                 "killasgroup": "true",
                 "redirect_stderr": "true",

@@ -60,6 +60,18 @@ def is_loopback(endpoint: str) -> bool:
     return _LOOPBACK.fullmatch(endpoint) is not None
 
 
+def is_listening(endpoint: str) -> bool:
+    """Does anybody listen at this port of loopback just now?"""
+    if (match := _LOOPBACK.fullmatch(endpoint)) is None:
+        return False
+    import socket
+
+    host = endpoint.partition("/")[2].rpartition(":")[0].strip("[]")
+    with contextlib.suppress(OSError), socket.create_connection((host, int(match[1])), timeout=1.0):
+        return True
+    return False
+
+
 def _lock_of(endpoint: str) -> Path | None:
     """The file of the lock: one for a port, whoever uses it."""
     import tempfile

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import platformdirs
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
 from nodes.identity import Identity
@@ -62,6 +62,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
     """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener."""
+    zenoh_config: str | None = None
+    """A Zenoh configuration file of one's own, for every process of the system."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
@@ -85,7 +87,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The nodes to run, in the order of starting."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
-        router = (ROUTER,) if self.secure is not None else ()
+        router = (ROUTER,) if self.secure is not None and not self.connect else ()
         return router + tuple(node for node in order if optional.get(node, True))
 
     @property
@@ -96,13 +98,17 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def network(self, node: str) -> Network:
         """The coordinator listens where the world expects it; the others connect to it and mesh by gossip.
 
-        In a secure system the router listens, and all others are its clients.
+        In a secure system the router listens, and all others are its clients; or of one elsewhere.
         """
+        return structs.replace(self._place(node), own_config=self.zenoh_config)
+
+    def _place(self, node: str) -> Network:
         if self.secure is not None:
             identity = Identity.read(Path(self.secure) / node)
             if node == ROUTER:
                 return Network(mode="router", listen=(self.listen,), connect=(), identity=identity)
-            return Network(connect=(self.reachable,), identity=identity, patience_s=FOREVER_S)
+            where = self.connect or (self.reachable,)
+            return Network(connect=where, identity=identity, patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)
         return Network(mode="peer", listen=(ANY_PORT,), connect=(self.reachable, *self.connect))

@@ -18,7 +18,7 @@ from msgspec import structs
 from nodes import bus
 from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
-from nodes.supervisor.control import Supervisor
+from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
 from nodes.supervisor.settings import Settings
 from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
@@ -27,7 +27,6 @@ from schemas.commands import Classes
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
-_STOP_TIMEOUT_S = 4.5
 _LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
 
@@ -112,7 +111,8 @@ class _Foreground:
     def _network(self) -> bus.Network:
         secure = self._settings.secure
         identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
-        return bus.Network(connect=(self._settings.reachable,), identity=identity)
+        own_config = self._settings.zenoh_config
+        return bus.Network(connect=(self._settings.reachable,), identity=identity, own_config=own_config)
 
     def _hear(self) -> None:
         with contextlib.suppress(queue.Empty):
@@ -196,11 +196,11 @@ def _live_view() -> str:
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:
-    """Stop supervisord and with it the nodes, within 5 seconds."""
+    """Stop supervisord and with it the nodes: within 5 seconds, unless the knowledge base is writing."""
     if process.poll() is None:
         process.terminate()
         try:
-            process.wait(_STOP_TIMEOUT_S)
+            process.wait(LONGEST_STOP_S)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()

@@ -59,6 +59,7 @@ def door(semantic_map):
             else Outcome(commit=_effects(result))
             for result in semantic_map.commit_together(several.transactions)
         ),
+        "properties": lambda _: tuple(semantic_map.classes.stated.rows()),
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: _changed(
             semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run

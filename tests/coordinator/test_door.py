@@ -185,7 +185,7 @@ def test_loading_a_name_twice_is_refused(door):
 def test_a_body_that_came_to_rest_changes_only_the_pose(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0), ref="seat")
     pose = Pose(position_m=(1.5, 1.0, 0.2), orientation_wxyz=orientation_from_yaw(0.3))
-    door.follow("chair1", pose)
+    door.follow({"chair1": pose})
     chair = door.map.entity("chair1")
     assert (chair.pose, chair.preferred_reference) == (pose, "seat")
     assert (chair.pose_provenance.source, chair.shape_provenance.source) == ("scene", "operator")
@@ -211,7 +211,7 @@ def test_another_knowledge_base_may_know_less(door, semantic_map):
 
 def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
-    door.follow("chair1", Pose(position_m=(1.5, 1.0, 0.0)))
+    door.follow({"chair1": Pose(position_m=(1.5, 1.0, 0.0))})
     add(door, name="chair2")
     assert door.change(c.Undo()).text == "undid commit 3"
     reply = door.change(c.Undo())
@@ -225,10 +225,10 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
 def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
-    door.follow("chair1", Pose(position_m=(3.0, 1.0, 0.0)))
+    door.follow({"chair1": Pose(position_m=(3.0, 1.0, 0.0))})
     posed = door.map.entity("chair1").pose_provenance
     assert (posed.source, posed.agent, posed.reason) == ("scene", "ann", "chair1 was moved by hand")
-    door.follow("chair1", Pose(position_m=(3.5, 1.0, 0.0)))
+    door.follow({"chair1": Pose(position_m=(3.5, 1.0, 0.0))})
     assert door.map.entity("chair1").pose_provenance.reason == "chair1 came to rest"
     door.change(c.Undo())
     assert door.map.entity("chair1").pose.position_m == (1.0, 1.0, 0.0)
@@ -242,8 +242,8 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
     with monkeypatch.context() as away:
         away.setattr(door, "_ask", lambda call: raise_(errors.NoAnswer("it is being restarted")))
         with pytest.raises(errors.NoAnswer):
-            door.follow("chair1", rests)
-    door.follow("chair1", rests)
+            door.follow({"chair1": rests})
+    door.follow({"chair1": rests})
     assert door.map.entity("chair1").pose_provenance.agent == "ann"
     assert door.change(c.Undo()).text == "undid commit 2"
 
@@ -397,7 +397,13 @@ def test_a_property_is_set_and_unset(door):
     reply = door.change(c.Set(name="chair1", property="isOpen", values=(True,)))
     assert (reply.text, reply.commit) == ("chair1: isOpen: false → true", 2)
     again = door.change(c.Set(name="chair1", property="isOpen", values=("yes",)))
-    assert (again.text, again.commit) == ("chair1: unchanged: already up to date", None)
+    assert (again.text, again.commit) == ("chair1: unchanged: isOpen is true", None)
+    for value, word in ((False, "isOpen"), (False, "is open")):
+        left = door.change(c.Unset(name="chair1", property=word, value=value))
+        assert (left.text, left.commit) == ("chair1: unchanged: isOpen is true", None)
+    add(door, name="chair2")
+    none = door.change(c.Unset(name="chair2", property="isOpen"))
+    assert none.text == "chair2: unchanged: isOpen is not set"
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
         door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):

@@ -102,6 +102,15 @@ def test_a_renewed_certificate_is_another_one_of_the_same_name_and_role(folder):
     assert timedelta(days=6, hours=23) < left <= timedelta(days=7)
 
 
+def test_a_role_is_changed_with_the_certificate(folder):
+    assert authority.renew(folder, "vera", role="operator").role == "operator"
+    assert Register.read(folder).members["vera"].role == "operator"
+    (unit,) = loaded(folder, "vera").subject.get_attributes_for_oid(NameOID.ORGANIZATIONAL_UNIT_NAME)
+    assert unit.value == "operator"
+    with pytest.raises(errors.Refused, match="stays a node"):
+        authority.renew(folder, "router", role="viewer")
+
+
 def test_hosts_are_added_to_the_routers_certificate_only(folder):
     authority.renew(folder, "router", ("10.0.0.9",))
     said = loaded(folder, "router").extensions.get_extension_for_class(x509.SubjectAlternativeName).value

@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager, suppress
 
 import pytest
+from msgspec import structs
 
 from nodes import bus
 from nodes.kb_node.documents import rdf
@@ -14,7 +15,16 @@ from nodes.supervisor.settings import Settings
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors, keys
-from schemas.bridge import BRIDGE, Entities, LoadDocument, LoadTBox, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import (
+    BRIDGE,
+    Entities,
+    LoadDocument,
+    LoadTBox,
+    Recall,
+    SnapshotQuery,
+    StarQuery,
+    Transactions,
+)
 from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
 from schemas.commits import Effects, NewEntity
@@ -114,6 +124,24 @@ def test_a_commit_is_replied_and_published(session):
     subscriber.undeclare()
 
 
+def test_the_coordinator_is_not_told_again_of_what_a_reply_tells_it(session):
+    untold, subscriber = followed(session, keys.UNTOLD)
+    commits, other = followed(session, keys.COMMIT)
+    told = ask(session, "commit", structs.replace(transaction("t1", chair("t1")), told=True))
+    several = Transactions(
+        transactions=(
+            structs.replace(transaction("t2", chair("t2")), told=True),
+            transaction("t3", chair("t3")),
+        )
+    )
+    _, third = ask(session, "commits", several)
+    fourth = ask(session, "commit", transaction("t4", chair("t4")))
+    assert [message for _, message in until(untold, 2)] == [third.commit, fourth]
+    assert [message.seq for _, message in until(commits, 4)] == list(range(told.seq, fourth.seq + 1))
+    subscriber.undeclare()
+    other.undeclare()
+
+
 def test_entities_are_published_under_each_class_and_deleted_at_their_end(session):
     entities, subscriber = followed(session, keys.ENTITY)
     commit = ask(session, "commit", transaction("pub1", chair("pub")))
@@ -191,10 +219,14 @@ def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
     assert not ask(session, "get", Get(name="sat")).whereabouts
     moved = transaction("seen2", chair("sat", (60.0, 0.0, 0.0)), chair("sat", (51.0, 0.0, 0.0)))
     commit = ask(session, "commit", moved)
+    (note,) = commit.notes
+    assert note.startswith("taken back: sat was said to be in k9; it stands 7.")
     away = ask(session, "get", Get(name="sat", where=True))
-    assert not away.whereabouts
+    assert (away.whereabouts, away.denied, away.properties) == ((), (), {})
+    again = ask(session, "commit", transaction("seen3", [said]))
+    away = ask(session, "get", Get(name="sat", where=True))
     (denied,) = away.denied
-    assert denied.text.startswith("sat was said to be in k9; it stands 7.")
+    assert again.notes == (denied.text,)
     checked = ask(session, "check", Check())
     assert checked.consistent
     assert denied in checked.denied

@@ -261,6 +261,32 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     home.close(again)
 
 
+def test_a_start_from_a_checkpoint_concludes_nothing_anew(semantic_map, monkeypatch):
+    semantic_map.commit(transaction(1, chair(preferred="stool")))
+    before, inferred = semantic_map.snapshot(), list(semantic_map.inferred())
+    semantic_map.checkpoint()
+    monkeypatch.setattr(SemanticMap, "_change", None)
+    again = home.reopened(semantic_map)
+    monkeypatch.undo()
+    assert again.snapshot() == before
+    assert list(again.inferred()) == inferred
+    assert again.commit(transaction(2, retract=chair(preferred="stool"))).removed
+    home.close(again)
+
+
+def test_a_picture_can_be_written_down_later(semantic_map):
+    semantic_map.commit(transaction(1, chair(preferred="stool")))
+    picture = semantic_map.picture()
+    semantic_map.commit(transaction(2, turtle(":lamp1 a dm:Lamp .")))
+    expected = state(semantic_map)
+    semantic_map._journal.checkpoint(picture)
+    semantic_map.written(picture.seq)
+    again = home.reopened(semantic_map)
+    assert state(again) == expected
+    assert again._checkpointed == 1
+    home.close(again)
+
+
 SIZE = "a dm:3Three_Dim_Size ; dm:float_size_x 1.0 ; dm:float_size_y 1.0 ; dm:float_size_z 1.0"
 SAYINGS = [
     turtle(text)

@@ -180,6 +180,8 @@ FAULTS = {
     "one shape by its class, another said": ":a a dm:Can ; dm:hasShape dm:shape_cuboid .",
     "inverse functional": ":a dm:hasHandle :c . :b dm:hasHandle :c . :a owl:differentFrom :b .",
     "only building subparts in a corner": ":a a dm:Corner ; dm:hasSubLocation :b . :b a dm:Bathroom .",
+    "a place on a thing": ":a a dm:Kitchen ; dm:isOn :b . :b a dm:Table .",
+    "a place in a thing": ":a a dm:Corner . :b a dm:Fridge ; dm:holds :a .",
     "a tap controls plumbing only": ":a a dm:Tap ; dm:controls :b . :b a dm:Heating .",
     "complement": ":a a dm:Aspirin ; dm:hasAffordance dm:eating .",
     "defined class": ":a a dm:Soap ; dm:hasAffordance dm:drinking .",

@@ -7,10 +7,10 @@ import shutil
 import socket
 import ssl
 import time
-from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from msgspec import structs
 
 from nodes import bus
 from nodes.identity import Identity, authority
@@ -60,7 +60,7 @@ def test_a_certificate_of_another_authority_opens_nothing(endpoint, others):
 
 
 def test_trusting_the_right_authority_with_anothers_certificate_opens_nothing(folder, endpoint, others):
-    stranger = replace(Identity.read(others / "operator"), authority=str(folder / "ca.crt"))
+    stranger = structs.replace(Identity.read(others / "operator"), authority=str(folder / "ca.crt"))
     assert isinstance(refused(endpoint, stranger), errors.NoAnswer)
 
 

@@ -36,8 +36,10 @@ class KnowledgeBase:
         for made in commits:
             self._commits.put(codec.encode(made))
 
-    def beat(self, started_ns):
-        health = Health(node="kb_node", pid=1, started_ns=started_ns, stamp_ns=1, state="ready")
+    def beat(self, started_ns, commit=None):
+        health = Health(
+            node="kb_node", pid=1, started_ns=started_ns, stamp_ns=1, state="ready", commit=commit
+        )
         self._health.put(codec.encode(health))
 
 
@@ -119,3 +121,16 @@ def test_another_tbox_means_other_classes(both):
     kb.publish(commit(2, tbox=True))
     until(lambda: len(follower.begun) == 2, "classes and snapshot were fetched")
     assert follower.snapshots[-1] == (2, 2)
+
+
+def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):
+    kb, follower = both
+    kb.beat(0, commit=1)
+    kb.snapshot = Snapshot(seq=2, entities=(entity("cup2"),))
+    kb.beat(0, commit=2)
+    kb.publish(commit(1))  # comes after the beat: what is on its way has its time until the next one
+    until(lambda: follower.heard == [(1, True)], "the first beat was heard")
+    assert kb.asked == 1
+    kb.beat(0, commit=2)
+    until(lambda: follower.map.seq == 2, "it was fetched")
+    assert kb.asked == 2

@@ -44,11 +44,29 @@ def test_another_snapshot_counts():
 
 def test_a_commit_heard_of_before_a_snapshot_without_it_is_missed():
     view = MapReplica()
-    view.take(commit(2, entity("sink1", "Sink")))
+    view.take(commit(3, entity("sink1", "Sink")))
     view.begin(Snapshot(seq=1, entities=(entity("cup1", "Cup"),)))
     assert not view.is_current
-    view.begin(Snapshot(seq=2, entities=(entity("cup1", "Cup"), entity("sink1", "Sink"))))
+    view.begin(Snapshot(seq=3, entities=(entity("cup1", "Cup"), entity("sink1", "Sink"))))
     assert view.is_current
+
+
+def test_commits_that_came_too_early_count_when_those_before_them_have_come():
+    view = begun()
+    assert not view.take(commit(4, entity("sink1", "Basin")))
+    assert not view.take(commit(3, entity("sink1", "Sink"), removed=("cup1",)))
+    assert (view.seq, view.is_current) == (1, False)
+    assert view.take(commit(2, entity("cup1", "Bowl")))
+    assert (view.seq, view.is_current) == (4, True)
+    assert {name: e.class_ for name, e in view.entities.items()} == {"sink1": "Basin", "table1": "Table"}
+
+
+def test_what_came_too_early_of_another_map_is_forgotten():
+    view = begun()
+    view.take(commit(3, removed=("cup1",)))
+    view.doubt()
+    view.begin(Snapshot(seq=2, entities=(entity("cup1", "Cup"),)))
+    assert (view.seq, set(view.entities), view.is_current) == (2, {"cup1"}, True)
 
 
 def test_another_knowledge_base_may_know_less():

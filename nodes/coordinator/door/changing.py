@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from msgspec import structs
+from collections.abc import Mapping
 
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
-from nodes.coordinator.dialogues import Talk
+from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, commit, new_id, once
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.naming import free_position
-from nodes.coordinator.plausibility import doubts, require_same_nature
+from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
-from schemas import changes, errors
-from schemas.commands import Add, Clear, Command, Remove, Set, Unset, Update
-from schemas.commits import Effects, Transaction
+from ontology.name_index import Ambiguous, Named, NameIndex
+from schemas import changes, errors, wording
+from schemas.commands import Add, Clear, Command, Properties, Remove, Set, Unset, Update
+from schemas.commits import Edit, Effects, Transaction
 from schemas.entities import ClassInfo, Entity, Pose, free_name
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
@@ -48,6 +49,7 @@ def add(view: KnownMap, command: Add) -> Talk[Changed]:
 def update(view: KnownMap, command: Update) -> Talk[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity = view.entity(command.name)
+    require_carrying(command)
     found = view.classes.spatial(command.class_) if command.class_ is not None else None
     shape = (found, command.ref, command.alt, command.size)
     if any(value is not None for value in shape):
@@ -58,7 +60,7 @@ def update(view: KnownMap, command: Update) -> Talk[Changed]:
     return changed(
         made,
         f"updated {_said(entity, made)}" if made else _said(entity, made),
-        names=(entity.name,),
+        names=(entity.name, *(_others(made, entity.name) if command.carry else ())),
         notes=(
             *(view.classes.note(command.class_ or "", found) if found else ()),
             *doubts(
@@ -87,7 +89,22 @@ def unset(view: KnownMap, command: Unset) -> Talk[Changed]:
 def _stated(view: KnownMap, command: Set | Unset, transaction: Transaction) -> Talk[Changed]:
     entity = view.entity(command.name)
     made = yield from commit(view, transaction)
-    return changed(made, _said(entity, made), names=(entity.name,))
+    text = _said(entity, made) if made else f"{entity.name}: {(yield from _as_it_is(entity, command))}"
+    return changed(made, text, names=(entity.name,))
+
+
+def _as_it_is(entity: Entity, command: Set | Unset) -> Talk[str]:
+    """What is stated by a property that a command did not change."""
+    known = NameIndex(
+        Named(p.name, p.iri, labels=tuple(p.labels.values())) for p in (yield from ask(Properties()))
+    )
+    try:
+        name = known.find(command.property) or command.property
+    except Ambiguous:
+        return UNCHANGED
+    stated = entity.properties.get(name)
+    is_ = "not set" if stated is None else changes.stated_in_words(stated)
+    return f"unchanged: {name} is {is_}"
 
 
 def _said(was: Entity, made: Effects | None) -> str:
@@ -97,6 +114,11 @@ def _said(was: Entity, made: Effects | None) -> str:
         return f"{was.name}: {UNCHANGED}"
     said = changes.in_words(changes.between(was, now)) if now is not None else ""
     return f"{was.name}: {said}" if said else was.name
+
+
+def _others(made: Effects | None, name: str) -> tuple[str, ...]:
+    """The other entities that a commit changes: those that were carried along."""
+    return tuple(e.name for e in made.changed if e.name != name) if made is not None else ()
 
 
 def _after(made: Effects | None, name: str) -> Entity | None:
@@ -121,18 +143,20 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: KnownMap, name: str, pose: Pose, hand: Hand) -> Talk[Effects | None]:
-    """The map takes over where a body came to rest."""
-    command = Update(
+def follow(view: KnownMap, poses: Mapping[str, Pose], hand: Hand) -> Talk[Effects | None]:
+    """The map takes over where bodies came to rest, in one commit."""
+    moved = Transaction(
         id=new_id(),
         source="scene",
         agent=hand.agent,
+        verb=hand.verb,
         reason=hand.reason,
-        name=name,
-        at=pose.position_m,
-        orientation=pose.orientation_wxyz,
+        edit=tuple(
+            Edit(name=name, at=pose.position_m, orientation=pose.orientation_wxyz)
+            for name, pose in poses.items()
+        ),
     )
-    return (yield from commit(view, structs.replace(transactions.update(command), verb=hand.verb)))
+    return (yield from commit(view, moved))
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:
@@ -140,7 +164,7 @@ def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entit
     if not names:
         return Changed(commit=None, text="the map is already empty")
     made = yield from commit(view, transactions.remove(command, reason, names))
-    return changed(made, f"removed {len(names)}: {_few(names)}", names=names)
+    return changed(made, f"removed {len(names)}: {wording.few(names)}", names=names)
 
 
 def _label(found: ClassInfo) -> str:
@@ -149,7 +173,3 @@ def _label(found: ClassInfo) -> str:
 
 def _metres(pose: Pose) -> str:
     return "({:g}, {:g}, {:g})".format(*pose.position_m)
-
-
-def _few(names: tuple[str, ...]) -> str:
-    return ", ".join(names) if len(names) <= 10 else f"{', '.join(names[:9])} and {len(names) - 9} more"

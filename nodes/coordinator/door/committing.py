@@ -98,10 +98,11 @@ def new_id() -> str:
     return uuid.uuid4().hex
 
 
-def changed(commit: Effects | None, text: str, **fields: Any) -> Changed:
+def changed(commit: Effects | None, text: str, *, notes: tuple[str, ...] = (), **fields: Any) -> Changed:
     """The reply to a command that has made `commit`, or would have; `fields` are those of `Changed`."""
     if commit is None:
-        return Changed(commit=None, text=text, **fields)
+        return Changed(commit=None, text=text, notes=notes, **fields)
+    fields["notes"] = (*notes, *commit.notes)
     if (trial := commit.trial) is None:
         return Changed(commit=commit.seq, text=text, **fields)
     return Changed(commit=None, text=text, follows=trial.gained, no_longer_follows=trial.lost, **fields)

@@ -51,7 +51,7 @@ class Door:
     def _changing(self, command: Change) -> Talk[Changed]:
         return _CHANGING[type(command)](self.map, command)
 
-    def follow(self, name: str, pose: Pose) -> None:
-        """The map takes over where a body came to rest."""
-        with self.hands.that_moved(name) as hand:
-            hold(changing.follow(self.map, name, pose, hand), self._ask)
+    def follow(self, poses: Mapping[str, Pose]) -> None:
+        """The map takes over where bodies came to rest: one, or those that a hand carried together."""
+        with self.hands.that_moved(*poses) as hand:
+            hold(changing.follow(self.map, poses, hand), self._ask)

@@ -18,6 +18,8 @@ class KnownMap(map_replica.MapReplica[Effects]):
     def __init__(self) -> None:
         super().__init__()
         self.classes = ClassNames()
+        self.touched: set[str] = set()
+        """The names of the entities that commits touched, for whoever looks after them to take."""
         self._places: dict[str, Entity] | None = None
 
     @property
@@ -44,9 +46,10 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self._places = None
         return super().begin(snapshot)
 
-    def take(self, commit: Effects) -> bool:
-        """See `MapReplica.take`."""
-        taken = super().take(commit)
+    def _apply(self, commit: Effects) -> None:
+        """See `MapReplica._apply`."""
+        super()._apply(commit)
+        self.touched.update(commit.names)
         if self._places is not None:
             for name in commit.names:
                 entity = self.entities.get(name)
@@ -54,4 +57,3 @@ class KnownMap(map_replica.MapReplica[Effects]):
                     self._places[name] = entity
                 else:
                     self._places.pop(name, None)
-        return taken

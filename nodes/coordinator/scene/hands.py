@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
+from schemas import wording
 from schemas.commands import Move
 from schemas.errors import NoAnswer
 
@@ -19,6 +20,8 @@ class Hand(NamedTuple):
     verb: str
     agent: str
     reason: str
+    party: frozenset[str] = frozenset()
+    """The bodies that it carried together; the map follows all of them at once."""
 
 
 class Hands:
@@ -27,24 +30,38 @@ class Hands:
     def __init__(self) -> None:
         self._released: dict[str, tuple[Hand, float]] = {}
 
-    def let_go(self, command: Move) -> None:
-        """A hand let go of a body."""
-        hand = Hand("move", command.agent, command.reason or f"{command.name} was moved by hand")
-        self._released[command.name] = (hand, time.monotonic() + _RESTS_WITHIN_S)
+    def let_go(self, command: Move, load: Collection[str] = ()) -> None:
+        """A hand let go of a body, and of what it carried along with it."""
+        party = frozenset((command.name, *load)) if load else frozenset[str]()
+        reason = command.reason or f"{command.name} was moved by hand"
+        hand = Hand("move", command.agent, reason, party)
+        for name in (command.name, *load):
+            self._released[name] = (hand, time.monotonic() + _RESTS_WITHIN_S)
+
+    def party_of(self, name: str) -> frozenset[str]:
+        """Who was carried together with a body and is still to be followed with it, itself among them."""
+        hand, until_s = self._released.get(name, (None, 0.0))
+        if hand is None or time.monotonic() > until_s:
+            return frozenset()
+        return frozenset(n for n in hand.party if self._released.get(n, (None, 0.0))[0] is hand)
 
     @contextmanager
-    def that_moved(self, name: str) -> Iterator[Hand]:
-        """The hand because of which a body rests where it does.
+    def that_moved(self, *names: str) -> Iterator[Hand]:
+        """The hand because of which a body rests where it does, or several do that it carried together.
 
         It is forgotten when the map has accepted or refused the new place, and kept for the next attempt when
         the map did not answer (NoAnswer).
         """
-        hand, until_s = self._released.pop(name, (None, 0.0))
+        hand, until_s = self._released.pop(names[0], (None, 0.0))
         if hand is None or time.monotonic() > until_s:
-            yield Hand("", "", f"{name} came to rest")
+            yield Hand("", "", f"{wording.few(names)} came to rest")
             return
+        for name in hand.party:
+            if self._released.get(name, (None, 0.0))[0] is hand:
+                del self._released[name]
         try:
             yield hand
         except NoAnswer:
-            self._released.setdefault(name, (hand, time.monotonic() + _RESTS_WITHIN_S))
+            for name in hand.party or names:
+                self._released.setdefault(name, (hand, time.monotonic() + _RESTS_WITHIN_S))
             raise

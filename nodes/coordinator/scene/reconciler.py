@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
@@ -18,7 +18,7 @@ from nodes.coordinator.door import Door
 from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
 from nodes.coordinator.scene.spawn_batches import batches
-from schemas import errors
+from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
@@ -94,7 +94,7 @@ class Keeping:
         if self._busy or not self.scene.known:
             return
         actions = self.wanted(names)
-        refused = [placement for placement in map(self._follow, actions.follow) if placement is not None]
+        refused = [back for group in self._to_follow(actions.follow) for back in self._follow(group)]
         for body in actions.adopt:
             self._adopt(body)
         steps = self._orders(actions, refused)
@@ -231,19 +231,36 @@ class Keeping:
             gone = Delete(names=tuple(order.name for order in anew))
             self._steps.extendleft([self._spawning(anew), Step(gone, lambda _: None)])
 
-    def _follow(self, placement: Placement) -> Placement | None:
-        """Let the map follow a body; if the map refuses, the body has to go back."""
+    def _to_follow(self, placements: Sequence[Placement]) -> Iterator[tuple[Placement, ...]]:
+        """Each by itself, or together with what a hand carried along with it, once all of that rests."""
+        done: set[str] = set()
+        for placement in placements:
+            if placement.name in done:
+                continue
+            party = self._door.hands.party_of(placement.name)
+            done |= party
+            there = _only(party, self.scene.bodies).values()
+            if not party:
+                yield (placement,)
+            elif all(body.resting for body in there):
+                yield self.wanted(party).follow
+
+    def _follow(self, placements: Sequence[Placement]) -> Iterator[Placement]:
+        """Let the map follow bodies; if the map refuses, they have to go back."""
+        poses = {placement.name: rounded(placement.pose) for placement in placements}
         try:
-            self._door.follow(placement.name, rounded(placement.pose))
+            self._door.follow(poses)
         except errors.Refused as error:
+            told = "its new pose" if len(poses) == 1 else "their new poses"
+            were = "was" if len(poses) == 1 else "were"
             self._report(
-                f"{placement.name} was put back, because the map rejected its new pose: {error.text}"
+                f"{wording.few(poses)} {were} put back, because the map rejected {told}: {error.text}"
             )
-            entity = self._door.map.entities[placement.name]
-            if entity.pose is not None:
-                commit = entity.pose_provenance.commit
-                return Placement(name=placement.name, pose=entity.pose, commit=commit)
-        return None
+            for name in poses:
+                entity = self._door.map.entities[name]
+                if entity.pose is not None:
+                    commit = entity.pose_provenance.commit
+                    yield Placement(name=name, pose=entity.pose, commit=commit)
 
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
 from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
+from nodes.coordinator.plausibility import require_carrying
 from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
-from nodes.runtime.futures import then
+from nodes.runtime.futures import settle, then
 from schemas import commands as c
 from schemas import errors, wording
+from schemas.bridge import LoadOf
 from schemas.calls import Call
-from schemas.entities import Pose, orientation_from_yaw
+from schemas.entities import Pose, carried, orientation_from_yaw
 from schemas.replies import Done, Moved
 from schemas.scenes import BodiesMoved, Body, MoveBodies, Picture, PictureQuery, Placement
 
@@ -24,28 +27,45 @@ _LIFTED_M = 0.02
 class Running:
     """Passes them on to the simulator. Raises NoAnswer when none runs."""
 
-    def __init__(self, truth: Truth, door: Door, keeping: Keeping, ask: AskSim) -> None:
-        """`ask(call)` asks the simulator, without waiting."""
+    def __init__(self, truth: Truth, door: Door, keeping: Keeping, ask: AskSim, ask_map: AskSim) -> None:
+        """`ask(call)` asks the simulator, `ask_map(call)` the knowledge base, without waiting."""
         self._truth = truth
         self._door = door
         self._keeping = keeping
         self._ask = ask
+        self._ask_map = ask_map
 
     def move(self, command: c.Move) -> Future[Moved]:
-        """Take a body and put it elsewhere, as a hand would."""
+        """Take a body and put it elsewhere, as a hand would; with what it bears, if that is wanted."""
+        require_carrying(command)
         body = self._keeping.scene.bodies.get(command.name)
         if body is None:
             state = self._keeping.body_state(self._door.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
+        if not command.carry:
+            return self._put(command, body, ())
+        future: Future[Moved] = Future()
+        asked = self._ask_map(LoadOf(name=command.name, leave=command.leave))
+        asked.add_done_callback(lambda done: settle(future, lambda: self._put(command, body, done.result())))
+        return future
+
+    def _put(self, command: c.Move, body: Body, load: Sequence[str]) -> Future[Moved]:
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
-        order = MoveBodies(placements=(Placement(name=command.name, pose=pose),))
+        bodies = self._keeping.scene.bodies
+        along = {name: carried(bodies[name].pose, body.pose, pose) for name in load if name in bodies}
+        order = MoveBodies(
+            placements=tuple(Placement(name=n, pose=p) for n, p in {command.name: pose, **along}.items())
+        )
 
         def moved(reply: BodiesMoved) -> Moved:
             if command.name in reply.failed:
                 raise errors.Refused(reply.failed[command.name])
-            self._door.hands.let_go(command)
-            return Moved(name=command.name, text=_let_go(command, reply.bodies[0]))
+            self._door.hands.let_go(command, [name for name in along if name not in reply.failed])
+            text = _let_go(command, reply.bodies[0])
+            if command.carry:
+                text = f"{text}; {wording.carried(command.name, tuple(along))}"
+            return Moved(name=command.name, text=text)
 
         return then(self._ask(order), moved)
 

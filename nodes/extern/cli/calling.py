@@ -110,6 +110,15 @@ def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
     return click.option(*names, nargs=3, type=float, **options)
 
 
+def carrying(function: Callable[..., None]) -> Callable[..., None]:
+    """The options of a verb that moves a thing with what is on it."""
+    leave = click.option(
+        "--leave", multiple=True, metavar="NAME", help="With --carry: not this one; may be repeated."
+    )
+    carry = click.option("--carry", is_flag=True, help="Take along what stands on it or is inside it.")
+    return carry(leave(function))
+
+
 def given(fields: dict[str, Any]) -> dict[str, Any]:
     """The options that were given."""
     return {name: value for name, value in fields.items() if value not in (None, (), False)}

@@ -79,7 +79,7 @@ class Picture(NamedTuple):
 
 def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
     """The map as it is now, to be written: the ABox or, if `inferred`, what holds about those in it."""
-    semantic_map.follow_places()
+    semantic_map.believe_places()
     abox = semantic_map.abox()
     aside = set(semantic_map.reasoner.set_aside())
     held = [triple for triple in abox if triple not in aside] if aside else abox

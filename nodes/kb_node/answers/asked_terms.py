@@ -90,7 +90,11 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
         return relation
     if (found := term(semantic_map, word)) is not None:
         return found
-    return semantic_map.classes.property_named(word)
+    names = semantic_map.classes.property_names
+    if (known := names.find(word)) is None:
+        hint = names.did_you_mean(word) or "; there are type and the properties of the TBox"
+        raise errors.BadRequest(f"unknown property '{word}'{hint}")
+    return known
 
 
 def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:

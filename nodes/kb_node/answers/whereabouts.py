@@ -11,7 +11,6 @@ from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import denied, fact_of
 from nodes.kb_node.relations.selection import selected
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.surroundings import Surroundings
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
@@ -29,43 +28,32 @@ class Now:
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
-        self._surroundings = Surroundings(semantic_map.entities, semantic_map.find)
-
-    def touch(self, names: Iterable[str]) -> None:
-        """These entities came, went or changed."""
-        self._surroundings.touch(names)
-
-    def _space(self) -> Space:
-        """The solids as they are now: those that facts are computed of, or, where none are, others."""
-        self._map.follow_places()
-        computed = self._map.beliefs.computed
-        return self._surroundings.space() if computed.is_idle else computed.facts.space
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """The entities of a class; with `where` those that are there. Raises UnknownClass, UnknownName."""
         found = answers.entities_of(self._map, query.class_)
         if query.where is None:
             return found
-        return tuple(selected(self._space(), found, query.where, self._map.entities()))
+        return tuple(selected(self._map.places.space(), found, query.where, self._map.entities()))
 
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
         entity = self._map.entity(query.name)
         if not query.where:
             return Described.of(entity)
-        space = self._space()
+        space = self._map.places.space()
         wrong = denied(space, answers.said_of_place(self._map, entity))
         return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
 
     def denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
-        space = self._space()
+        space = self._map.places.space()
         return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName."""
         self._map.entity(query.name)
-        return tuple(relations(self._space(), query))
+        return tuple(relations(self._map.places.space(), query))
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
@@ -74,7 +62,7 @@ class Now:
         """
         if query.negated:
             return None
-        space = self._space()
+        space = self._map.places.space()
         seen = None
         if query.predicate in SPOKEN:
             seen = explained(space, query.name, query.predicate, query.value)
@@ -102,7 +90,7 @@ class Now:
     def _told(self, fact: Triple) -> str:
         """What was measured of a computed fact, and since which commit things are where they are."""
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
-        seen = explained(self._space(), name, COMPUTED[fact[1]], other)
+        seen = explained(self._map.places.space(), name, COMPUTED[fact[1]], other)
         ends = self._map.entity(name), self._map.entity(other)
         since = max(p.commit for end in ends for p in (end.pose_provenance, end.shape_provenance))
         return v.spoken(fact) if seen is None else f"{seen.text} (commit {since})"
@@ -122,7 +110,7 @@ class Then:
         if query.where is None:
             return found
         everyone = self._past.entities(query.as_of, None, ())
-        return tuple(selected(Space(everyone), found, query.where, everyone))
+        return tuple(selected(self._space(everyone), found, query.where, everyone))
 
     def entity(self, query: Get) -> Described:
         """See `Now.entity`; what was wrongly said is not looked for."""
@@ -130,11 +118,14 @@ class Then:
         entity = self._past.entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
-        space = Space(self._past.entities(query.as_of, None, ()))
+        space = self._space(self._past.entities(query.as_of, None, ()))
         return Described.of(entity, tuple(whereabouts(space, entity.name)))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
         assert query.as_of is not None
         self._past.entity(query.name, query.as_of)
-        return tuple(relations(Space(self._past.entities(query.as_of, None, ())), query))
+        return tuple(relations(self._space(self._past.entities(query.as_of, None, ())), query))
+
+    def _space(self, entities: Iterable[Entity]) -> Space:
+        return Space(entities, self._map.classes.limits)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from nodes.kb_node.documents import abox_document, rdf
 from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
-from schemas import errors
+from schemas import errors, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commits import Transaction
 from schemas.explanations import Triple
@@ -53,6 +53,19 @@ def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> 
         spatial_root=load.spatial_root,
     )
     return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)
+
+
+def refused_tbox(
+    semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple], refusal: errors.Inconsistent
+) -> errors.SemmapError:
+    """Why a TBox cannot replace the present one: because it is a map, it seems, or because of `refusal`."""
+    described = tbox_validation.described_by(tbox, semantic_map.classes)
+    if not described:
+        return refusal
+    return errors.BadFile(
+        f"{load.filename or 'the file'} cannot be the TBox: it describes {wording.entities(len(described))}"
+        f" ({wording.few(described, 4)}), and with the map that is a contradiction; load a map without --tbox"
+    )
 
 
 def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:

@@ -10,12 +10,13 @@ from msgspec import structs
 
 from nodes.kb_node.entities import alignments
 from nodes.kb_node.entities.alignments import Alignment
+from nodes.kb_node.entities.property_names import PropertyNames
 from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.relations import thresholds
 from ontology import prefixes, stars
 from ontology import vocabulary as v
-from ontology.name_index import Ambiguous, Named, NameIndex
-from schemas import errors
+from ontology.name_index import Named, NameIndex
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term
 
@@ -74,7 +75,10 @@ class ClassTable:
         self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
         self.places: frozenset[Term] = places - self._solid
-        self.stated = PropertyTable(reasoner, self.prefixes, self.edges | self.first_words)
+        self.property_names = PropertyNames(reasoner, self.properties, self.prefixes)
+        self.stated = PropertyTable(
+            reasoner, self.property_names, self.names, self.prefixes, self.edges | self.first_words
+        )
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
@@ -82,6 +86,8 @@ class ClassTable:
         self.fixed: frozenset[Term] = frozenset(
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
+        self.limits = thresholds.of_tbox(lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None)))
+        """When the spatial relations hold."""
         self._spoken: dict[frozenset[Term], tuple[str, ...]] = {}
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
@@ -170,38 +176,6 @@ class ClassTable:
         return NameIndex(
             Named(row.name, row.iri, row.prefixed, (*row.labels.values(), *row.also)) for row in self.rows
         )
-
-    @cached_property
-    def property_names(self) -> dict[Term, str]:
-        """Property to name: its local name, with a prefix where several properties share that."""
-        return prefixes.names([p for p in self.properties if p.startswith("<")], self.prefixes)
-
-    @cached_property
-    def _properties_by_word(self) -> tuple[NameIndex, dict[str, Term]]:
-        named = [
-            Named(
-                name,
-                v.bare(p),
-                prefixes.prefixed(p, self.prefixes),
-                tuple(
-                    v.lexical(o) for _, _, o in self._reasoner.asserted(p, v.RDFS_LABEL, None) if o[0] == '"'
-                ),
-            )
-            for p, name in self.property_names.items()
-        ]
-        return NameIndex(named), {name: p for p, name in self.property_names.items()}
-
-    def property_named(self, word: str) -> Term:
-        """The property that `word` means: its name, IRI or label. Raises BadRequest with the candidates."""
-        index, by_name = self._properties_by_word
-        try:
-            name = index.find(word)
-        except Ambiguous as error:
-            raise errors.BadRequest(f"'{word}' is ambiguous: {error}; say which property") from None
-        if name is None:
-            hint = index.did_you_mean(word) or "; there are type and the properties of the TBox"
-            raise errors.BadRequest(f"unknown property '{word}'{hint}")
-        return by_name[name]
 
     def _row(self, c: Term) -> ClassInfo:
         labels: dict[str, str] = {}

@@ -65,12 +65,9 @@ def read_entity(
         return None  # a part that somebody describes without naming it: nobody could ask for it
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     assert kind is not None
-    size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
-    pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
+    pose, size_m = read_place(about, classes, iri)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:
-        size_m = size_m or aligned.size(classes.alignments, about, iri)
-        pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
         preferred = preferred or aligned.names(classes.alignments, about, iri)[:1]
     return entity_of(
         iri,
@@ -83,6 +80,17 @@ def read_entity(
         conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
         properties=classes.stated.stated(said),
     )
+
+
+def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:
+    """Where a thing is and how large. Raises BadRequest for numbers that make no sense."""
+    said = about(iri)
+    size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
+    pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
+    if classes.alignments:
+        size_m = size_m or aligned.size(classes.alignments, about, iri)
+        pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
+    return pose, size_m
 
 
 def entity_of(

@@ -23,7 +23,6 @@ from schemas import errors
 from schemas.commits import Edit, NewEntity, Statement
 from schemas.entities import Entity, Pose, Size
 from schemas.explanations import Term, Triple
-from schemas.scene_files import pose_of
 
 
 class Draft:
@@ -101,7 +100,9 @@ class Draft:
         self._require(entity.name, said, edit.only_if)
         self._state(entity, said, edit)
         if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
-            self._place(entity, said.get(v.HAS_POSITION, ()), _pose(entity, edit), edit.size or entity.size_m)
+            self._place(
+                entity, said.get(v.HAS_POSITION, ()), edit.pose_after(entity.pose), edit.size or entity.size_m
+            )
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
             self._require_class(edit.class_iri)
             self._go((iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL)
@@ -274,11 +275,3 @@ class Draft:
 
     def _come(self, triples: Iterable[Triple]) -> None:
         self.insert.update(dict.fromkeys(triples))
-
-
-def _pose(entity: Entity, edit: Edit) -> Pose:
-    before = entity.pose
-    at = edit.at or (before.position_m if before is not None else None)
-    if at is None:
-        raise errors.BadRequest(f"{entity.name} has no position yet; give one with --at")
-    return pose_of(at, edit.yaw, edit.orientation, before)

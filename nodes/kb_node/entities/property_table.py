@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from nodes.kb_node.entities import property_values
+from nodes.kb_node.entities.property_names import PropertyNames
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.sparql.queries.text import query_prefixes
-from ontology import prefixes
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.entities import PropertyInfo
@@ -26,6 +26,7 @@ STRUCTURAL: Mapping[Term, str] = {
     v.RDF_TYPE: "update {name} --class CLASS",
 }
 """What makes up an entity's star has options of its own."""
+_TYPE = frozenset(("type", "class"))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
 
 
@@ -45,11 +46,15 @@ class PropertyTable:
     def __init__(
         self,
         reasoner: Reasoner,
+        names: PropertyNames,
+        class_names: Mapping[Term, str] = MappingProxyType({}),
         known_prefixes: Mapping[str, str] = MappingProxyType({}),
         edges: Set[Term] = frozenset(),
     ) -> None:
         """`edges` are more properties that make up an entity's star."""
         self._reasoner = reasoner
+        self._names = names
+        self._class_names = class_names
         self._prefixes = query_prefixes(known_prefixes)
         typed = [(s, o) for s, _, o in reasoner.asserted(None, v.RDF_TYPE) if s.startswith("<")]
         classes = {s for s, o in typed if o == v.OWL_CLASS}
@@ -60,7 +65,6 @@ class PropertyTable:
             for p, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
             if p.startswith("<") and p not in _OF_A_STAR
         }
-        names = prefixes.names(declared.keys(), known_prefixes)
         self.by_iri: dict[Term, Property] = {}
         for p, is_data in sorted(declared.items()):
             if p in STRUCTURAL or p in edges:
@@ -68,7 +72,7 @@ class PropertyTable:
             above = self._above(p)
             self.by_iri[p] = Property(
                 iri=p,
-                name=names[p],
+                name=names.names[p],
                 is_data=is_data,
                 functional=any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
                 ranges=frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
@@ -87,22 +91,16 @@ class PropertyTable:
         Raises BadRequest with the nearest names; for what makes up the star of entity `name`, with the
         option that changes it.
         """
-        term = self._term(word)
-        found = {term} if term is not None else set(self._words.get(_fold(word), ()))
-        if len(found) > 1:
-            exact = {p for p in found if v.local_name(p) == word}
-            found = exact if len(exact) == 1 else found
-        if len(found) > 1:
-            names = " or ".join(sorted(self._name(p) for p in found))
-            raise errors.BadRequest(f"'{word}' is ambiguous; did you mean {names}?")
-        for p in found:
-            if p in STRUCTURAL:
-                how = STRUCTURAL[p].format(name=name)
-                raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
-            if p in self.by_iri:
-                return self.by_iri[p]
-        known = [p.name for p in self.by_iri.values()]
-        hint = errors.did_you_mean(word, known) or "; see: semmap properties"
+        if _fold(word) in _TYPE:
+            p: Term | None = v.RDF_TYPE
+        elif (p := self._term(word)) is None:
+            p = self._names.find(word, among=self._is_known)
+        if p is not None and p in STRUCTURAL:
+            how = STRUCTURAL[p].format(name=name)
+            raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
+        if p in self.by_iri:
+            return self.by_iri[p]
+        hint = self._names.did_you_mean(word, self.by_iri.__contains__) or "; see: semmap properties"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
 
     def term(
@@ -138,12 +136,17 @@ class PropertyTable:
                 iri=v.bare(prop.iri),
                 kind="data" if prop.is_data else "object",
                 functional=prop.functional,
-                domain=_names(domains),
-                range=_names(prop.ranges),
+                domain=self._called(domains),
+                range=self._called(prop.ranges),
                 labels=self._labels(prop.iri),
                 comment=v.lexical(comments[0]) if comments else "",
                 values={v.local_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},
             )
+
+    def _called(self, classes: Iterable[Term]) -> tuple[str, ...]:
+        """Classes by the class table's names, datatypes by their own."""
+        named = filter(lambda c: c.startswith("<"), classes)
+        return tuple(sorted(self._class_names.get(c) or v.local_name(c) for c in named))
 
     def _individual(self, prop: Property, word: str) -> Term | None:
         """The TBox's individual of this name or label; of several that one which the range has."""
@@ -158,15 +161,8 @@ class PropertyTable:
             return set()
         return self._of_the_tbox.intersection(*(self._reasoner.instances(c) for c in prop.ranges))
 
-    @cached_property
-    def _words(self) -> dict[str, set[Term]]:
-        """Names and labels of the properties, the structural ones too."""
-        words: dict[str, set[Term]] = {}
-        for p in (*self.by_iri, *STRUCTURAL):
-            self._note(words, p)
-        words.setdefault("type", set()).add(v.RDF_TYPE)
-        words.setdefault("class", set()).add(v.RDF_TYPE)
-        return words
+    def _is_known(self, p: Term) -> bool:
+        return p in self.by_iri or p in STRUCTURAL
 
     @cached_property
     def _individuals(self) -> dict[str, set[Term]]:
@@ -191,9 +187,6 @@ class PropertyTable:
         said = sorted(o for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
         return {v.language_of(o) or "": v.lexical(o) for o in said}
 
-    def _name(self, p: Term) -> str:
-        return self.by_iri[p].name if p in self.by_iri else v.local_name(p)
-
     def _is(self, p: Term, kind: Term) -> bool:
         return any(self._reasoner.asserted(p, v.RDF_TYPE, kind))
 
@@ -213,10 +206,6 @@ class PropertyTable:
 def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
     values = tuple(sorted(map(property_values.plain, terms), key=str))
     return prop.name, values[0] if prop.functional and len(values) == 1 else values
-
-
-def _names(terms: Iterable[Term]) -> tuple[str, ...]:
-    return tuple(sorted(v.local_name(t) for t in terms if t.startswith("<")))
 
 
 def _label(labels: Mapping[str, str]) -> str:

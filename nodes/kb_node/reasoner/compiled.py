@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Iterator, Sequence, Set
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.abox_view import View
+from nodes.kb_node.reasoner.abox.columns import Columns
 from nodes.kb_node.reasoner.abox.retraction import Retraction
 from nodes.kb_node.reasoner.abox.saturation import Saturation
+from nodes.kb_node.reasoner.abox.snapshot import columns_of, fill
 from nodes.kb_node.reasoner.abox.store import COMPUTED
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.explain.proof import Prover
@@ -172,6 +175,7 @@ class CompiledEngine:
         abox.settle()
         if retraction is not None:
             retraction.release()
+        self._size += len(added) - len(removed[0])
         return Change(touched)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
@@ -248,6 +252,22 @@ class CompiledEngine:
         there, coming = self._schema_triples, set(insert)
         gone = [t for t in delete if not is_schema(t) or (t in there and t not in coming)]
         return gone, [t for t in insert if not is_schema(t) or t not in there]
+
+    def columns(self) -> Columns | None:
+        """All of it but the schema, to be filled in again; None for an ABox that columns cannot hold."""
+        return columns_of(self._abox, schema=self._digest(), size=self._size)
+
+    def fill(self, columns: Columns) -> bool:
+        """Be what columns were made of. False, with nothing done, if their schema is another."""
+        if columns.schema != self._digest() or not fill(self._abox, columns):
+            return False
+        self._size = columns.size
+        return True
+
+    def _digest(self) -> bytes:
+        """Of the schema's triples."""
+        lines = sorted(map(" ".join, self._schema_triples))
+        return hashlib.blake2b("\n".join(lines).encode(), digest_size=16).digest()
 
     def by_subject(self) -> Iterator[list[Triple]]:
         """The asserted triples in groups, between which the ABox may change."""

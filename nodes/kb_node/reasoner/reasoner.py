@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from itertools import chain
 from typing import NamedTuple
 
+from nodes.kb_node.reasoner.abox.columns import Columns
 from nodes.kb_node.reasoner.aside import Aside
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
@@ -94,6 +95,17 @@ class Reasoner:
     def closed(self) -> Facts | None:
         """All that follows from the schema, if that is worked out by itself."""
         return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
+
+    def columns(self) -> Columns | None:
+        """What is held beyond the schema, conclusions included; None where columns cannot say it."""
+        return self._engine.columns() if isinstance(self._engine, CompiledEngine) else None
+
+    def fill(self, columns: Columns) -> bool:
+        """Hold what another reasoner of the same schema held; nothing but the TBox is held yet.
+
+        False, with nothing done, if the schema was another: then apply the columns' triples.
+        """
+        return isinstance(self._engine, CompiledEngine) and self._engine.fill(columns)
 
     def apply(self, *, delete: Iterable[Triple] = (), insert: Iterable[Triple] = ()) -> Change:
         """One transaction: deletes, then inserts, then checks.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
+from nodes.kb_node.relations.arrangement import attachments
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -50,6 +51,16 @@ def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
         yield "isLocatedIn", place[0].name
 
 
+def _attachments(space: Space, solid: Solid) -> Iterator[About]:
+    for other in attachments(space, solid):
+        yield "isAttachedTo", other.name
+
+
+def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
+    """Whether the other may hang on the solid, or not do so any more because that bears it."""
+    return other.bottom > solid.bottom and other.bottom <= solid.top + space.limits.gap_m
+
+
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
     """Whether the other may be on the solid, inside it or in it."""
     if solid.is_place:
@@ -64,6 +75,7 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
 
 RULES: Final[tuple[Rule, ...]] = (
     Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear, when_gone=True),
+    Rule(("isAttachedTo",), _attachments, _may_hold, lambda limits: limits.attached_m, when_gone=True),
 )
 
 COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}

@@ -46,8 +46,8 @@ def denied(space: Space, said: Iterable[Fact]) -> Iterator[Relation]:
 def denial(space: Space, said: Fact) -> Relation | None:
     """Why a fact does not hold as things stand; None where geometry agrees, or cannot tell.
 
-    It cannot where a position or a size is missing, and it does not deny that what hangs is on a wall, nor
-    what is a matter of a few centimetres.
+    It cannot where a position or a size is missing, or the whole map is flat. It does not deny that what
+    hangs is on a wall, nor what is a matter of a few centimetres.
     """
     name, relation, other_name = said
     solid, other = space.solids.get(name), space.solids.get(other_name)
@@ -76,7 +76,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
             return None
         apart = measures.gap(solid, other)
         return why(relation, solid, other, made) if apart < limits.touch_m else _stands_off(solid, apart)
-    if other.is_place or solid.is_place or not solid.is_measured:
+    if other.is_place or solid.is_place or not solid.is_measured or space.is_flat:
         return None
     if other in _bearers(space, solid):
         return None

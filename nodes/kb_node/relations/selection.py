@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence, Set
+from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.solids import Solid
@@ -13,6 +14,15 @@ from schemas.entities import Entity
 from schemas.relations import Where
 
 
+class Meant(NamedTuple):
+    """The names of those that the words of a `Where` mean; None where there is no word."""
+
+    on: frozenset[str] | None
+    in_: frozenset[str] | None
+    near: frozenset[str] | None
+    to: frozenset[str] | None
+
+
 def selected(
     space: Space, entities: Sequence[Entity], where: Where, everyone: Iterable[Entity]
 ) -> list[Entity]:
@@ -20,46 +30,59 @@ def selected(
 
     `everyone` is who may be meant by a word. Raises UnknownName for a word that means nobody, BadRequest.
     """
-    if (where.within is not None) and where.near is None and where.to is None:
+    require_whole(where)
+    return chosen(space, entities, where, resolved(where, tuple(everyone)))
+
+
+def require_whole(where: Where) -> None:
+    """Raises BadRequest for conditions that make no sense by themselves."""
+    if where.within is not None and where.near is None and where.to is None:
         raise errors.BadRequest("--within needs a thing to be within reach of: --near NAME")
     if (where.nearest is None) != (where.to is None):
         raise errors.BadRequest("--nearest N and --to NAME go together: the N nearest to NAME")
-    everyone = tuple(everyone)
+
+
+def chosen(space: Space, entities: Sequence[Entity], where: Where, those: Meant) -> list[Entity]:
+    """Those of `entities` that are where it is asked."""
     found = [entity for entity in entities if entity.name in space.solids]
-    if where.on is not None:
-        carriers = meant(everyone, where.on)
+    if those.on is not None:
+        carriers = those.on
         found = [e for e in found if _is_on(space, space.solids[e.name], carriers)]
-    if where.in_ is not None:
-        holders = meant(everyone, where.in_)
+    if those.in_ is not None:
+        holders = those.in_
         found = [e for e in found if _is_in(space, space.solids[e.name], holders)]
-    if where.near is not None:
-        others = [space.solids[name] for name in meant(everyone, where.near) if name in space.solids]
+    if those.near is not None:
+        others = [space.solids[name] for name in those.near if name in space.solids]
         is_near = _within(where.within) if where.within is not None else _is_near(space)
         found = [
             e for e in found if any(is_near(space.solids[e.name], o) for o in others if o.name != e.name)
         ]
-    if where.to is not None and where.nearest is not None:
-        found = _nearest(space, found, meant(everyone, where.to), where)
+    if those.to is not None and where.nearest is not None:
+        found = _nearest(space, found, those.to, where)
     return found
 
 
-def meant(everyone: Iterable[Entity], word: str) -> set[str]:
+def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
+    """Whom the words mean. Raises UnknownName."""
+    return Meant(*(None if word is None else meant(everyone, word) for word in where.words))
+
+
+def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
     """The entities that a word means: that name, else that reference, else that class. Raises UnknownName."""
-    everyone = tuple(everyone)
     folded = word.casefold().replace("_", " ")
     for called in (
         lambda e: (e.name,),
         lambda e: (e.preferred_reference or "", *e.alternative_references),
         lambda e: e.types,
     ):
-        names = {e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))}
+        names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
         if names:
-            return names
+            return frozenset(names)
     known = {e.name for e in everyone} | {e.preferred_reference or "" for e in everyone}
     raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
 
 
-def _is_on(space: Space, solid: Solid, carriers: set[str]) -> bool:
+def _is_on(space: Space, solid: Solid, carriers: Set[str]) -> bool:
     """On one of them, or on what is on one of them."""
     seen, waiting = {solid}, [solid]
     while waiting:
@@ -77,7 +100,7 @@ def _is_on(space: Space, solid: Solid, carriers: set[str]) -> bool:
     return False
 
 
-def _is_in(space: Space, solid: Solid, holders: set[str]) -> bool:
+def _is_in(space: Space, solid: Solid, holders: Set[str]) -> bool:
     """In one of these places, or inside one of these containers, or inside what is inside one."""
     for name in holders:
         other = space.solids.get(name)
@@ -106,7 +129,7 @@ def _is_near(space: Space) -> Callable[[Solid, Solid], bool]:
     return is_near
 
 
-def _nearest(space: Space, found: list[Entity], to: set[str], where: Where) -> list[Entity]:
+def _nearest(space: Space, found: list[Entity], to: Set[str], where: Where) -> list[Entity]:
     """By the distance of the boxes; places do not count as near to anything."""
     targets = [space.solids[name] for name in sorted(to) if name in space.solids]
     if not targets:

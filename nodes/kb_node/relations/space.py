@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.grid import Grid
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.solids import Solid, solid_of
+from nodes.kb_node.relations.solids import Bounds, Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
 
@@ -32,6 +33,8 @@ class Space:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self._grid = Grid()
+        self._raised: set[str] = set()
+        """The things that are above the floor or of a size of their own."""
         for entity in entities:
             self.put(entity)
 
@@ -40,19 +43,54 @@ class Space:
         self.take(entity.name)
         solid = solid_of(entity)
         if solid is not None:
-            self.solids[solid.name] = solid
-            self._grid.add(solid)
+            self._add(solid)
+            if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
+                self._raised.add(solid.name)
         return solid
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
+        return not self._raised
 
     def take(self, name: str) -> None:
         """Take an entity out, if it is there."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self._grid.remove(solid)
+            self._raised.discard(name)
+
+    @contextmanager
+    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
+        """Within, these entities are as given here, and those without are not there."""
+        entities, without = tuple(entities), tuple(without)
+        names = {*(entity.name for entity in entities), *without}
+        before = [solid for name in names if (solid := self.solids.get(name)) is not None]
+        raised = self._raised & names
+        try:
+            for name in without:
+                self.take(name)
+            for entity in entities:
+                self.put(entity)
+            yield
+        finally:
+            for name in names:
+                self.take(name)
+            for solid in before:
+                self._add(solid)
+            self._raised |= raised
+
+    def _add(self, solid: Solid) -> None:
+        self.solids[solid.name] = solid
+        self._grid.add(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
         return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
+
+    def within(self, bounds: Bounds) -> list[Solid]:
+        """Whose bounds meet these."""
+        return self._grid.around(bounds)
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""

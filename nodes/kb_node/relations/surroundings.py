@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
 
 
@@ -12,11 +13,15 @@ class Surroundings:
     """Commits only note whom they touched; the first question costs as much as the map is large."""
 
     def __init__(
-        self, entities: Callable[[], Iterable[Entity]], find: Callable[[str], Entity | None]
+        self,
+        entities: Callable[[], Iterable[Entity]],
+        find: Callable[[str], Entity | None],
+        limits: Callable[[], Thresholds] = Thresholds,
     ) -> None:
-        """`entities()` are all that there are now, `find(name)` is one of them."""
+        """`entities()` are all that there are now, `find(name)` is one; `limits()` are the TBox's."""
         self._entities = entities
         self._find = find
+        self._limits = limits
         self._space: Space | None = None
         self._touched: set[str] = set()
 
@@ -27,8 +32,9 @@ class Surroundings:
 
     def space(self) -> Space:
         """The solids as they are now."""
-        if self._space is None:
-            self._space = Space(self._entities())
+        limits = self._limits()
+        if self._space is None or self._space.limits != limits:
+            self._space = Space(self._entities(), limits)
         for name in self._touched:
             entity = self._find(name)
             if entity is None:

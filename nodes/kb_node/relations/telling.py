@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import combinations
 
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.arrangement import attached, between, next_to
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.viewing import View, own_sides, seen, sides
 from schemas import errors
 from schemas.commands import Relations
-from schemas.relations import Relation, RelationName, ViewPoint
+from schemas.relations import Relation, RelationName
 
-_OPPOSITE_TOLERANCE = math.tan(math.radians(50.0))
+_ABOUT_BETWEEN = 8
+"""So many neighbours are looked at for what a thing is between."""
 
 
 def relations(space: Space, query: Relations) -> Iterator[Relation]:
@@ -27,28 +31,53 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
         yield from relations_between(space, query.name, query.other)
     else:
         yield from relations_of(space, query.name)
-    viewpoint = query.viewpoint
     if query.viewer == query.name:
         raise errors.BadRequest(f"{query.name} cannot be seen from itself; --from takes another entity")
-    if query.viewer is not None:
-        x, y, z = space.solids[query.viewer].position
-        viewpoint = (x, y, z, 0.0)
-    if viewpoint is not None:
-        seen = as_seen(space, query.name, viewpoint)
-        yield from (r for r in seen if query.other in (None, r.object) and r.object != query.viewer)
+    viewer = None if query.viewer is None else space.solids[query.viewer]
+    if viewer is not None or query.viewpoint is not None:
+        view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
+        for relation in as_seen(space, query.name, view, viewer):
+            if query.other in (None, relation.object) or relation.relation == "isVisibleFrom":
+                yield relation
 
 
 def relations_of(space: Space, name: str) -> Iterator[Relation]:
-    """What a thing is in, inside, on, under, above and near to."""
+    """What a thing is in and on, hangs on, touches, is under, above, next to, near to and between."""
     solid = _solid(space, name)
     yield from (found := list(whereabouts(space, name)))
     if solid.is_place:
         return
     told = {relation.object for relation in found}
     beside = [other for other in space.around(solid, space.limits.near_most_m) if not other.is_place]
-    for other in sorted(beside, key=lambda other: measures.gap(solid, other)):
+    beside = sorted(beside, key=lambda other: (measures.gap(solid, other), other.name))
+    for other in beside:
         if other.name not in told:
-            yield from (relation for relation in _beside(space, solid, other) if relation.holds)
+            yield from _special(relation for relation in _beside(space, solid, other) if relation.holds)
+    near = [other for other in beside if other.name not in told and not other.is_place][:_ABOUT_BETWEEN]
+    for one, other in combinations(near, 2):
+        if solid in between(space, one, other):
+            yield _between(solid, one, other)
+
+
+def _special(relations: Iterable[Relation]) -> Iterator[Relation]:
+    """Without near where they are next to one another."""
+    found = tuple(relations)
+    is_next = any(relation.relation == "isNextTo" for relation in found)
+    return (relation for relation in found if not (is_next and relation.relation == "isNear"))
+
+
+def _between(solid: Solid, one: Solid, other: Solid) -> Relation:
+    first, second = sorted((one.name, other.name))
+    apart = measures.gap(one, other)
+    return Relation(
+        relation="isBetween",
+        subject=solid.name,
+        object=first,
+        and_object=second,
+        gap_m=round(apart, 4),
+        text=f"{solid.name} is between {first} and {second}: it is on the strip that joins them, which are"
+        f" {metres(apart)} apart",
+    )
 
 
 def whereabouts(space: Space, name: str) -> Iterator[Relation]:
@@ -78,6 +107,8 @@ def relations_between(space: Space, name: str, other_name: str) -> Iterator[Rela
                 relation="isOn", subject=name, object=other_name, holds=False, share=0.0, text=text
             )
     yield from _beside(space, solid, other)
+    if not (solid.is_place or other.is_place):
+        yield from (_between(third, solid, other) for third in between(space, solid, other))
 
 
 def explained(space: Space, name: str, relation: str, other: str) -> Relation | None:
@@ -108,62 +139,68 @@ def measured(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     return None if made is None else made._replace(holds=False)
 
 
-def as_seen(space: Space, name: str, viewpoint: ViewPoint) -> Iterator[Relation]:
-    """Left of, right of, in front of and behind its neighbours, as a viewer sees them.
-
-    The vantage is the viewer's, the front of a relatum is the side towards the viewer (Tenbrink and Kuhn
-    2011); a direction counts within 50 degrees of its axis (Socher et al. 1997 grade it, and we cut at a
-    half).
-    """
+def as_seen(space: Space, name: str, view: View, viewer: Solid | None) -> Iterator[Relation]:
+    """Whether a thing can be seen by a viewer, and on which side of its neighbours and the viewer it is."""
     solid = _solid(space, name)
-    vx, vy = viewpoint[0], viewpoint[1]
-    for other in space.around(solid, 2.0 * space.limits.near_most_m):
-        if other.is_place or measures.gap(solid, other) > 2.0 * space.limits.near_most_m:
-            continue
-        ox, oy, _ = other.centre
-        sx, sy, _ = solid.centre
-        length = math.hypot(ox - vx, oy - vy)
-        if length < 1e-6:
-            continue
-        fx, fy = (ox - vx) / length, (oy - vy) / length
-        ahead = (sx - ox) * fx + (sy - oy) * fy
-        left = (sy - oy) * fx - (sx - ox) * fy
-        if max(abs(ahead), abs(left)) < 0.5 * min(min(solid.size[:2]), min(other.size[:2])):
-            continue
-        if abs(left) >= abs(ahead) / _OPPOSITE_TOLERANCE:
-            yield _seen("isLeftOf" if left > 0 else "isRightOf", solid, other, abs(left))
-        if abs(ahead) >= abs(left) / _OPPOSITE_TOLERANCE:
-            yield _seen("isBehind" if ahead > 0 else "isInFrontOf", solid, other, abs(ahead))
-
-
-def _seen(relation: RelationName, solid: Solid, other: Solid, by_m: float) -> Relation:
-    text = f"{solid.name} {SPOKEN[relation]} {other.name}, by {metres(by_m)} from centre to centre"
-    return Relation(relation=relation, subject=solid.name, object=other.name, gap_m=round(by_m, 4), text=text)
+    if solid.is_place:
+        return
+    found = list(sides(space, solid, view))
+    if viewer is not None:
+        found = [*own_sides(solid, viewer), *(side for side in found if side.other is not viewer)]
+    for relation, other, by_m in found:
+        yield Relation(
+            relation=relation,
+            subject=name,
+            object=other.name,
+            gap_m=round(by_m, 4),
+            text=f"{name} {SPOKEN[relation]} {other.name}, by {metres(by_m)} from centre to centre",
+        )
+    share, blocker = seen(space, solid, view, viewer)
+    reason = f"{share:.0%} of the lines of sight reach it" + (f"; {blocker} is in the way" if blocker else "")
+    there = viewer.name if viewer is not None else "there"
+    yield Relation(
+        relation="isVisibleFrom",
+        subject=name,
+        object=viewer.name if viewer is not None else "",
+        holds=share > 0.0,
+        gap_m=round(math.dist(view.eyes, solid.centre), 4),
+        share=round(share, 4),
+        text=f"{name} {'is' if share > 0.0 else 'is not'} visible from {there}: {reason}",
+    )
 
 
 SPOKEN: dict[RelationName, str] = {
     "isOn": "is on",
     "isInside": "is inside",
     "isLocatedIn": "is in",
+    "isAttachedTo": "is attached to",
+    "touches": "touches",
     "isUnder": "is under",
     "isAbove": "is above",
     "isNear": "is near",
+    "isNextTo": "is next to",
     "isLeftOf": "is left of",
     "isRightOf": "is right of",
     "isInFrontOf": "is in front of",
     "isBehind": "is behind",
+    "isBetween": "is between",
+    "isVisibleFrom": "is visible from",
 }
 
 
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     limits = space.limits
-    for relation, measure in (
+    found: tuple[tuple[RelationName, Measure | None], ...] = (
+        ("isAttachedTo", attached(space, solid, other)),
+        ("touches", None if other.is_place else measures.touches(solid, other, limits)),
         ("isUnder", measures.beneath(solid, other, limits)),
         ("isAbove", measures.beneath(other, solid, limits)),
+        ("isNextTo", next_to(space, solid, other)),
         ("isNear", measures.near(solid, other, limits)),
-    ):
+    )
+    for relation, measure in found:
         if measure is not None:
-            yield _told(relation, solid, other, measure)  # type: ignore[arg-type]
+            yield _told(relation, solid, other, measure)
 
 
 def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:
@@ -199,6 +236,15 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
             return f"its top is {metres(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
         case "isAbove":
             return f"it is {metres(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+        case "isAttachedTo":
+            return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
+        case "touches":
+            return f"they are {metres(max(0.0, made.gap_m))} apart"
+        case "isNextTo" if made.share == 0.0:
+            return f"they are {metres(made.gap_m)} apart, but stand on different things"
+        case "isNextTo":
+            nothing = "nothing is" if made.holds else "something is"
+            return f"they are {metres(made.gap_m)} apart, stand on the same, and {nothing} between them"
     return (
         f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
     )

@@ -90,6 +90,12 @@ class SparqlService:
         self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
+    def foretell(self, commit: Commit) -> Callable[[], None]:
+        """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
+        if self._large is None or self._infers or self._since_filling is not None:
+            return lambda: None
+        return self._large.foretell(commit)
+
     def follow(self, commit: Commit, believed: Believed = UNCHANGED) -> None:
         """Every commit, in order, and what it changed of what is computed."""
         self._seq = commit.seq
@@ -97,7 +103,7 @@ class SparqlService:
         if self._since_filling is not None and not commit.tbox:
             self._since_filling.append(delta_of(commit))
         elif is_much and not self._infers:
-            self._fill()
+            self._fill(commit)
         elif self._worker is None:
             return
         elif commit.tbox:
@@ -121,7 +127,7 @@ class SparqlService:
             else:
                 self._take_over(*kept)
 
-    def _fill(self) -> None:
+    def _fill(self, commit: Commit | None = None) -> None:
         assert self._large is not None
         since: list[Delta] = []
         self._since_filling = since
@@ -136,7 +142,7 @@ class SparqlService:
                 log.warning("SPARQL keeps its triples in memory: %s", error)
                 self._load_into_memory(self._worker)
 
-        self._large.fill(self._seq, lambda: self._seq).add_done_callback(on_done)
+        self._large.fill(self._seq, lambda: self._seq, commit).add_done_callback(on_done)
 
     def _load_into_memory(self, worker: _Worker) -> None:
         believed = self._believed() if self._infers else UNCHANGED

@@ -1,24 +1,25 @@
-"""A checkpoint as it stands in the journal: each term once, and triples as numbers of terms.
+"""A checkpoint as it stands in the journal: each term once, and what is said in numbers of terms.
 
-So a start makes each text once, in however many triples it is, and the map shares it. Triples and entities
-are in frames that are compressed one by one, with a word of progress between them. What older versions wrote,
-one message, is read as well.
+So a start makes each text once, in however many triples it is, and the map shares it. Where the reasoner has
+columns, they are kept, and a start concludes nothing anew; else it is the triples. All is in frames that are
+compressed one by one, with a word of progress between them. What older versions wrote is read as well.
 """
 
 from __future__ import annotations
 
 import sys
-import zlib
 from array import array
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
 from itertools import chain, islice
 from typing import Final
 
 from msgspec import Struct, msgpack
 
 from nodes.kb_node.progress import parts
+from nodes.kb_node.reasoner.abox.columns import Columns
+from nodes.kb_node.storage import columns_encoding
+from nodes.kb_node.storage.columns_encoding import StoredColumns
+from nodes.kb_node.storage.frames import Compressing, unpacked
 from nodes.runtime.shared_parts import SharedParts
 from schemas import codec
 from schemas.entities import Entity
@@ -44,6 +45,16 @@ class _Body(Struct, frozen=True, array_like=True):
     read_by: bytes
     triples: list[bytes]
     entities: list[bytes]
+    columns: StoredColumns | None = None
+
+
+class _Whole(Struct, frozen=True, kw_only=True):
+    """What older versions wrote."""
+
+    seq: int
+    triples: tuple[Triple, ...] = ()
+    entities: tuple[Entity, ...] = ()
+    read_by: bytes = b""
 
 
 class Checkpoint(Struct, frozen=True, kw_only=True):
@@ -51,9 +62,15 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
 
     seq: int
     triples: tuple[Triple, ...] = ()
+    """Where there are columns, only what is asserted and set aside."""
     entities: tuple[Entity, ...] = ()
     read_by: bytes = b""
-    """The format of the conclusions, the entities among them, that were drawn from the triples."""
+    """The format of the conclusions that were drawn from the triples: the entities, and the columns."""
+    columns: Columns | None = None
+
+    def said(self) -> Iterable[Triple]:
+        """The triples, wherever they are; in columns some of the TBox are among them."""
+        return self.triples if self.columns is None else chain(self.columns.triples(), self.triples)
 
 
 _bodies = msgpack.Decoder(_Body)
@@ -63,17 +80,18 @@ _entities = msgpack.Decoder(list[Entity])
 
 def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> bytes:
     """The body of a checkpoint. `progress` is called between frames."""
-    with ThreadPoolExecutor(1) as beside:  # compresses a frame while the next one is made
-        triples = [beside.submit(_dense, f) for f in _frames_of_triples(checkpoint.triples, progress)]
+    with Compressing() as beside:
+        columns = None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, beside)
+        triples = [beside.dense(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
         entities = [
-            beside.submit(_dense, msgpack.encode(part))
-            for part in parts(checkpoint.entities, _ENTITIES, progress)
+            beside.dense(msgpack.encode(part)) for part in parts(checkpoint.entities, _ENTITIES, progress)
         ]
         body = _Body(
             seq=checkpoint.seq,
             read_by=checkpoint.read_by,
             triples=[frame.result() for frame in triples],
             entities=[frame.result() for frame in entities],
+            columns=None if columns is None else columns(),
         )
     return _MARK + msgpack.encode(body)
 
@@ -81,11 +99,12 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
 def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoint:
     """What was encoded; equal terms are one object, and entities share what they have in common."""
     if not body.startswith(_MARK):
-        return codec.decode(body, Checkpoint)
+        old: _Whole = codec.decode(body, _Whole)
+        return Checkpoint(seq=old.seq, triples=old.triples, entities=old.entities, read_by=old.read_by)
     stored = _bodies.decode(memoryview(body)[len(_MARK) :])
     triples: list[Triple] = []
     terms: list[str] = []
-    for frame in _unpacked(stored.triples):
+    for frame in unpacked(stored.triples):
         progress()
         said = _triples.decode(frame)
         terms += said.new_terms
@@ -93,11 +112,15 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
     shared = SharedParts()
-    for frame in _unpacked(stored.entities):
+    for frame in unpacked(stored.entities):
         progress()
         entities += map(shared.entity, _entities.decode(frame))
     return Checkpoint(
-        seq=stored.seq, triples=tuple(triples), entities=tuple(entities), read_by=stored.read_by
+        seq=stored.seq,
+        triples=tuple(triples),
+        entities=tuple(entities),
+        read_by=stored.read_by,
+        columns=None if stored.columns is None else columns_encoding.restore(stored.columns, progress),
     )
 
 
@@ -122,19 +145,3 @@ def _in_order(numbers: array[int]) -> array[int]:
     if sys.byteorder == "big":
         numbers.byteswap()
     return numbers
-
-
-def _unpacked(frames: Sequence[bytes]) -> Iterator[bytes]:
-    """Each frame as it was; the next one is unpacked while the last one is read."""
-    with ThreadPoolExecutor(1) as beside:
-        ahead = deque[Future[bytes]]()
-        for frame in frames:
-            ahead.append(beside.submit(zlib.decompress, frame))
-            if len(ahead) > 1:
-                yield ahead.popleft().result()
-        while ahead:
-            yield ahead.popleft().result()
-
-
-def _dense(frame: bytes) -> bytes:
-    return zlib.compress(frame, codec.DENSITY)

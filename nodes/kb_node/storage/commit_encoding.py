@@ -26,9 +26,10 @@ class _Effects(Struct):
 
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
-_MAP_OF_TWO: Final = 1
+_MAP_OF_FEW: Final = 1
 """Bytes before the first field."""
 
 
@@ -37,7 +38,7 @@ def _plain(part: Commit | _Effects) -> bytes:
     return codec.encode(part, dense_from=sys.maxsize)
 
 
-_NONE: Final = _plain(_Effects())[_MAP_OF_TWO:]
+_NONE: Final = _plain(_Effects())[_MAP_OF_FEW:]
 
 
 class EarlyBody:
@@ -46,13 +47,15 @@ class EarlyBody:
     def __init__(self, commit: Commit) -> None:
         self._deflate = zlib.compressobj(codec.DENSITY)
         self._beside = ThreadPoolExecutor(1)
-        whole = memoryview(_plain(structs.replace(commit, changed=(), removed=())))
+        whole = memoryview(_plain(structs.replace(commit, changed=(), removed=(), notes=())))
         assert whole[-len(_NONE) :] == _NONE
         self._head = self._beside.submit(self._deflate.compress, whole[: -len(_NONE)])
 
     def finish(self, commit: Commit) -> Future[bytes]:
         """The whole, now that the effects are known."""
-        effects = _plain(_Effects(changed=commit.changed, removed=commit.removed))[_MAP_OF_TWO:]
+        effects = _plain(_Effects(changed=commit.changed, removed=commit.removed, notes=commit.notes))[
+            _MAP_OF_FEW:
+        ]
         whole = self._beside.submit(self._whole, effects)
         self._beside.shutdown(wait=False)
         return whole

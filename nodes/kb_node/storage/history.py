@@ -181,4 +181,5 @@ def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
         changed=tuple(entity.name for entity in commit.changed),
         removed=tuple(gone.name for gone in commit.removed),
         changes=changes,
+        notes=commit.notes,
     )

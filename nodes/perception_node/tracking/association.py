@@ -20,7 +20,7 @@ from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.assignment import Candidate, Matching, match
 from nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 from nodes.perception_node.tracking.costs import Target
-from nodes.perception_node.tracking.map_updates import additions, has_moved, is_sure, update_of
+from nodes.perception_node.tracking.map_updates import additions, has_moved, is_sure, update_of, with_load
 from nodes.perception_node.tracking.occupancy import OccupancyOf
 from nodes.perception_node.tracking.overlap import OrientedBox, are_of_one, share
 from nodes.perception_node.tracking.tracks import Track, Tracks, slack_m
@@ -68,7 +68,15 @@ def associate(
         for name, candidate in candidates.items()
     }
     tentative = _tentative(tracks.tentative, matching, observations, config)
-    told = [update_of(entities[name], track, classes, config) for name, track in known.items()]
+    stays = [
+        entities[name]
+        for name in candidates
+        if name in matching.known or matching.occupancy[name] == "occupied"
+    ]
+    told = [
+        with_load(update_of(entities[name], track, classes, config), entities[name], stays)
+        for name, track in known.items()
+    ]
     proposed = _apart_from_one_another(track for track in tentative if is_sure(track, classes, config))
     added = additions(proposed, {*tracks.names, *entities}, classes)
     names = {j: name for name, j in matching.known.items()}
@@ -108,7 +116,7 @@ def _candidate(
         track = Track(entity.pose, entity.size_m or usual_m or _ANY_SIZE_M, votes, told=entity.pose)
     elsewhere = distance_m(track.pose, entity.pose) > slack_m(track.size_m, config.still_m)
     if track.told != entity.pose and elsewhere:
-        track = replace(track, pose=entity.pose, looks=0)
+        track = replace(track, pose=entity.pose, looks=0, unseen=0, odd=0)
     track = replace(track, told=entity.pose, left=track.left and track.told == entity.pose)
     target = _target(track, classes)
     return Candidate(

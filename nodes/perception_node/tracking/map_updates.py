@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Set
 from typing import Any
+
+from msgspec import structs
 
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
@@ -19,6 +22,8 @@ DISPLACED = "something else is in its place"
 _SURE, _UNSURE = 0.6, 0.25
 """What one class has more and another has less of the votes than, if the one contradicts the other."""
 _LEAST_RESIZE_M = 0.015
+_BESIDE_M, _LARGE_M = 0.5, 2.0
+"""How far beyond a thing that what stands on it may be; how large what is of unknown size may be."""
 
 
 def subject_of(command: Command) -> str:
@@ -90,6 +95,31 @@ def update_of(
     return Update(
         source="perception", agent=AGENT, reason=reason, name=entity.name, confidence=confidence, **changes
     )
+
+
+def with_load(
+    command: Update | Remove | None, entity: Entity, seen: Iterable[Entity]
+) -> Update | Remove | None:
+    """A move takes along what stands on the thing and cannot be seen; what is seen says itself where it is.
+
+    `seen` are the entities that are seen, or whose places are seen to be filled.
+    """
+    if not isinstance(command, Update) or command.at is None or entity.pose is None:
+        return command
+    x, y, z = entity.pose.position_m
+    leave = tuple(
+        other.name
+        for other in seen
+        if other.name != entity.name
+        and other.pose is not None
+        and other.pose.position_m[2] >= z - _BESIDE_M
+        and math.dist(other.pose.position_m[:2], (x, y)) <= math.hypot(*_extent(entity)) + _BESIDE_M
+    )
+    return structs.replace(command, carry=True, leave=leave)
+
+
+def _extent(entity: Entity) -> tuple[float, float]:
+    return entity.size_m[:2] if entity.size_m is not None else (_LARGE_M, _LARGE_M)
 
 
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:

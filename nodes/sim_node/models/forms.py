@@ -35,6 +35,9 @@ GLASSY: Colour = (0.66, 0.82, 0.88)
 SCREEN: Colour = (0.10, 0.14, 0.20)
 PAPER: Colour = (0.96, 0.94, 0.88)
 
+WALL_M = 0.02
+"""How thick the walls of closed furniture are at least."""
+
 
 def shade(colour: Colour, factor: float) -> Colour:
     """`colour` made darker (factor < 1) or lighter (> 1)."""
@@ -65,6 +68,29 @@ def solid(x: float, y: float, bottom: float, top: float) -> Parts:
 def front(x: float, y: float, z: float, centre: tuple[float, float], colour: Colour, *, deep: float) -> Parts:
     """A panel of width y and height z, its outer face at depth x, its centre at (y, z), `deep` thick."""
     return seen(box((deep, y, z), (x - deep / 2, centre[0], centre[1]), colour))
+
+
+def closed_box(
+    size: Vec3, centre: Vec3, colour: Colour, *, boards: Sequence[float] = (), depth: float = 1.0
+) -> Parts:
+    """A closed box of full extents `size` with room in it: one box to the eye, walls and boards to the touch.
+
+    Boards lie at these shares of its height, and reach so much of its `depth` from the back, at -x.
+    """
+    x, y, z = size
+    wall = min(max(WALL_M, 0.018 * max(x, y)), 0.1 * min(size))
+    a, b, c = x - 2 * wall, y - 2 * wall, z - 2 * wall
+    walls = [
+        box((x, y, wall), (0.0, 0.0, (wall - z) / 2), colour),
+        box((x, y, wall), (0.0, 0.0, (z - wall) / 2), colour),
+        *(box((wall, y, c), (side * (x - wall) / 2, 0.0, 0.0), colour) for side in (-1, 1)),
+        *(box((a, wall, c), (0.0, side * (y - wall) / 2, 0.0), colour) for side in (-1, 1)),
+        *(
+            box((depth * a, b, wall), ((depth - 1.0) * a / 2, 0.0, (share - 0.5) * z), colour)
+            for share in boards
+        ),
+    ]
+    return [*seen(box(size, centre, colour)), *felt(shifted(walls, x=centre[0], y=centre[1], z=centre[2]))]
 
 
 def hollow_box(x: float, y: float, z: float, wall: float, colour: Colour) -> Parts:

@@ -3,8 +3,8 @@
 Vertical lines through a grid over the footprint are cut with every part, which gives the solid intervals
 above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height with
 room above. An *interior* is a body of free cells with a floor below and walls on all four sides; its top may
-be open, as a bowl's is. What collides counts for surfaces, what is seen for interiors: a cup is solid to the
-physics and hollow to the eye.
+be open, as a bowl's is. What collides counts for surfaces; for interiors also what is seen, for a cup is
+solid to the physics and hollow to the eye, as a fridge is the other way round.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def shape_of(model: Model) -> ModelShape:
     return ModelShape(
         size_m=model.size_m,
         surfaces=tuple(_surfaces(felt, xs, ys, step)),
-        interiors=tuple(_interiors(seen, xs, ys, step, z)),
+        interiors=tuple(_together(_interiors(seen, xs, ys, step, z), _interiors(felt, xs, ys, step, z))),
         parts=tuple(convex_part(part) for part in model.parts if part.role is not Role.SEEN),
     )
 
@@ -169,6 +169,19 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
             )
         )
     return found
+
+
+def _together(one: list[Interior], other: list[Interior]) -> list[Interior]:
+    """The interiors of both readings; where they meet those of the first."""
+    apart = [
+        room
+        for room in other
+        if not any(
+            all(min(a[k], b[k]) > max(c[k], d[k]) for k in range(3))
+            for a, b, c, d in ((room.high, known.high, room.low, known.low) for known in one)
+        )
+    ]
+    return [*one, *apart]
 
 
 def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:

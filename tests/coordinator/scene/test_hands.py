@@ -69,3 +69,29 @@ def test_a_new_hand_counts_more_than_one_whose_move_is_still_to_be_told(released
     with pytest.raises(errors.NoAnswer), released.that_moved("cup1"):
         while_it_is_told()
     assert mover(released).agent == "bob"
+
+
+def test_what_was_carried_together_is_followed_together(released, clock):
+    tray = Move(name="tray1", at=(1.0, 2.0, 0.0), agent="ann")
+    released.let_go(tray, ["bowl1", "apple1"])
+    assert released.party_of("cup1") == released.party_of("nobody") == frozenset()
+    assert released.party_of("apple1") == {"tray1", "bowl1", "apple1"}
+    with pytest.raises(errors.NoAnswer), released.that_moved("tray1", "apple1"):
+        raise errors.NoAnswer("it is being restarted")
+    assert released.party_of("bowl1") == {"tray1", "bowl1", "apple1"}
+    with released.that_moved("tray1", "apple1") as hand:
+        assert (hand.agent, hand.reason) == ("ann", "tray1 was moved by hand")
+    assert released.party_of("bowl1") == frozenset()
+
+
+def test_who_is_taken_again_is_no_longer_of_the_party(released):
+    released.let_go(Move(name="tray1", at=(1.0, 2.0, 0.0)), ["bowl1", "apple1"])
+    released.let_go(Move(name="apple1", at=(1.0, 2.0, 0.0)))
+    assert released.party_of("tray1") == {"tray1", "bowl1"}
+    assert released.party_of("apple1") == frozenset()
+
+
+def test_a_party_of_which_one_goes_on_for_too_long_is_followed_one_by_one(released, clock):
+    released.let_go(Move(name="tray1", at=(1.0, 2.0, 0.0)), ["bowl1"])
+    clock.now_s += 11.0
+    assert released.party_of("tray1") == frozenset()

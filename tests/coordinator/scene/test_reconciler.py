@@ -4,8 +4,10 @@ from concurrent.futures import Future
 from itertools import count
 
 import pytest
+from msgspec import structs
 
 from nodes.coordinator.config import CoordinatorConfig
+from nodes.coordinator.scene.reconcile import order
 from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.spawn_batches import BATCH
 from schemas import commands as c
@@ -199,3 +201,29 @@ def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door)
     assert keeping.problems() == []
     door.change(c.Update(name="chair1", conflict="not seen where it should stand", source="perception"))
     assert keeping.problems() == ["chair1: perception: not seen where it should stand"]
+
+
+def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_rests(door):
+    keeping = Keeping(CoordinatorConfig("map"), door, lambda call: Future(), lambda text: None)
+    keeping.scene.known = True
+    for i, name in enumerate(("chair1", "chair2", "chair3")):
+        door.change(c.Add(class_="Chair", name=name, at=(1.0 + i, 1.0, 0.0)))
+    put = {
+        name: structs.replace(
+            standing(order(entity, entity.pose)),
+            pose=Pose(position_m=(entity.pose.position_m[0], 5.0, 0.0)),
+            resting=name != "chair3",
+        )
+        for name, entity in door.map.entities.items()
+    }
+    door.hands.let_go(c.Move(name="chair1", at=(1.0, 5.0, 0.0), agent="ann"), ["chair3"])
+    keeping.scene.bodies.update(put)
+    keeping.keep()
+    assert [e.pose.position_m[1] for e in door.map.entities.values()] == [1.0, 5.0, 1.0]
+    seq = door.map.seq
+    keeping.scene.bodies["chair3"] = structs.replace(put["chair3"], resting=True)
+    keeping.keep({"chair3"})
+    assert [e.pose.position_m[1] for e in door.map.entities.values()] == [5.0, 5.0, 5.0]
+    assert door.map.seq == seq + 1
+    assert door.map.entity("chair3").pose_provenance.agent == "ann"
+    assert door.change(c.Undo()).names == ("chair1", "chair3")

@@ -1,7 +1,9 @@
+import math
 from concurrent.futures import Future
 from types import SimpleNamespace
 
 import pytest
+from msgspec import structs
 
 from nodes.coordinator.scene.scene_commands import Running
 from schemas import commands as c
@@ -34,8 +36,8 @@ def said_of_a_move(z: float, put: Body) -> str:
         return future
 
     keeping = SimpleNamespace(scene=SimpleNamespace(bodies={"cup1": put}))
-    door = SimpleNamespace(hands=SimpleNamespace(let_go=lambda command: None))
-    running = Running("map", door, keeping, ask)
+    door = SimpleNamespace(hands=SimpleNamespace(let_go=lambda command, load: None))
+    running = Running("map", door, keeping, ask, ask)
     return running.move(c.Move(name="cup1", at=(1.0, 2.0, z))).result().text
 
 
@@ -54,3 +56,32 @@ def said_of_a_move(z: float, put: Body) -> str:
 )
 def test_a_hand_says_where_it_let_go(z, put, said):
     assert said_of_a_move(z, put).startswith(said)
+
+
+def test_a_hand_that_carries_puts_what_is_borne_with_it():
+    """As a rigid body: what the map says is on it goes by where the bodies are."""
+    tray = structs.replace(cup(0.74), name="tray1")
+    beside = structs.replace(cup(0.76), pose=Pose(position_m=(1.2, 2.0, 0.76)))
+    asked, let_go = [], []
+
+    def answer(call):
+        asked.append(call)
+        future = Future()
+        if call.VERB == "load-of":
+            future.set_result(("cup1", "gone1"))
+        else:
+            moved = tuple(structs.replace(tray, name=p.name, pose=p.pose) for p in call.placements)
+            future.set_result(BodiesMoved(bodies=moved, failed={}))
+        return future
+
+    keeping = SimpleNamespace(scene=SimpleNamespace(bodies={"tray1": tray, "cup1": beside}))
+    door = SimpleNamespace(hands=SimpleNamespace(let_go=lambda command, load: let_go.append(load)))
+    running = Running("map", door, keeping, answer, answer)
+    move = c.Move(name="tray1", at=(5.0, 5.0, 0.5), yaw=math.pi / 2, carry=True, leave=("milk1",))
+    said = running.move(move).result()
+    assert said.text == "put tray1 at (5, 5, 0.5) and released it; tray1 carried cup1 along"
+    assert asked[0].leave == ("milk1",)
+    there = {p.name: p.pose for p in asked[1].placements}
+    assert there["cup1"].position_m == pytest.approx((5.0, 5.2, 0.52))
+    assert there["cup1"].yaw_rad == pytest.approx(math.pi / 2, abs=1e-5)
+    assert let_go == [["cup1"]]

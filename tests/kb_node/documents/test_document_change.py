@@ -100,3 +100,17 @@ def test_what_goes_describes_nothing(semantic_map):
     strange = turtle(":a a dm:Chair ; dm:isLocatedIn :hall .")
     with pytest.raises(errors.UnknownName, match="hall"):
         document_change.of_document(semantic_map, document(replace=True, strict=True), strange)
+
+
+def test_a_map_that_is_loaded_as_a_tbox_is_told_to_be_one(semantic_map):
+    contradiction = errors.Inconsistent("chair1 cannot be both")
+    order, tbox = LoadTBox(**SIGNED), turtle(":a a dm:Chair . dm:Chair a owl:Class .")
+    refused = document_change.refused_tbox(semantic_map, order, tbox, contradiction)
+    assert refused.text == (
+        "f.ttl cannot be the TBox: it describes 1 entity (a), and with the map that is a contradiction;"
+        " load a map without --tbox"
+    )
+    refused = document_change.refused_tbox(
+        semantic_map, order, turtle("dm:Chair a owl:Class ."), contradiction
+    )
+    assert refused is contradiction

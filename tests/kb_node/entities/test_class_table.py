@@ -92,6 +92,12 @@ def test_a_class_is_found_by_its_names_and_labels():
     assert index.find("sofa") is None
 
 
+def test_what_properties_take_is_named_as_classes_are():
+    lab = "<http://a.org/lab.owl#seats> a owl:ObjectProperty ; rdfs:domain dm:Chair ; rdfs:range dm:Seat ."
+    rows = {row.name: row for row in table(TWINS + lab).stated.rows()}
+    assert (rows["seats"].domain, rows["seats"].range) == (("dm:Chair",), ("Seat",))
+
+
 def test_other_labels_are_kept_too():
     row = next(row for row in table('dm:Chair rdfs:label "poltrona"@it .').rows if row.name == "Chair")
     assert (row.labels["it"], row.also) == ("poltrona", ("sedia",))
@@ -99,12 +105,15 @@ def test_other_labels_are_kept_too():
 
 def test_properties_of_one_local_name_are_told_apart():
     classes = table("<http://a.org/lab.owl#isLocatedIn> a owl:ObjectProperty .")
-    assert classes.property_named("lab:isLocatedIn") == "<http://a.org/lab.owl#isLocatedIn>"
-    assert classes.property_named("has_size") == v.HAS_SIZE
+    find = classes.property_names.find
+    assert find("lab:isLocatedIn") == "<http://a.org/lab.owl#isLocatedIn>"
+    assert find("has_size") == v.HAS_SIZE
+    assert find("isLocatedIn", among=lambda p: p != v.IS_LOCATED_IN) == "<http://a.org/lab.owl#isLocatedIn>"
+    assert find("xyzzy") is None
     with pytest.raises(
         errors.BadRequest, match="'isLocatedIn' is ambiguous: dm:isLocatedIn or lab:isLocatedIn"
     ):
-        classes.property_named("isLocatedIn")
+        find("isLocatedIn")
 
 
 ZOO = """

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from msgspec import structs
 
 from nodes.kb_node.answers import answers
 from nodes.kb_node.documents import rdf
@@ -10,6 +11,7 @@ from nodes.kb_node.relations.said import denial, denied, fact_of
 from nodes.kb_node.relations.space import Space
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
+from schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
@@ -91,3 +93,39 @@ def test_what_was_said_of_the_flat_by_hand_holds(tmp_path):
     assert len(said) > 50
     assert not [relation.text for relation in denied(Space(flat.entities()), said)]
     home.close(flat)
+
+
+def test_a_flat_map_denies_nothing_of_what_is_on_what():
+    """A plan has all things at height 0 and knows no sizes; a place may have an extent."""
+
+    table, cup, book = (
+        structs.replace(thing(name, at), size_m=None)
+        for name, at in (
+            ("table1", (0.0, 0.0, 0.0)),
+            ("cup1", (0.1, 0.0, 0.0)),
+            ("book1", (2.0, 2.0, 0.3)),
+        )
+    )
+    said = ("cup1", "isOn", "table1")
+    assert denial(Space([ROOM, table, cup]), said) is None
+    assert denial(Space([ROOM, table, cup]), ("cup1", "isLocatedIn", "kitchen1")) is None
+    assert denial(Space([ROOM, table, cup, book]), said) is not None
+    assert denial(Space([ROOM, table, structs.replace(cup, size_m=(0.1, 0.1, 0.1))]), said) is not None
+
+
+def test_whether_a_map_is_flat_is_kept_in_step():
+    space = Space([thing("table1", (0.0, 0.0, 0.0), size=None)])
+    flat = structs.replace(thing("cup1", (0.0, 0.0, 0.0)), size_m=None)
+    space.take("table1")
+    space.put(flat)
+    assert space.is_flat
+    with space.supposing([structs.replace(flat, pose=Pose(position_m=(0.0, 0.0, 0.1)))]):
+        assert not space.is_flat
+    assert space.is_flat
+    space.put(structs.replace(flat, size_m=(0.1, 0.1, 0.1)))
+    assert not space.is_flat
+    with space.supposing((), ["cup1"]):
+        assert space.is_flat
+    assert not space.is_flat
+    space.take("cup1")
+    assert space.is_flat

@@ -33,7 +33,8 @@ def test_the_measurement_is_said():
 
 def test_neighbours():
     found = told("cup1")
-    assert ("isNear", "cup3") in found
+    assert ("isNextTo", "cup3") in found
+    assert ("isBetween", "cup1") not in found
     assert ("isUnder", "table1") in told("box1")
     assert ("isAbove", "box1") in told("table1")
 

@@ -9,6 +9,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.entity_reading import read_entity
 from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.reasoner.abox.columns import Columns, KindSaid
 from nodes.kb_node.reasoner.rules import facts
 from nodes.kb_node.reasoner.rules.rule_table import TABLE
 from nodes.kb_node.storage.conclusions_format import FORMAT
@@ -19,11 +20,12 @@ from schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "866c583d92a0dbe7",
-    "layouts": "00c5073b4adfc5ad",
+    "layouts": "241a16a0e4ca5976",
     "closure": "543217405dc297c7",
     "entities": "38af6f13abe38494",
+    "columns": "5be64fedcc6339af",
 }
-"""Those of format 2. When one of them is another: add 1 to FORMAT, and write down the new ones."""
+"""Those of format 3. When one of them is another: add 1 to FORMAT, and write down the new ones."""
 
 PREFIXES = """
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#> .
@@ -63,22 +65,41 @@ BY = Provenance(commit=1, stamp_ns=1, source="file")
 def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
     reasoner = Reasoner(rdf.parse(TBOX.encode(), "t.ttl", label_prefix="t"))
     assert reasoner.closed is not None
-    closed = sorted(_BLANK.sub("_:", " ".join(fact)) for fact in reasoner.closed.facts)
+    closed = sorted(_unlabelled(" ".join(fact)) for fact in reasoner.closed.facts)
     classes = ClassTable(reasoner)
     reasoner.apply(insert=rdf.parse(ABOX.encode(), "a.ttl"))
     iris = (v.entity_iri(name) for name in ("crate1", "juice1"))
     entities = [codec.encode(read_entity(reasoner, classes, iri, BY)).hex() for iri in iris]
     found = {
         "rules": digest(" ".join(line.split()) for line in TABLE.strip().splitlines()),
-        "layouts": digest(map(layout, (facts._Packed, Checkpoint, Entity, Pose, Provenance))),
+        "layouts": digest(
+            map(layout, (facts._Packed, Checkpoint, Columns, KindSaid, Entity, Pose, Provenance))
+        ),
         "closure": digest(closed),
         "entities": digest(entities),
+        "columns": digest(sorted(map(_unlabelled, stored(reasoner.columns())))),
     }
-    assert (FORMAT, found) == (3, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (4, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+
+
+def _unlabelled(text):
+    return _BLANK.sub("_:", text)
 
 
 def digest(lines):
     return hashlib.blake2b("\n".join(lines).encode(), digest_size=8).hexdigest()
+
+
+def stored(columns):
+    """What columns hold: nodes with their classes, and edges with where they come from."""
+    for term, number in zip(columns.terms, columns.kind, strict=True):
+        classes = sorted(_unlabelled(columns.classes[cls]) for cls in columns.kinds[number].classes)
+        if term and columns.kinds[number].excluded is None:
+            yield f"{term} {classes}"
+    edges = zip(columns.subject, columns.predicate, columns.object, columns.source, strict=True)
+    for s, p, o, source in edges:
+        if p >= 0:
+            yield f"{columns.terms[s]} {columns.properties[p]} {columns.terms[o]} {source}"
 
 
 def layout(struct):

@@ -396,3 +396,39 @@ def test_noise_is_no_news(layout, noise):
         ]
         commands = table.look()
         assert not commands or look == CONFIG.confirm_looks - 1
+
+
+def test_what_is_moved_takes_along_what_cannot_be_seen():
+    """A book with two cups on it is taken elsewhere: one cup is seen there, the other is hidden."""
+    table = Table([seen("Book", at(1, 1)), seen("Cup", at(1, 1.05, 0.73)), seen("Bottle", at(1.3, 1))])
+    hidden = entity("hidden_cup", "Cup", at(1, 0.95, 0.73))
+    table.looks(5)
+    table.told([hidden])
+    table.things[:2] = [seen("Book", at(3, 2)), seen("Cup", at(3, 2.05, 0.73))]
+    moves = {command.name: command for command in table.looks(3)}
+    assert set(moves) == {"book1", "cup1"}
+    assert moves["book1"].carry
+    assert set(moves["book1"].leave) == {"cup1", "bottle1"}
+
+
+def test_what_stays_behind_is_left_there():
+    table = Table([seen("Book", at(1, 1)), seen("Cup", at(1, 1, 0.73))])
+    table.looks(5)
+    table.things = [seen("Book", at(3, 2)), seen("Cup", at(1, 1, 0.7))]
+    (moved,) = (command for command in table.looks(3) if command.name == "book1")
+    assert (moved.carry, moved.leave) == (True, ("cup1",))
+
+
+def test_what_does_not_move_carries_nothing():
+    table = Table().told([entity("my_cup", "Cup", at(1, 1))])
+    (update,) = table.looks(20)
+    assert not update.carry
+
+
+def test_what_others_moved_is_looked_for_anew():
+    """That it is not seen where it was says nothing of where it was carried."""
+    table = Table().told([entity("my_cup", "Cup", at(1, 1))])
+    assert table.looks(CONFIG.gone_looks - 1) == []
+    table.told([entity("my_cup", "Cup", at(3, 2))])
+    table.hidden = True
+    assert table.looks(20) == []

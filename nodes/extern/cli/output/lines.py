@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from schemas.explanations import Explanation
 from schemas.replies import Changed, Inferred
+
+_MOST = 20
+"""Lines of what would follow, or would no longer."""
 
 
 def changed(reply: Changed) -> Iterable[str]:
@@ -13,8 +16,16 @@ def changed(reply: Changed) -> Iterable[str]:
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  left out: {skipped}" for skipped in reply.skipped)
     yield from (f"  note: {note}" for note in reply.notes)
-    yield from (f"  would follow: {text}" for text in reply.follows)
-    yield from (f"  would no longer follow: {text}" for text in reply.no_longer_follows)
+    yield from _few("would follow", reply.follows)
+    yield from _few("would no longer follow", reply.no_longer_follows)
+
+
+def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
+    """The first of many; the rest is counted."""
+    shown = texts if len(texts) <= _MOST else texts[: _MOST - 1]
+    yield from (f"  {what}: {text}" for text in shown)
+    if len(shown) < len(texts):
+        yield f"  {what}: {len(texts) - len(shown)} more facts"
 
 
 def inferred(reply: Inferred) -> Iterable[str]:

@@ -29,10 +29,15 @@ _WIDE = 100_000
 _WORDY = ("class", "size [m]", "reference")
 
 
-def console() -> Console:
-    """A console that does not squeeze tables when its output goes to a file or a pipe."""
+def console(piped_width: int = _WIDE) -> Console:
+    """A console that does not squeeze tables when its output goes to a file or a pipe.
+
+    `piped_width` is how many columns these may have there; what is wider is folded.
+    """
     out = Console(highlight=False, soft_wrap=True, markup=False)
-    return out if out.is_terminal else Console(highlight=False, soft_wrap=True, markup=False, width=_WIDE)
+    if out.is_terminal:
+        return out
+    return Console(highlight=False, soft_wrap=True, markup=False, width=piped_width)
 
 
 def entity_table(entities: Iterable[Entity]) -> Table:

@@ -41,7 +41,8 @@ def _what(commit: LoggedCommit) -> str:
         said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
     if commit.tbox:
         said.append("another TBox")
-    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
+    what = ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
+    return "; ".join((what, *commit.notes))
 
 
 def sighting_card(s: Sighting) -> Table:

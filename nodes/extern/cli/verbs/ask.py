@@ -18,7 +18,7 @@ from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
-from schemas import commands, errors, keys
+from schemas import commands, errors, keys, roles
 from schemas.entities import Entity
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
 @talks
 def check(client: Client, engine: Any) -> None:
-    """Check whether the map is consistent; if it is not, explain why."""
+    """Check whether the map is consistent, and explain why not."""
     checked = client.check(engine)
     print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     print_lines(f"  note: {relation.text}" for relation in checked.denied)
@@ -114,10 +114,10 @@ def infer(client: Client, name: str | None) -> None:
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
 def explain(client: Client, name: str, predicate: str, value: str, negated: bool, format: str) -> None:
-    """Explain why a fact holds: semmap explain fridge1 type Device.
+    """Explain why a fact holds: semmap explain cup1 type Object.
 
-    PREDICATE is a property, or type, sameAs, differentFrom. With --not, why it cannot hold: semmap explain
-    --not cup1 type Room.
+    PREDICATE is a property, or type, sameAs, differentFrom, subClassOf, equivalentClass, disjointWith. With
+    --not, why it cannot hold: semmap explain --not cup1 type Room.
     """
     explanation = client.explain(name, predicate, value, negated=negated)
     if format == "json":
@@ -133,10 +133,10 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
 def could(client: Client, name: str, predicate: str, value: str, format: str) -> None:
-    """Could something hold without contradicting the map? semmap could milk1 isInside oven1.
+    """Could something hold without contradicting the map?
 
-    PREDICATE is a property, or type, sameAs, differentFrom. Nothing is changed. The exit status is 0 if it
-    could, and 1 if it could not; then the answer says why.
+    For example: semmap could milk1 isInside oven1. PREDICATE is a property, or type, sameAs, differentFrom.
+    Nothing is changed. The exit status is 0 if it could, and 1 if it could not; then the answer says why.
     """
     answer = client.could(name, predicate, value)
     if format == "json":
@@ -158,7 +158,10 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
 @_as_of
 @talks
 def relations(client: Client, name: str, other: str | None, format: str, **fields: Any) -> None:
-    """Where NAME is relative to what is around it, measured; with OTHER, also what does not hold."""
+    """Show where a thing is relative to others, as measured.
+
+    With OTHER only relative to that, and also what does not hold.
+    """
     found = client.relations(name=name, other=other, **fields)
     if format == "json":
         print_json(found)
@@ -172,7 +175,7 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
 @click.option("--inferred", is_flag=True, help="Include inferred facts.")
 @talks
 def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
-    """Export the map to FILE: checked for consistency first, written atomically."""
+    """Export the map to FILE, checked for consistency first."""
     document = client.export(format or _format_of(file), inferred=inferred)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
@@ -182,7 +185,7 @@ def export(client: Client, file: Path, format: Any, inferred: bool) -> None:
 @_format(type=click.Choice(["tree", "json"]), default="tree", show_default=True)
 @talks
 def classes(client: Client, format: str) -> None:
-    """Show the class tree with the number of entities of each class."""
+    """Show the class tree, with numbers of entities."""
     if format == "json":
         print_json(client.classes())
     else:
@@ -193,7 +196,7 @@ def classes(client: Client, format: str) -> None:
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @talks
 def properties(client: Client, format: str) -> None:
-    """The properties that `set` may state of an entity, with what they take."""
+    """Show the properties that `set` may state, with their ranges."""
     found = client.properties()
     if format == "json":
         print_json(found)
@@ -241,10 +244,10 @@ def status(client: Client, format: str) -> None:
 )
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
-    """Run a read-only SPARQL 1.1 query: SELECT, ASK, CONSTRUCT or DESCRIBE.
+    """Run a read-only SPARQL 1.1 query.
 
-    QUERY is the query text, @FILE, or - for stdin. Predefined prefixes: dm: (TBox), : (ABox), rdf:, rdfs:,
-    owl:, xsd:.
+    It is a SELECT, ASK, CONSTRUCT or DESCRIBE. QUERY is the query text, @FILE, or - for stdin. Predefined
+    prefixes: dm: (TBox), : (ABox), rdf:, rdfs:, owl:, xsd:.
     """
     sparql_answers.ask(client, query, **options)
 
@@ -253,16 +256,30 @@ def sparql(client: Client, query: str, **options: Any) -> None:
 @click.argument("keyexpr", default=keys.COMMIT.key)
 @click.option("--sparql", "query", metavar="QUERY", help="Watch the rows of a SELECT query instead.")
 @click.option("--inferred", is_flag=True, help="With --sparql: query inferred facts, too.")
+@click.option("--on", metavar="THING", shell_complete=entity_names, help="Watch what comes to be on it.")
+@click.option("--in", "in_", metavar="PLACE", shell_complete=entity_names, help="... in it, or inside it.")
+@click.option("--near", metavar="THING", shell_complete=entity_names, help="... near it.")
+@click.option("--within", type=float, metavar="M", help="With --near: maximum distance [m].")
+@click.option(
+    "--class", "class_", metavar="CLASS", shell_complete=class_names, help="With these: only this class."
+)
 @talks
-def watch(client: Client, keyexpr: str, query: str | None, inferred: bool) -> None:
-    """Print messages on a Zenoh key expression as they are published; by default, the commits."""
-    if query is not None and keyexpr != keys.COMMIT.key:
-        raise errors.BadRequest("give a key expression or --sparql, not both")
+def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **where: Any) -> None:
+    """Print the commits, or other messages, as they are published.
+
+    KEYEXPR is a Zenoh key expression. THING and PLACE are a name, a reference or a class, as for list; what
+    comes (+) and goes (-) is told.
+    """
+    asks_where = any(word is not None for word in where.values())
+    if (query is not None) + (keyexpr != keys.COMMIT.key) + asks_where > 1:
+        raise errors.BadRequest("give one of: a key expression, --sparql, or --on, --in and --near")
     from nodes.extern import availability
 
     with availability.told(client, complain):
         if query is not None:
             sparql_answers.watch(client, query, inferred=inferred)
+        elif asks_where:
+            sparql_answers.watch_places(client, inferred=inferred, **where)
         else:
             _watch_key(client, keyexpr)
 
@@ -276,6 +293,13 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 print(output.show.commit_line(commit), flush=True)
     from nodes import bus
 
+    if client.identity is not None:
+        followed = roles.followed(client.identity.role)
+        if not bus.includes(followed, keyexpr):
+            raise errors.Refused(
+                f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
+                f" {', '.join(followed)}"
+            )
     for key, payload in bus.listen(client.session, keyexpr):
         print(f"{key}  {payload}", flush=True)
 

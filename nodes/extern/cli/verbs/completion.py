@@ -10,7 +10,9 @@ from nodes.extern.cli import completing
 @click.command()
 @click.argument("shell", type=click.Choice(completing.SHELLS))
 def completion(shell: str) -> None:
-    r"""Print what makes a shell complete verbs, options, files, and names of entities and classes.
+    r"""Print what a shell needs to complete what you type.
+
+    That is verbs, options, files, and the names of entities and classes.
 
     \b
     bash:  eval "$(semmap completion bash)"      (in ~/.bashrc)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import given, print_lines, talks, vector_option
+from nodes.extern.cli.calling import carrying, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
@@ -79,6 +79,7 @@ def add(client: Client, **fields: Any) -> None:
     "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Remove a property; may be repeated."
 )
 @click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
+@carrying
 @_dry_run
 @talks
 def update(client: Client, **fields: Any) -> None:
@@ -97,7 +98,7 @@ def update(client: Client, **fields: Any) -> None:
 @_dry_run
 @talks
 def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
-    """State a property of an entity, such as `door1 isOpen false`.
+    """State a property of an entity: semmap set door1 isOpen true.
 
     The value of a functional property replaces the one before; other properties get more values.
     """
@@ -113,7 +114,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @_dry_run
 @talks
 def unset(client: Client, **fields: Any) -> None:
-    """Take back one value of an entity's property, or all of them."""
+    """Take back one value of an entity's property, or all."""
     print_lines(lines.changed(client.unset(**_stated(fields))))
 
 
@@ -130,7 +131,7 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
 @_dry_run
 @talks
 def clear(client: Client, dry_run: bool) -> None:
-    """Remove all entities from the map and the scene; the TBox stays."""
+    """Remove all entities from the map and the scene."""
     print_lines(lines.changed(client.clear(dry_run=dry_run)))
 
 
@@ -146,7 +147,10 @@ def clear(client: Client, dry_run: bool) -> None:
 @_dry_run
 @talks
 def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
-    """Load an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; or a TBox with its imports."""
+    """Load a map, a scene or a TBox from a file.
+
+    A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
+    """
     from nodes.extern.cli.output.load_progress import progress
 
     with progress(client):

@@ -39,7 +39,10 @@ def keys() -> None:
 @_host
 @_days
 def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
-    """Make an authority in FOLDER, and the certificates of the system's own processes."""
+    """Make an authority in FOLDER.
+
+    With it come the certificates of the system's own processes.
+    """
     from nodes.identity import authority
 
     register = authority.init(folder, hosts, days)
@@ -55,7 +58,10 @@ def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
 @_folder
 @_days
 def add(name: str, role: Role, folder: Path, days: int) -> None:
-    """Make NAME a certificate; a running system admits it within a second."""
+    """Make a certificate for NAME.
+
+    A running system admits it within a second.
+    """
     from nodes.identity import authority
 
     _told("made", folder, authority.add(folder, name, role, days))
@@ -64,21 +70,28 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
 
 @keys.command()
 @click.argument("name")
+@click.option("--role", type=click.Choice(ROLES), help="What NAME may do from now on. Default: as before.")
 @_host
 @_folder
 @_days
-def renew(name: str, hosts: tuple[str, ...], folder: Path, days: int) -> None:
-    """Make NAME a new key and certificate; the old one stays valid until it expires."""
+def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, days: int) -> None:
+    """Make NAME a new key and certificate.
+
+    The old one stays valid until it expires.
+    """
     from nodes.identity import authority
 
-    _told("renewed", folder, authority.renew(folder, name, hosts, days))
+    _told("renewed", folder, authority.renew(folder, name, hosts, days, role))
 
 
 @keys.command()
 @click.argument("name")
 @_folder
 def revoke(name: str, folder: Path) -> None:
-    """Admit NAME no longer; a running system shuts them out within a second."""
+    """Admit NAME no longer.
+
+    A running system shuts them out within a second.
+    """
     from nodes.identity import authority
 
     member = authority.revoke(folder, name)

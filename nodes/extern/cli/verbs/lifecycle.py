@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 import shlex
 from collections.abc import Callable
 from pathlib import Path
@@ -15,13 +16,14 @@ from msgspec import structs
 from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from nodes.identity import SUPERVISOR, Identity
 from nodes.identity.register import Register
 from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
 from schemas.endpoints import CONNECT_VARIABLE
-from schemas.keys import NODES
+from schemas.keys import NODES, ROUTER
 
 _path = click.Path(path_type=Path)
 
@@ -84,6 +86,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         metavar="DIR",
         help="Let in only those with a certificate of this folder of keys (see: semmap keys).",
     )
+    @click.option(
+        "--zenoh-config",
+        type=_path,
+        default=None,
+        metavar="FILE",
+        help="Zenoh configuration for what semmap does not set itself.",
+    )
     @click.option("--insecure", is_flag=True, help="Listen beyond this machine without certificates.")
     @click.option("--window", is_flag=True, help="Open a window that shows the scene (needs a display).")
     @click.option(
@@ -123,6 +132,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 @settings_options
 def up(settings: Settings) -> None:
     """Start the system in the foreground; Ctrl-C stops it."""
+    if settings.secure is not None:
+        if settings.connect:
+            raise errors.BadRequest(
+                "with --secure a system has its own router; --connect is for single nodes: semmap node NAME"
+            )
+        for name in (SUPERVISOR, *settings.nodes):
+            Identity.read(Path(settings.secure) / name).require_valid()
     extras.require_nodes(settings.nodes)
     from nodes.supervisor.up import up as run_up
 
@@ -153,7 +169,10 @@ def down(data: Path | None, connect: str | None) -> None:
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
 def repair(data: Path | None, tbox: Path | None) -> None:
-    """Repair a damaged map: restore the last good commit; the damaged file is kept."""
+    """Restore the last good commit of a damaged map.
+
+    The damaged file is kept.
+    """
     extras.require("semmap repair", "kb")
     from nodes.kb_node.storage.repair import repair as repair_journal
 
@@ -161,16 +180,20 @@ def repair(data: Path | None, tbox: Path | None) -> None:
 
 
 @click.command()
-@click.argument("name", type=click.Choice(NODES))
+@click.argument("name", type=click.Choice((*NODES, ROUTER)))
 @settings_options
 def node(name: str, settings: Settings) -> None:
     """Run a single node in the foreground.
 
-    The coordinator listens on --listen; the other nodes connect to it there.
+    The coordinator (with --secure the router) listens on --listen; the other nodes connect to it there, or
+    to the router at --connect.
     """
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
+    from nodes.supervisor.privacy import UMASK, make_private
 
+    os.umask(UMASK)
+    make_private(Path(settings.data))
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if name == "kb_node":
         seed(settings)
@@ -183,7 +206,7 @@ def _settings(
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
-    secure: Path | None, insecure: bool,
+    secure: Path | None, zenoh_config: Path | None, insecure: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -214,7 +237,7 @@ def _settings(
         "threshold_m": threshold,
         "angle_threshold_deg": angle_threshold,
         "listen": listen if secure is None else bus.over_tls(listen),
-        "connect": connect,
+        "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
@@ -226,6 +249,7 @@ def _settings(
         "record": not no_record,
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
+        "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),
     }
     _require_protected(values, insecure=insecure)
     try:
@@ -236,11 +260,15 @@ def _settings(
 
 
 def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
-    """Without certificates a system listens on this machine only. Raises BadRequest, BadFile."""
-    listen, secure = values["listen"], values["secure"]
+    """Without certificates a system listens on this machine only. Raises BadRequest, BadFile, NoAnswer."""
+    listen, secure, config = values["listen"], values["secure"], values["zenoh_config"]
+    if config is not None:
+        bus.own_config.require_sound(config, secure=secure is not None)
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
+        if values["connect"]:
+            return  # the router is elsewhere
         register = Register.read(Path(secure))
         host = bus.host_of(listen)
         if host not in ("0.0.0.0", "::", *register.hosts):
@@ -248,7 +276,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
                 f"the router's certificate is for {', '.join(register.hosts)}, not for {host}; add it:"
                 f" semmap keys renew router --host {host} --dir {shlex.quote(secure)}"
             )
-    elif not bus.is_local(listen):
+    elif not bus.is_local(listen) and not (config is not None and bus.own_config.is_protected(config)):
         if not insecure:
             raise errors.BadRequest(
                 f"without certificates everybody who reaches {listen} could read and change the map; make"

@@ -18,6 +18,9 @@ _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 
+_PIPED_WIDTH = 120
+"""Columns: what commits change may be a long story."""
+
 
 @click.command()
 @click.argument("name", required=False, shell_complete=entity_names)
@@ -31,13 +34,13 @@ _format = click.option(
 def history(
     client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
 ) -> None:
-    """Show the commits, or those that changed an entity, newest last."""
+    """Show the newest commits, or those of an entity, in order."""
     commits = client.history(name, since=since, until=until, limit=limit)
     if format == "json":
         print_json(commits)
         return
     if commits:
-        output.show.console().print(output.show_past.history_table(commits))
+        output.show.console(_PIPED_WIDTH).print(output.show_past.history_table(commits))
     print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
 
 
@@ -46,7 +49,10 @@ def history(
 @_format
 @talks
 def last_seen(client: Client, name: str, format: str) -> None:
-    """Show where and when an entity was last seen or placed, even if it has been removed."""
+    """Show where and when an entity was last seen or placed.
+
+    It may have been removed since.
+    """
     sighting = client.last_seen(name)
     if format == "json":
         print_json(sighting)
@@ -59,5 +65,8 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @talks
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
-    """Undo a commit unless later ones depend on it; by default, the newest that a client requested."""
+    """Undo a commit, unless later ones depend on it.
+
+    Without COMMIT it is the newest that a client requested.
+    """
     print_lines(lines.changed(client.undo(commit, dry_run=dry_run)))

@@ -41,10 +41,11 @@ _FRAMES = {"map": "map frame", "plane": "frame: the largest plane is z = 0, the 
 )
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(files: tuple[Path, ...], labels: Path | None, intrinsics: Path | None, format: str) -> None:
-    """Find the objects in point clouds (PCD, PLY) or in a colour and a depth image (PNG).
+    """Find the objects in point clouds or in depth images.
 
-    Labels are integers in the cloud's own shape, (height, width), or (1, points) when it is not organised:
-    0 for background, 1 to n for the objects.
+    Clouds are PCD or PLY files; images are one in colour and one of depth (PNG). Labels are integers in the
+    cloud's own shape, (height, width), or (1, points) when it is not organised: 0 for background, 1 to n
+    for the objects.
     """
     if labels is not None and labels.suffix != ".npy":
         raise errors.BadRequest(

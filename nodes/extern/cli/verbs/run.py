@@ -23,7 +23,10 @@ _BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "wa
 @connect_option
 @identity_option
 def run(file: Path, keep_going: bool, where: str | None, identity: str | None) -> None:
-    """Execute a file of requests, one per line: a command line, or a JSON message with its verb."""
+    """Execute a file of requests, one per line.
+
+    A request is a command line, or a JSON message with its verb.
+    """
     lines = _decode_lines(file)
     failed = 0
     with connect(where, agent=f"run/{file.name}", identity=identity) as client:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from nodes.extern.cli.calling import given, talks, vector_option
+from nodes.extern.cli.calling import carrying, given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.files import write_atomically
@@ -22,10 +22,14 @@ if TYPE_CHECKING:
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
 @click.option("--yaw", type=float, metavar="RAD")
+@carrying
 @talks
-def move(client: Client, name: str, at: Any, yaw: float | None) -> None:
-    """Move the body of an entity by hand; the map follows when it comes to rest."""
-    print(client.move(**given({"name": name, "at": at, "yaw": yaw})).text)
+def move(client: Client, **fields: Any) -> None:
+    """Move the body of an entity by hand.
+
+    The map follows when it comes to rest.
+    """
+    print(client.move(**given(fields)).text)
 
 
 @click.command()
@@ -47,7 +51,10 @@ def step(client: Client, seconds: float) -> None:
 @click.command()
 @talks
 def reset(client: Client) -> None:
-    """Put every body where the map says; bodies that could not be created are tried again."""
+    """Put every body where the map says it stands.
+
+    Bodies that could not be created are tried again.
+    """
     print(client.reset().text)
 
 

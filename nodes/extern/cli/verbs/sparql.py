@@ -1,14 +1,16 @@
-"""The verb `sparql`, and `watch --sparql`."""
+"""The verb `sparql`, and what `watch` asks."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nodes.extern.cli import output
 from nodes.extern.cli.output.formats import Format
 from nodes.extern.files import read_file
+from ontology import vocabulary as v
 from schemas import errors
 from schemas.sparql import Row
 
@@ -66,6 +68,21 @@ def _print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
         output.show.console().print(output.sparql_formats.table(variables, rows))
     else:
         print(*output.sparql_formats.plain_table(variables, rows), sep="\n")
+
+
+def watch_places(client: Client, **where: Any) -> None:
+    """Print who is there, and then who comes and goes."""
+    with client.watch(**where) as standing:
+        there = ", ".join(_names(standing.rows)) or "nothing"
+        print(f"{there} (commit {standing.seq}); watching", flush=True)
+        for changed in standing.changes():
+            for sign, rows in (("-", changed.disappeared), ("+", changed.appeared)):
+                for name in _names(rows):
+                    print(f"{sign} {name}  (commit {changed.seq})", flush=True)
+
+
+def _names(rows: Iterable[Row]) -> list[str]:
+    return [v.entity_name(term) for (term,) in rows if term is not None]
 
 
 def _rows(count: int) -> str:

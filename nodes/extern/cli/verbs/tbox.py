@@ -27,10 +27,11 @@ def tbox() -> None:
 def check(
     files: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...], format: str
 ) -> None:
-    """What is in ontologies, what of it is inert or wrong, and how quick changes will be.
+    """Show what is in ontologies, and what of it is wrong.
 
-    FILES (or folders) are checked together, with what they import. Exit status 1 says that they contradict
-    themselves, or that nothing can be of some class; 2 that a file cannot be read.
+    That includes what of them is inert, and how quick changes will be. FILES (or folders) are checked
+    together, with what they import. Exit status 1 says that they contradict themselves, or that nothing can
+    be of some class; 2 that a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
     from nodes.kb_node.documents.tbox.tbox_check import check as check_files

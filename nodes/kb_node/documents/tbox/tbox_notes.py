@@ -7,12 +7,15 @@ from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 
-from nodes.kb_node.documents import ontology_files
+from nodes.kb_node.documents import ontology_files, rdf
+from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
+from ontology import HOUSEHOLD_TTL
 from ontology import vocabulary as v
+from schemas import wording
 from schemas.explanations import Triple
 
 _FEW = 5
@@ -20,16 +23,27 @@ _SOMETHING = ("<urn:semmap:something>", v.RDF_TYPE, v.OWL_THING)
 
 
 def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tuple[str, ...]:
-    """One sentence each on what is missing, on what has no effect, and on what makes changes slow."""
+    """One sentence each on what is missing, on what has no effect, and on what makes changes slow.
+
+    What has no effect in the shipped TBox is not told each time.
+    """
     tbox = list(tbox)
     said = (
         missing(ontology_files.missing_imports(tbox)),
         not_in_space(classes),
         set_aside(tbox),
-        beyond(outside_rl(filter(is_schema, tbox))),
+        beyond(outside_rl(filter(is_schema, tbox)) - _known(tbox)),
+        described(tbox_validation.described_by(tbox, classes)),
         slow(reasoner),
     )
     return tuple(filter(None, said))
+
+
+def _known(tbox: Iterable[Triple]) -> Counter[str]:
+    """What goes beyond OWL 2 RL in the shipped TBox, if this is that or what somebody made of it."""
+    if v.TBOX_ONTOLOGY not in ontology_files.header(tbox).ontologies:
+        return Counter()
+    return outside_rl(filter(is_schema, rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name)))
 
 
 def missing(imports: tuple[str, ...]) -> str:
@@ -70,6 +84,14 @@ def beyond(kinds: Counter[str]) -> str:
         few += f", {others} of other kinds"
     axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
     return f"{axioms} beyond OWL 2 RL; that part is inert, which does no harm ({few})"
+
+
+def described(names: list[str]) -> str:
+    """Which entities are no command's to change."""
+    if not names:
+        return ""
+    are = f"{wording.entities(len(names))} {'is' if len(names) == 1 else 'are'}"
+    return f"{are} described by the TBox itself, so no command changes them: {wording.few(names, 4)}"
 
 
 def slow(reasoner: Reasoner) -> str:

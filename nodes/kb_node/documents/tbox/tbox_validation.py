@@ -54,6 +54,11 @@ def has_individuals(tbox: Iterable[Triple]) -> bool:
     return any(p in properties or (p == v.RDF_TYPE and not abox_document.is_built_in(o)) for _, p, o in tbox)
 
 
+def described_by(tbox: Iterable[Triple], classes: ClassTable) -> list[str]:
+    """The names of the entities that a TBox itself describes: no command can change what a TBox says."""
+    return sorted({v.entity_name(s) for s, p, o in tbox if p == v.RDF_TYPE and o in classes.spatial})
+
+
 def imports(tbox: Iterable[Triple]) -> list[Triple]:
     """`owl:imports` of the TBox, for the ABox: it is resolved to the loaded file, never to the network."""
     ontologies = [term for term in ontology_files.header(tbox).ontologies if term.startswith("<")]

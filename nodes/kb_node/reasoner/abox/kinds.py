@@ -104,6 +104,10 @@ class Kinds:
             found = self._given_more[kind, cls] = self._kind(given, mask, kind.excluded)
         return found
 
+    def like(self, given: frozenset[int], mask: int, excluded: int | None) -> Kind:
+        """The kind that has these."""
+        return self._kind(given, mask, excluded)
+
     def without(self, kind: Kind, cls: int) -> Kind:
         """The kind with one given class less and all that followed still there."""
         return self._kind(kind.given - {cls}, kind.mask, kind.excluded)

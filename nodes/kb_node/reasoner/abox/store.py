@@ -7,10 +7,13 @@ object. Freed numbers are used again.
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Iterable, Mapping, MutableSequence, Sequence, Set
 from typing import Any, Final
 
 from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
+from nodes.kb_node.reasoner.abox.columns import ASSERTED as ASSERTED
+from nodes.kb_node.reasoner.abox.columns import Columns
 from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.explanations import Term
 from nodes.kb_node.reasoner.fastpaths.layout import Layout
@@ -18,11 +21,9 @@ from nodes.kb_node.reasoner.terms import is_literal
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
-ASSERTED, VALUE, DERIVED, COMPUTED = 0, 1, 2, 3
-"""Where an edge comes from: asserted, a class that comes with a value (cls-hv1), another rule, or computed.
-
-A computed one is given like an asserted one, and was not said.
-"""
+VALUE, DERIVED, COMPUTED = 1, 2, 3
+"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), another rule, or no rule
+at all. A computed one is given like an asserted one, and was not said."""
 GIVEN: Final = frozenset((ASSERTED, COMPUTED))
 """Edges that rest on no other."""
 
@@ -44,7 +45,8 @@ class Store:
         self.out = Adjacency(self.predicate)
         self.into = Adjacency(self.predicate)
         self.numbers: dict[Term, int] = {}
-        self._places = array("i")
+        self.places = array("i")
+        """Where an individual is among those of its kind; `NONE` for one that is listed nowhere."""
         self._free_nodes: list[int] = []
         self._free_edges: list[int] = []
 
@@ -79,7 +81,7 @@ class Store:
         first, room = len(self.terms), array("i", [NONE]) * count
         self.terms.extend([""] * count)
         self.kind.extend([self._kinds.nothing] * count)
-        for column in (self._places, self.out.heads, self.into.heads):
+        for column in (self.places, self.out.heads, self.into.heads):
             column.extend(room)
         return range(first, first + count)
 
@@ -104,16 +106,16 @@ class Store:
 
     def file(self, node: int, old: Kind, new: Kind | None) -> None:
         """List an individual under its new kind instead of its old one; with None no more."""
-        place = self._places[node]
+        place = self.places[node]
         if place != NONE:
             nodes = old.nodes
             last = nodes.pop()
             if last != node:
                 nodes[place] = last
-                self._places[last] = place
-            self._places[node] = NONE
+                self.places[last] = place
+            self.places[node] = NONE
         if new is not None:
-            self._places[node] = len(new.nodes)
+            self.places[node] = len(new.nodes)
             new.nodes.append(node)
 
     # Edges
@@ -135,7 +137,7 @@ class Store:
 
     def write(self, layout: Layout, individuals: Terms, others: Terms) -> None:
         """Add new individuals with their edges, all of which leave from them."""
-        terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self._places
+        terms, kinds, numbers, places = self.terms, self.kind, self.numbers, self.places
         free = self._free_nodes_for(len(individuals) + len(others))
         nodes: list[int] = []
         for term, kind in zip(individuals, layout.kinds, strict=True):
@@ -190,7 +192,7 @@ class Store:
             self.numbers.update(zip(terms, nodes[place], strict=True))
             _put(self.terms, here, terms)
             if kind.mask:
-                _put(self._places, here, range(len(kind.nodes), len(kind.nodes) + count))
+                _put(self.places, here, range(len(kind.nodes), len(kind.nodes) + count))
                 kind.nodes.extend(here)
         nodes += [list(map(self.numbers.__getitem__, terms)) for terms in others]
         for at, (s, p, o) in enumerate(layout.edges):
@@ -254,6 +256,29 @@ class Store:
             self._forget(old)
         self.object[edge] = node = self.node(term)
         self.into.link(node, edge, self.predicate[edge])
+
+    def fill(self, columns: Columns, kinds: Iterable[Kind], properties: Sequence[int]) -> None:
+        """Be what columns say instead, with these kinds of the nodes, and these numbers of the properties."""
+        terms, number = columns.terms, list(range(max(len(columns.terms), len(columns.subject)))).__getitem__
+        self.terms[:] = terms  # and the numbers are the same objects wherever they stand, for memory's sake
+        self.kind[:] = kinds
+        self.subject[:] = [number(node) for node in columns.subject]
+        self.object[:] = [number(node) for node in columns.object]
+        self.predicate[:] = [NONE if p == NONE else properties[p] for p in columns.predicate]
+        self.source[:] = columns.source
+        self.numbers.clear()
+        self.numbers.update(zip(terms, map(number, range(len(terms))), strict=True))
+        self.numbers.pop("", None)
+        self.places[:] = columns.places
+        for side, links in ((self.out, columns.out), (self.into, columns.into)):
+            side.heads[:], side.after[:], side.before[:], side.group[:] = links
+        self._free_nodes[:] = [node for node, term in enumerate(terms) if not term]
+        self._free_edges[:] = [edge for edge, p in enumerate(columns.predicate) if p == NONE]
+        listed = [(node, place) for node, place in enumerate(self.places) if place != NONE]
+        for kind, count in Counter(self.kind[node] for node, _ in listed).items():
+            kind.nodes[:] = array("i", bytes(count * kind.nodes.itemsize))
+        for node, place in listed:
+            self.kind[node].nodes[place] = node
 
     def erase(self, nodes: Set[int], edges: Iterable[int]) -> None:
         """Forget individuals and all edges that leave from them, where no other enters."""

@@ -95,7 +95,7 @@ class Lookout:
         """A command, at commit `seq`. Raises UnknownName, NameTaken, Refused, and as `text` does."""
         self._seq = seq
         if isinstance(command, Watch):
-            text.require_select(command.query)
+            text.require_select(command.query or "")
             self._looks.append(Look(self._admit(command), since=seq, seq=seq, number=number))
             return
         if command.watch not in self._standing:

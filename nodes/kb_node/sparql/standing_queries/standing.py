@@ -34,6 +34,7 @@ class Standing:
         # rdflib's parser takes longer to load than all else that the first look-up waits for
         from nodes.kb_node.sparql.queries.footprint import footprint
 
+        assert command.query is not None
         return cls(
             watch=name,
             query=command.query,

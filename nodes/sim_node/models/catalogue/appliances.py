@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from nodes.sim_node.models.forms import (
     BLACK,
@@ -11,9 +12,11 @@ from nodes.sim_node.models.forms import (
     LIGHT,
     SCREEN,
     STEEL,
+    closed_box,
     column,
     front,
     shade,
+    shifted,
     slab,
     solid,
     turned,
@@ -34,9 +37,18 @@ from nodes.sim_node.models.parts import (
 )
 
 
-def case(x: float, y: float, z: float, colour: Colour, *, deep: float) -> Parts:
-    """The body of an appliance that leaves room for a front of depth `deep`."""
-    return [box((x - deep, y, z), (-deep / 2, 0, z / 2), colour)]
+def case(
+    x: float,
+    y: float,
+    z: float,
+    colour: Colour,
+    *,
+    deep: float,
+    boards: Sequence[float] = (),
+    depth: float = 1.0,
+) -> Parts:
+    """The body of an appliance, with room in it, that leaves room for a front of depth `deep`."""
+    return closed_box((x - deep, y, z), (-deep / 2, 0, z / 2), colour, boards=boards, depth=depth)
 
 
 def knobs(x: float, y: float, height: float, count: int, radius: float) -> Parts:
@@ -51,7 +63,8 @@ def fridge(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A freezer door above a tall door, each with an upright handle."""
     split, deep = 0.68 * z, 0.07 * x
     return [
-        *case(x, y, z, shade(colour, 0.9), deep=deep),
+        *case(x, y, split, shade(colour, 0.9), deep=deep, boards=(0.3, 0.5, 0.7), depth=0.85),
+        *shifted(case(x, y, z - split, shade(colour, 0.9), deep=deep), z=split),
         *front(x / 2 - 0.02, 0.98 * y, split - 0.02, (0, split / 2 + 0.01), colour, deep=deep - 0.02),
         *front(x / 2 - 0.02, 0.98 * y, z - split - 0.02, (0, (z + split) / 2), colour, deep=deep - 0.02),
         *seen(
@@ -69,7 +82,7 @@ def oven(x: float, y: float, z: float, colour: Colour) -> Parts:
         for j in (-1, 1)
     )
     return [
-        *case(x, y, z - 0.006, colour, deep=0.04),
+        *case(x, y, z - 0.006, colour, deep=0.04, boards=(0.4,), depth=0.9),
         *knobs(x, 0.8 * y, 0.9 * z, 5, 0.022),
         *front(x / 2 - 0.02, 0.86 * y, 0.55 * z, (0, 0.45 * z), SCREEN, deep=0.02),
         *seen(rod(0.012, 0.76 * y, (x / 2 - 0.012, 0, 0.77 * z), STEEL, ALONG_Y)),
@@ -98,7 +111,7 @@ def stove(x: float, y: float, z: float, colour: Colour) -> Parts:
 def dishwasher(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A plain door with a control strip and a rail."""
     return [
-        *case(x, y, z, shade(colour, 0.85), deep=0.05),
+        *case(x, y, z, shade(colour, 0.85), deep=0.05, boards=(0.5,), depth=0.9),
         *front(x / 2 - 0.02, 0.97 * y, 0.74 * z, (0, 0.45 * z), colour, deep=0.03),
         *front(x / 2 - 0.02, 0.97 * y, 0.12 * z, (0, 0.91 * z), DARK, deep=0.03),
         *seen(box((0.02, 0.7 * y, 0.025), (x / 2 - 0.01, 0, 0.78 * z), STEEL)),
@@ -293,7 +306,7 @@ def heater(x: float, y: float, z: float, colour: Colour) -> Parts:
 def air_conditioner(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A long white box on a wall, with a slot below."""
     return [
-        *case(x, y, z, colour, deep=0.02),
+        box((x - 0.02, y, z), (-0.01, 0, z / 2), colour),
         *front(x / 2, 0.98 * y, 0.62 * z, (0, 0.66 * z), shade(colour, 1.1), deep=0.02),
         *seen(box((0.03, 0.85 * y, 0.03), (x / 2 - 0.02, 0, h * z), DARK) for h in (0.12, 0.24)),
         *seen(box((0.006, 0.02, 0.02), (x / 2, 0.4 * y, 0.5 * z), (0.2, 0.8, 0.3))),

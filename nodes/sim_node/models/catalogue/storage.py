@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import math
 
-from nodes.sim_node.models.forms import BRASS, DARK, STEEL, WHITE, column, front, legs, shade, slab
+from nodes.sim_node.models.forms import (
+    BRASS,
+    DARK,
+    STEEL,
+    WHITE,
+    closed_box,
+    column,
+    front,
+    legs,
+    shade,
+    slab,
+)
 from nodes.sim_node.models.parts import ALONG_Y, Colour, Parts, about, ball, box, felt, product, rod, seen
 
 
@@ -16,7 +27,13 @@ def counter(x: float, y: float, z: float, colour: Colour) -> Parts:
         for part in front(0.46 * x + 0.01, 0.3 * y, 0.72 * z, (side * 0.32 * y, 0.5 * z), WHITE, deep=0.01)
     ]
     return [
-        box((0.92 * x, 0.98 * y, z - 0.04), (0, 0, (z - 0.04) / 2), shade(colour, 0.6)),
+        *closed_box(
+            (0.92 * x, 0.98 * y, z - 0.04),
+            (0, 0, (z - 0.04) / 2),
+            shade(colour, 0.6),
+            boards=(0.5,),
+            depth=0.9,
+        ),
         slab(x, y, z - 0.04, z, colour),
         *doors,
     ]
@@ -49,8 +66,17 @@ def _with_doors(x: float, y: float, z: float, colour: Colour, *, foot: float, pa
         for side in (-1, 1)
         for part in seen(ball((0.03,) * 3, (x / 2 - 0.002, side * 0.03, z * 0.52), BRASS))
     ]
-    body = box((x - 0.012, y, z - foot), (-0.006, 0, (z + foot) / 2), colour)
-    return [body, *doors, *(inner if panels else []), *knobs]
+    shelves = _shelves(z - foot)
+    body = closed_box(
+        (x - 0.012, y, z - foot), (-0.006, 0, (z + foot) / 2), colour, boards=shelves, depth=0.9
+    )
+    return [*body, *doors, *(inner if panels else []), *knobs]
+
+
+def _shelves(height: float) -> list[float]:
+    """Shares of a height where shelves lie, some 40 cm apart; a clothes rail's height is left at the top."""
+    count = max(1, round(height / 0.4)) - (2 if height > 1.5 else 0)
+    return [index / max(2, round(height / 0.4)) for index in range(1, max(2, count))]
 
 
 def cabinet(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -74,7 +100,13 @@ def cupboard(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     return [
         *_with_doors(x, y, low, colour, foot=0.0, panels=False),
-        box((0.65 * x, y, z - low), (-0.175 * x, 0, (z + low) / 2), shade(colour, 0.9)),
+        *closed_box(
+            (0.65 * x, y, z - low),
+            (-0.175 * x, 0, (z + low) / 2),
+            shade(colour, 0.9),
+            boards=_shelves(z - low),
+            depth=0.9,
+        ),
         *glass,
     ]
 
@@ -97,7 +129,13 @@ def drawer(x: float, y: float, z: float, colour: Colour) -> Parts:
         height = 0.04 * z + pitch * (row + 0.5)
         fronts += front(x / 2 - 0.02, 0.92 * y, 0.86 * pitch, (0, height), shade(colour, 1.2), deep=0.012)
         handles += seen(box((0.02, 0.3 * y, 0.02), (x / 2 - 0.01, 0, height), STEEL))
-    return [box((x - 0.032, y, z), (-0.016, 0, z / 2), colour), *fronts, *handles]
+    body = closed_box(
+        (x - 0.032, y, z),
+        (-0.016, 0, z / 2),
+        colour,
+        boards=[(0.04 * z + row * pitch) / z for row in range(1, rows)],
+    )
+    return [*body, *fronts, *handles]
 
 
 def bedstand(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -106,7 +144,7 @@ def bedstand(x: float, y: float, z: float, colour: Colour) -> Parts:
     panel = front(x / 2, 0.86 * y, 0.26 * z, (0, 0.78 * z), shade(colour, 1.2), deep=0.012)
     knob = seen(ball((0.03,) * 3, (x / 2 - 0.002, 0, 0.78 * z), BRASS))
     return [
-        box((x - 0.012, y, 0.4 * z), (-0.006, 0, 0.8 * z), colour),
+        *closed_box((x - 0.012, y, 0.4 * z), (-0.006, 0, 0.8 * z), colour),
         *legs(x - 0.02, y, 0.6 * z, 0.035, shade(colour, 0.8)),
         box((0.9 * x, 0.9 * y, deck), (0, 0, 0.15 * z), colour),
         *panel,

@@ -37,6 +37,7 @@ def test_history(system):
     table = system.cli("history", "chair1", "--until", "5")
     for word in ("operator/ann", "perception/camera", "0.50", "add Chair chair1", "2 commits"):
         assert word in table
+    assert max(map(len, system.cli("history", "--until", "5").splitlines())) <= 120
     rows = json.loads(system.cli("history", "--until", "5", "--format", "json"))
     assert [row["seq"] for row in rows] == [1, 2, 3, 4, 5]
     assert [row["verb"] for row in rows] == ["", "add", "update", "add", "remove"]

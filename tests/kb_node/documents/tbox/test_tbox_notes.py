@@ -4,11 +4,17 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
+from ontology import HOUSEHOLD_TTL
+from ontology import vocabulary as v
 from tests.kb_node import home
 
 
 def notes(text: str = ""):
-    tbox = rdf.parse((home.TBOX_TURTLE + text).encode(), "tbox", label_prefix="t")
+    prefix = f"@prefix : <{v.ABOX}> ."
+    return notes_of(rdf.parse((home.TBOX_TURTLE + prefix + text).encode(), "tbox", label_prefix="t"))
+
+
+def notes_of(tbox):
     reasoner = Reasoner(tbox)
     return tbox_notes.notes(tbox, reasoner, ClassTable(reasoner))
 
@@ -39,6 +45,21 @@ def test_what_is_outside_owl_2_rl_is_counted():
         "3 axioms go beyond OWL 2 RL; that part is inert, which does no harm (2 x existential"
     )
     assert said.endswith("1 x reflexive property)")
+
+
+def test_what_is_inert_in_the_shipped_tbox_is_not_told_but_what_is_added_is():
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household")
+    more = rdf.parse(f"{v.dm('near')} a <{v.OWL}ReflexiveProperty> .".encode(), "more")
+    assert notes_of(tbox) == ()
+    (said,) = notes_of([*tbox, *more])
+    assert said.endswith("(1 x reflexive property)")
+
+
+def test_entities_that_the_tbox_describes_are_counted():
+    (said,) = notes(":chair1 a dm:Chair . :a a dm:Seat . :kitchen1 a dm:Kitchen . :b a dm:Seat .")
+    assert said == (
+        "4 entities are described by the TBox itself, so no command changes them: a, b, chair1 and kitchen1"
+    )
 
 
 def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():

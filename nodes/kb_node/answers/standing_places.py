@@ -1,0 +1,190 @@
+"""Standing questions of where things are: who is on, in or near something, and who comes and goes."""
+
+from __future__ import annotations
+
+import time
+import uuid
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from nodes.kb_node.answers import asked_terms
+from nodes.kb_node.relations.carrying import Loads
+from nodes.kb_node.relations.selection import Meant, chosen, require_whole, resolved
+from nodes.kb_node.relations.solids import solid_of
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.protocol import News
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Renew, Watch
+from schemas.entities import Entity
+from schemas.relations import Where
+from schemas.replies import Done
+from schemas.sparql import Row, RowsChanged, Watching
+
+STANDING = 64
+"""How many there may be."""
+VARIABLES = ("entity",)
+
+
+@dataclass
+class _Standing:
+    """One of them. `ends` is when its lease does [s, monotonic]."""
+
+    watch: str
+    class_name: str | None
+    where: Where
+    lease_s: float
+    ends: float
+    meant: Meant
+    found: dict[str, Row]
+    """Those that are there, by name."""
+    seq: int
+
+
+class StandingPlaces:
+    """Keeps them in step with a map. Owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap, publish: Callable[[News], None]) -> None:
+        self._map = semantic_map
+        self._publish = publish
+        self._standing: dict[str, _Standing] = {}
+        self._known: dict[str, Entity] = {}
+        """While there is one: the entities as they were when it was last looked at them."""
+        self._touched: set[str] = set()
+
+    def watch(self, command: Watch) -> Watching:
+        """Begin one. Raises UnknownName, UnknownClass, NameTaken, BadRequest, Refused for too many."""
+        self.drop_expired()
+        name = command.watch or f"q{uuid.uuid4().hex[:12]}"
+        if name in self._standing:
+            raise errors.NameTaken(f"there is a standing query '{name}' already")
+        if len(self._standing) >= STANDING:
+            raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
+        where = command.where or Where()
+        require_whole(where)
+        class_name = None
+        if command.class_ is not None:
+            class_name = v.local_name(asked_terms.class_(self._map, command.class_))
+        if not self._standing:
+            self._known = {entity.name: entity for entity in self._map.entities()}
+        self._standing[name] = standing = _Standing(
+            watch=name,
+            class_name=class_name,
+            where=where,
+            lease_s=command.lease,
+            ends=time.monotonic() + command.lease,
+            meant=resolved(where, tuple(self._map.entities())),
+            found={},
+            seq=self._map.seq,
+        )
+        standing.found = self._look(standing, self._map.names)
+        return Watching(
+            watch=name,
+            variables=VARIABLES,
+            rows=tuple(standing.found.values()),
+            seq=self._map.seq,
+            lease_s=command.lease,
+        )
+
+    def renew(self, renewal: Renew) -> Done | None:
+        """One goes on, or ends; None if it is not one of these."""
+        standing = self._standing.get(renewal.watch)
+        if standing is None:
+            return None
+        if renewal.end:
+            self._drop(standing)
+            return Done(text=f"{renewal.watch} has ended")
+        standing.ends = time.monotonic() + standing.lease_s
+        return Done(text=f"{renewal.watch} goes on for {standing.lease_s:g} s")
+
+    def drop_expired(self) -> None:
+        """End those whose lease has ended."""
+        for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
+            self._drop(standing)
+
+    def follow(self, seq: int, names: Iterable[str]) -> None:
+        """A commit touched these entities; if the map has others already, they are told of with the last."""
+        if not self._standing:
+            return
+        self._touched.update(names)
+        if seq < self._map.seq or not self._touched:
+            return
+        self.drop_expired()
+        touched, self._touched = self._touched, set()
+        is_called_anew = any(
+            _called(self._known.get(name)) != _called(self._map.find(name)) for name in touched
+        )
+        concerned = self._concerned(touched)
+        for standing in self._standing.values():
+            if is_called_anew:
+                standing.meant = self._meant(standing.where)
+            self._tell(standing, concerned, touched, seq)
+        for name in touched:
+            if (entity := self._map.find(name)) is None:
+                self._known.pop(name, None)
+            else:
+                self._known[name] = entity
+
+    def _concerned(self, touched: Iterable[str]) -> set[str]:
+        """Who may be elsewhere relative to others: who moved, who was or is beside it, and all on top."""
+        space = self._map.places.space()
+        found = set(touched)
+        for name in touched:
+            before = self._known.get(name)
+            for solid in (None if before is None else solid_of(before), space.solids.get(name)):
+                if solid is not None:
+                    found.update(other.name for other in space.around(solid))
+        loads = Loads(space)
+        return found.union(*(loads.all_of(name) for name in found))
+
+    def _tell(self, standing: _Standing, concerned: set[str], touched: set[str], seq: int) -> None:
+        candidates = concerned | standing.found.keys()
+        near = standing.meant.near or frozenset()
+        if not near.isdisjoint(touched):
+            space = self._map.places.space()
+            reach = standing.where.within or space.limits.near_most_m
+            for name in near & space.solids.keys():
+                candidates.update(other.name for other in space.around(space.solids[name], reach))
+        now = self._look(standing, candidates)
+        came = [row for name, row in now.items() if name not in standing.found]
+        left = [row for name, row in standing.found.items() if name not in now]
+        since, standing.found, standing.seq = standing.seq, now, seq
+        if came or left:
+            news = RowsChanged(
+                watch=standing.watch,
+                seq=seq,
+                since=since,
+                appeared=tuple(came),
+                disappeared=tuple(left),
+            )
+            self._publish(News(watch=standing.watch, rows=news))
+
+    def _look(self, standing: _Standing, names: Iterable[str]) -> dict[str, Row]:
+        """Those of these names that are there, in the order of names."""
+        found = (self._map.find(name) for name in sorted(names))
+        class_name = standing.class_name
+        candidates = [e for e in found if e is not None and (class_name is None or class_name in e.types)]
+        space: Space = self._map.places.space()
+        there = chosen(space, candidates, standing.where, standing.meant)
+        return {entity.name: (v.iri(entity.iri),) for entity in there}
+
+    def _meant(self, where: Where) -> Meant:
+        """Who is meant now; nobody by a word that nobody is called any more."""
+        try:
+            return resolved(where, tuple(self._map.entities()))
+        except errors.UnknownName:
+            return Meant(*(None if word is None else frozenset() for word in where.words))
+
+    def _drop(self, standing: _Standing) -> None:
+        del self._standing[standing.watch]
+        if not self._standing:
+            self._known = {}
+        self._publish(News(watch=standing.watch, ended=True))
+
+
+def _called(entity: Entity | None) -> tuple[object, ...]:
+    """By what a word may mean an entity."""
+    if entity is None:
+        return ()
+    return (entity.types, entity.preferred_reference, entity.alternative_references)

@@ -1,0 +1,61 @@
+"""What people call the properties of a TBox: names, prefixed names, IRIs and labels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from functools import cached_property
+
+from nodes.kb_node.reasoner import Reasoner
+from ontology import prefixes
+from ontology import vocabulary as v
+from ontology.name_index import Ambiguous, Named, NameIndex
+from ontology.prefixes import Prefixes
+from schemas import errors
+from schemas.explanations import Term
+
+
+class PropertyNames:
+    """The one place where a word becomes a property."""
+
+    def __init__(self, reasoner: Reasoner, properties: Collection[Term], known_prefixes: Prefixes) -> None:
+        self._reasoner = reasoner
+        self._prefixes = known_prefixes
+        self.names: dict[Term, str] = prefixes.names(
+            [p for p in properties if p.startswith("<")], known_prefixes
+        )
+        """Property to name: its local name, with a prefix where several properties share that."""
+
+    def find(self, word: str, *, among: Callable[[Term], bool] = lambda _: True) -> Term | None:
+        """The property that `word` means, of several the one that is `among` those wanted.
+
+        Raises BadRequest for a word that may still mean several.
+        """
+        try:
+            name = self._index.find(word)
+        except Ambiguous as error:
+            wanted = [name for name in error.names if among(self._by_name[name])]
+            if len(wanted) != 1:
+                raise errors.BadRequest(f"'{word}' is ambiguous: {error}; say which property") from None
+            name = wanted[0]
+        return None if name is None else self._by_name[name]
+
+    def did_you_mean(self, word: str, among: Callable[[Term], bool] = lambda _: True) -> str:
+        """The nearest names of those wanted, or nothing."""
+        return NameIndex(map(self._named, filter(among, self.names))).did_you_mean(word)
+
+    def labels(self, term: Term) -> Iterable[str]:
+        """In every language."""
+        return (v.lexical(o) for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
+
+    @cached_property
+    def _index(self) -> NameIndex:
+        return NameIndex(map(self._named, self.names))
+
+    @cached_property
+    def _by_name(self) -> dict[str, Term]:
+        return {name: p for p, name in self.names.items()}
+
+    def _named(self, p: Term) -> Named:
+        return Named(
+            self.names[p], v.bare(p), prefixes.prefixed(p, self._prefixes), tuple(sorted(self.labels(p)))
+        )

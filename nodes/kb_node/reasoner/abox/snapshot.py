@@ -1,0 +1,114 @@
+"""Columns of an ABox as it stands, and an ABox filled from columns without working anything out."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import Adjacency
+from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
+from nodes.kb_node.reasoner.abox.kinds import Kind, bits, mask_of
+from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member
+from nodes.kb_node.reasoner.terms import is_named
+
+
+def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
+    """Those of an ABox, which may change afterwards; None where some nodes are the same.
+
+    `schema` identifies what it was worked out by, `size` is how many triples are asserted.
+    """
+    if not _is_plain(abox):
+        return None
+    store = abox.store
+    kinds = {kind: number for number, kind in enumerate(dict.fromkeys(store.kind))}
+    return Columns(
+        schema=schema,
+        size=size,
+        classes=list(abox.schema.classes),
+        properties=[axioms.term for axioms in abox.schema.axioms],
+        kinds=[_said(abox, kind) for kind in kinds],
+        reasons=[
+            (edge, [_claimed(claim) for claim in reason.claims])
+            for edge, reason in sorted(abox.reasons.items(), key=lambda item: item[1].order)
+        ],
+        terms=list(store.terms),
+        kind=array("i", map(kinds.__getitem__, store.kind)),
+        places=store.places[:],
+        subject=array("i", store.subject),
+        predicate=array("i", store.predicate),
+        object=array("i", store.object),
+        source=bytes(store.source),
+        out=_links(store.out),
+        into=_links(store.into),
+    )
+
+
+def fill(abox: ABox, columns: Columns) -> bool:
+    """Let an ABox that holds no more than its schema says be the one that the columns are of.
+
+    False, with nothing done, if they speak of what only another schema has.
+    """
+    schema, store = abox.schema, abox.store
+    unknown = [term for term in columns.classes if schema.find_class(term) is None]
+    unknown += [term for term in columns.properties if schema.find_property(term) is None]
+    if not _is_plain(abox) or not all(map(is_named, unknown)):
+        return False  # what has no IRI is made by the schema alone
+    classes = [schema.cls(term) for term in columns.classes]
+    properties = [schema.property(term) for term in columns.properties]
+    kinds = [_kind(abox, said, classes) for said in columns.kinds]
+    for kind in abox.kinds:
+        del kind.nodes[:]
+    store.fill(columns, [*map(kinds.__getitem__, columns.kind)], properties)
+    abox.reasons.clear()
+    abox.rest_on_edge.clear()
+    abox.rest_on_node.clear()
+    for edge, claims in columns.reasons:
+        said = tuple(_claim(claimed, classes, properties) for claimed in claims)
+        abox.reasons[edge] = abox.conclude(said, edge=edge)
+    return True
+
+
+def _is_plain(abox: ABox) -> bool:
+    is_pending = abox.moved or abox.fresh or abox.dirty
+    return not (abox.equals or abox.spellings or abox.is_mixed or is_pending)
+
+
+def _links(side: Adjacency) -> tuple[array[int], ...]:
+    return side.heads[:], side.after[:], side.before[:], side.group[:]
+
+
+def _said(abox: ABox, kind: Kind) -> KindSaid:
+    return KindSaid(
+        given=sorted(kind.given),
+        classes=list(bits(kind.mask)),
+        excluded=None if kind.excluded is None else list(bits(kind.excluded)),
+        ill_typed=kind is abox.kinds.ill_typed,
+        told=[abox.schema.classes[cls] for cls in abox.kinds.given(kind)],
+    )
+
+
+def _kind(abox: ABox, said: KindSaid, classes: Sequence[int]) -> Kind:
+    if said.ill_typed:
+        return abox.kinds.ill_typed
+    given, mask = (map(classes.__getitem__, numbers) for numbers in (said.given, said.classes))
+    excluded = None if said.excluded is None else mask_of(map(classes.__getitem__, said.excluded))
+    return abox.kinds.like(frozenset(given), mask_of(mask), excluded)
+
+
+def _claimed(claim: Claim) -> Claimed:
+    match claim:
+        case Member(node, cls):
+            return node, cls
+        case Edge(edge, None):
+            return (edge,)
+        case Edge(edge, (prop, backwards)):
+            return edge, prop, int(backwards)
+    raise AssertionError("nothing is the same as something else in columns")
+
+
+def _claim(claimed: Claimed, classes: Sequence[int], properties: Sequence[int]) -> Claim:
+    if len(claimed) == 2:
+        return Member(claimed[0], classes[claimed[1]])
+    edge, *role = claimed
+    return Edge(edge, (properties[role[0]], bool(role[1])) if role else None)

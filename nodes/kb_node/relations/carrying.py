@@ -1,0 +1,59 @@
+"""What goes along when a thing is carried away: all that stands on it or is inside it, and so on upward."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from nodes.kb_node.relations.solids import Solid
+from nodes.kb_node.relations.space import Space
+
+
+class Bearer(NamedTuple):
+    """What a thing is inside, or else stands on; of several supports that which counts most."""
+
+    name: str
+    is_inside: bool
+
+
+class Loads:
+    """What things bear as they stand; each thing is looked at once. A place bears nothing."""
+
+    def __init__(self, space: Space) -> None:
+        self._space = space
+        self._bearers: dict[str, Bearer | None] = {}
+
+    def all_of(self, name: str, leave: Collection[str] = ()) -> list[str]:
+        """What a thing bears, what bears before what is borne; without `leave` and what only that bears."""
+        found: dict[str, None] = {}
+        waiting = deque([name])
+        while waiting:
+            for above, _ in self.directly_on(waiting.popleft()):
+                if above not in found and above != name and above not in leave:
+                    found[above] = None
+                    waiting.append(above)
+        return list(found)
+
+    def directly_on(self, name: str) -> Iterator[tuple[str, Bearer]]:
+        """What stands on a thing itself, or is inside it, in the order of names."""
+        solid = self._space.solids.get(name)
+        if solid is None or solid.is_place:
+            return
+        for other in sorted(self._space.around(solid), key=lambda other: other.name):
+            bearer = self._bearer(other)
+            if bearer is not None and bearer.name == name:
+                yield other.name, bearer
+
+    def _bearer(self, solid: Solid) -> Bearer | None:
+        if solid.name not in self._bearers:
+            self._bearers[solid.name] = self._looked_up(solid)
+        return self._bearers[solid.name]
+
+    def _looked_up(self, solid: Solid) -> Bearer | None:
+        if solid.is_place:
+            return None
+        container, supports, _ = self._space.whereabouts(solid)
+        if container is not None:
+            return Bearer(container[0].name, is_inside=True)
+        return Bearer(supports[0][0].name, is_inside=False) if supports else None

@@ -1,0 +1,77 @@
+"""A Zenoh configuration of one's own is taken, and what Zenoh would accept in silence is told."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes import bus
+from schemas import errors
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(text):
+        path = tmp_path / "zenoh.json5"
+        path.write_text(text)
+        return str(path)
+
+    return write
+
+
+def test_what_it_says_holds_in_a_session(file):
+    path = file("{ queries_default_timeout: 1234, /* JSON5 */ metadata: {name: 'robot'} }")
+    bus.own_config.require_sound(path, secure=True)
+    config = bus.Network(own_config=path).as_config()
+    assert config.get_json("queries_default_timeout") == "1234"
+    assert config.get_json("scouting/multicast/enabled") == "false"  # as in every session of ours
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("{ mode: 'peer' }", "sets mode"),
+        ("{ id: 'abcd' }", "sets id"),
+        ("{ listen: {endpoints: ['tcp/0.0.0.0:1']} }", "sets listen/endpoints.*use --listen"),
+        ("{ connect: {endpoints: ['tcp/10.0.0.1:1']} }", "sets connect/endpoints.*use --connect"),
+        ("{ transprt: 1 }", "unknown field `transprt`"),
+        ("{", "not a Zenoh configuration"),
+        ("{ transport: {link: {tls: {listen_certificate: '/none.pem'}}} }", "no such file"),
+        ("{ access_control: {rules: [], policies: [{rules: ['r'], subjects: ['s']}]} }", "not enabled"),
+        (
+            "{ access_control: {enabled: true, rules: [], policies: [{rules: ['r'], subjects: []}]} }",
+            "names r, which is not among the rules",
+        ),
+        (
+            "{ access_control: {enabled: true, policies: [{rules: [], subjects: ['s']}]} }",
+            "names s, which is not among the subjects",
+        ),
+    ],
+)
+def test_what_would_not_do_what_it_says_is_told(file, text, told):
+    with pytest.raises(errors.BadFile, match=told):
+        bus.own_config.require_sound(file(text), secure=False)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{ access_control: {enabled: true, default_permission: 'allow'} }",
+        "{transport: {link: {tls: {enable_mtls: true}}}}",
+    ],
+)
+def test_what_is_made_from_the_keys_cannot_be_set_beside_them(file, text):
+    bus.own_config.require_sound(file(text), secure=False)
+    with pytest.raises(errors.BadFile, match="which --secure makes"):
+        bus.own_config.require_sound(file(text), secure=True)
+
+
+def test_a_missing_file_is_told(tmp_path):
+    with pytest.raises(errors.BadFile, match="there is no file"):
+        bus.own_config.read(str(tmp_path / "none.json5"))
+
+
+def test_mutual_tls_protects(file):
+    assert bus.own_config.is_protected(
+        file("{transport: {link: {tls: {enable_mtls: true, root_ca_certificate: 'ca.pem'}}}}")
+    )
+    assert not bus.own_config.is_protected(file("{}"))

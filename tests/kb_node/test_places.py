@@ -1,0 +1,314 @@
+"""What a change of the map means for where things are: taken back, carried along, left behind."""
+
+import re
+
+import pytest
+
+from nodes.kb_node.answers import trials
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.storage.history import Past
+from nodes.kb_node.undo import undo
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import History, Undo
+from schemas.commits import Edit, NewEntity, Statement, Transaction
+from schemas.entities import Pose
+from tests.kb_node import home
+
+WORDS = "".join(
+    f'dm:{name} a owl:Class ; rdfs:subClassOf dm:Object ; dm:model "{name.lower()}" .\n'
+    for name in ("Table", "Tray", "Cup", "Bowl", "Apple", "Book")
+)
+TBOX_TURTLE = (
+    home.TBOX_TURTLE
+    + WORDS
+    + """
+dm:Thing a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "nothing known" .
+dm:isOn a owl:ObjectProperty ; owl:inverseOf dm:supports ; owl:propertyDisjointWith dm:isInside .
+dm:supports a owl:ObjectProperty .
+dm:isInside a owl:ObjectProperty .
+dm:isLocatedIn a owl:ObjectProperty .
+"""
+)
+TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
+TOP = 0.74
+"""Of a table, which is 1.5 m by 0.9 m [m]."""
+
+
+def new(name, class_, at, *, size=None, on=None, **said):
+    said = {**said, **({"isOn": on} if on else {})}
+    return NewEntity(
+        name=name,
+        class_iri=v.bare(v.dm(class_)),
+        pose=None if at is None else Pose(position_m=at),
+        size=size,
+        set=tuple(Statement(property=p, values=(o,)) for p, o in said.items()),
+    )
+
+
+@pytest.fixture
+def room(tmp_path):
+    """A table with a tray on it, on which are a cup and a bowl with an apple; and a second table."""
+    semantic_map = home.new_map(tmp_path, TBOX)
+    commit(
+        semantic_map,
+        add=(
+            new("kitchen1", "Kitchen", (0.0, 0.0, 0.0), size=(12.0, 12.0, 2.5)),
+            new("table1", "Table", (0.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),
+            new("table2", "Table", (3.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),
+        ),
+    )
+    commit(
+        semantic_map,
+        add=(
+            new("tray1", "Tray", (0.0, 0.0, TOP), size=(0.5, 0.4, 0.02)),
+            new("cup1", "Cup", (-0.15, 0.0, TOP + 0.02)),
+            new("bowl1", "Bowl", (0.1, 0.0, TOP + 0.02)),
+            new("apple1", "Apple", (0.1, 0.0, TOP + 0.04)),
+        ),
+    )
+    yield semantic_map
+    home.close(semantic_map)
+
+
+numbers = iter(range(10_000))
+
+
+def commit(semantic_map, **fields):
+    wanted = Transaction(id=f"c{next(numbers)}", source="operator", verb="update", **fields)
+    return semantic_map.commit(wanted)
+
+
+def say(semantic_map, name, property_, other):
+    edit = Edit(name=name, set=(Statement(property=property_, values=(other,)),))
+    return commit(semantic_map, edit=(edit,))
+
+
+def move(semantic_map, name, at, **fields):
+    return commit(semantic_map, edit=(Edit(name=name, at=at, **fields),))
+
+
+def take_back(semantic_map, seq=None):
+    return undo(semantic_map, semantic_map._journal, Undo(id=f"u{next(numbers)}", commit=seq))
+
+
+def said(semantic_map, property_="isOn"):
+    triples = semantic_map.reasoner.asserted(None, v.dm(property_), None)
+    return {(v.entity_name(s), v.entity_name(o)) for s, _, o in triples}
+
+
+def stands(notes):
+    """The notes, each without how far it is."""
+    return [re.sub(r"( it stands) [0-9.]+ m from it$", r"\1", note) for note in notes]
+
+
+def where(semantic_map, name):
+    return semantic_map.entity(name).pose.position_m
+
+
+def test_a_move_takes_back_what_geometry_then_denies(room):
+    say(room, "cup1", "isOn", "table1")
+    say(room, "cup1", "isLocatedIn", "kitchen1")
+    before = home.state(room)[1:]
+    made = move(room, "cup1", (0.0, 2.0, 0.0))
+    assert (v.entity_iri("cup1"), v.dm("isOn"), v.entity_iri("table1")) in made.retracted
+    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert (said(room), said(room, "isLocatedIn")) == (set(), {("cup1", "kitchen1")})
+    assert room.entity("cup1").properties == {"isLocatedIn": ("kitchen1",)}
+    take_back(room)
+    assert home.state(room)[1] == before[0]
+    assert said(room) == {("cup1", "table1")}
+
+
+def test_so_does_the_move_of_the_other_one_and_what_is_said_the_other_way_round(room):
+    say(room, "table1", "supports", "cup1")
+    made = move(room, "table1", (-3.0, 0.0, 0.0))
+    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert said(room, "supports") == set()
+
+
+def test_so_does_another_size(room):
+    say(room, "cup1", "isOn", "table1")
+    say(room, "cup1", "isOn", "tray1")
+    assert not commit(room, edit=(Edit(name="table1", size=(1.4, 0.9, TOP)),)).notes
+    made = commit(room, edit=(Edit(name="table1", size=(1.5, 0.9, 0.3)),))
+    assert len(made.notes) == 1
+    assert said(room) == {("cup1", "tray1")}
+
+
+def test_what_still_holds_stays(room):
+    say(room, "cup1", "isOn", "tray1")
+    say(room, "cup1", "isOn", "table1")
+    assert not move(room, "cup1", (0.1, 0.1, TOP + 0.02)).notes
+    assert said(room) == {("cup1", "tray1"), ("cup1", "table1")}
+
+
+def test_what_is_said_against_geometry_stays_and_is_noted(room):
+    made = say(room, "cup1", "isOn", "table2")
+    assert stands(made.notes) == ["cup1 was said to be on table2; it stands"]
+    assert said(room) == {("cup1", "table2")}
+    stays = move(room, "apple1", (0.1, 0.01, TOP + 0.04))
+    assert not stays.notes
+    assert said(room) == {("cup1", "table2")}
+    made = move(room, "cup1", (-0.1, 0.0, TOP + 0.02))
+    assert made.notes[0].startswith("taken back: cup1 was said to be on table2")
+    assert said(room) == set()
+
+
+def test_what_one_commit_says_it_does_not_take_back(room):
+    say(room, "cup1", "isOn", "table1")
+    edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
+    made = commit(room, edit=(edit,))
+    assert stands(made.notes) == [
+        "taken back: cup1 was said to be on table1; it stands",
+        "cup1 was said to be on table2; it stands",
+    ]
+    assert said(room) == {("cup1", "table2")}
+
+
+def test_what_came_with_an_addition_is_noted(room):
+    made = commit(room, add=(new("book1", "Book", (5.0, 0.0, 0.0), on="table2"),))
+    assert stands(made.notes) == ["book1 was said to be on table2; it stands"]
+
+
+def test_nothing_is_denied_that_is_not_known(room):
+    """Flat maps have no sizes, and some things no position."""
+    commit(
+        room,
+        add=(
+            new("lost1", "Cup", None, on="table1"),
+            new("thing1", "Thing", (5.0, 5.0, 0.0)),
+            new("thing2", "Thing", (0.0, 0.0, 0.0), on="thing1"),
+        ),
+    )
+    assert not move(room, "table1", (-3.0, 0.0, 0.0)).notes
+    assert not move(room, "thing2", (1.0, 0.0, 0.0)).notes
+    assert said(room) == {("lost1", "table1"), ("thing2", "thing1")}
+
+
+def test_what_gets_its_first_position_is_moved(room):
+    commit(room, add=(new("lost1", "Cup", None, on="table1"),))
+    assert len(move(room, "lost1", (5.0, 5.0, 0.0)).notes) == 1
+    assert said(room) == set()
+
+
+def test_a_dry_run_shows_it_and_does_nothing(room):
+    say(room, "cup1", "isOn", "table1")
+    before = home.state(room)
+    wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
+    tried = trials.of(room, lambda: room.commit(wanted))
+    assert stands(tried.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert home.state(room) == before
+    assert said(room) == {("cup1", "table1")}
+
+
+def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
+    """What is inside a thing is not on it: two properties that are disjoint."""
+    say(room, "apple1", "isOn", "table1")
+    with pytest.raises(errors.Inconsistent):
+        say(room, "apple1", "isInside", "table1")
+    edit = Edit(name="apple1", at=(0.0, 2.0, 0.0), set=(Statement(property="isInside", values=("table1",)),))
+    assert len(commit(room, edit=(edit,)).notes) == 2
+
+
+def test_it_is_the_same_after_a_restart(room):
+    say(room, "cup1", "isOn", "table1")
+    made = move(room, "cup1", (0.0, 2.0, 0.0))
+    before = home.state(room)
+    again = home.reopened(room)
+    room._journal = again._journal
+    assert home.state(again) == before
+    assert again._journal.commit(made.seq).notes == made.notes
+    logged = Past(again._journal).history(History(name="cup1"))[-1]
+    assert logged.notes == made.notes
+    assert [change.text for change in logged.changes][1] == "isOn: - table1"
+
+
+def test_undo_of_what_took_back_after_more_was_said(room):
+    say(room, "cup1", "isOn", "table1")
+    moved = move(room, "cup1", (3.0, 0.0, TOP))
+    say(room, "cup1", "isOn", "table2")
+    back = take_back(room, moved.seq)
+    assert said(room) == {("cup1", "table1")}
+    assert stands(back.notes) == ["taken back: cup1 was said to be on table2; it stands"]
+
+
+def test_carry(room):
+    made = move(room, "tray1", (3.0, 0.0, TOP), yaw=1.5707963267948966, carry=True)
+    assert made.notes == ("tray1 carried bowl1, cup1 and apple1 along",)
+    assert {e.name for e in made.changed} == {"tray1", "bowl1", "cup1", "apple1"}
+    assert where(room, "cup1") == pytest.approx((3.0, -0.15, TOP + 0.02), abs=1e-5)
+    assert where(room, "apple1") == pytest.approx((3.0, 0.1, TOP + 0.04), abs=1e-5)
+    assert room.entity("cup1").pose.yaw_rad == pytest.approx(1.5708, abs=1e-4)
+    take_back(room)
+    assert where(room, "cup1") == (-0.15, 0.0, TOP + 0.02)
+
+
+def test_carry_keeps_what_is_said_of_those_that_go_together(room):
+    say(room, "cup1", "isOn", "tray1")
+    say(room, "cup1", "isOn", "table1")
+    made = move(room, "tray1", (3.0, 0.0, TOP), carry=True)
+    assert said(room) == {("cup1", "tray1")}
+    assert len(made.notes) == 2
+
+
+def test_carry_leaves_what_is_named(room):
+    made = move(room, "tray1", (3.0, 0.0, TOP), carry=True, leave=("bowl1",))
+    assert {e.name for e in made.changed} == {"tray1", "cup1"}
+
+
+def test_carry_with_nothing_on_it_says_so(room):
+    made = move(room, "cup1", (3.0, 0.0, TOP), carry=True)
+    assert made.notes == ("nothing stands on cup1 or is inside it",)
+
+
+@pytest.mark.parametrize(
+    ("edit", "error", "text"),
+    [
+        (Edit(name="tray1", carry=True), errors.BadRequest, "add --at, --yaw or --orientation"),
+        (Edit(name="kitchen1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "kitchen1 is a place"),
+        (
+            Edit(name="tray1", at=(1.0, 0.0, 0.0), carry=True, leave=("cap1",)),
+            errors.UnknownName,
+            "no entity is named 'cap1'; did you mean",
+        ),
+        (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position yet"),
+    ],
+)
+def test_what_cannot_carry(room, edit, error, text):
+    commit(room, add=(new("lost1", "Cup", None),))
+    before = home.state(room)
+    with pytest.raises(error, match=text):
+        commit(room, edit=(edit,))
+    assert home.state(room) == before
+
+
+def test_removing_tells_what_was_on_it_and_in_it(room):
+    made = commit(room, remove=("bowl1",))
+    assert made.notes == ("inside bowl1 was apple1",)
+    made = commit(room, remove=("apple1", "tray1", "table2"))
+    assert made.notes == ("on tray1 was cup1",)
+    assert commit(room, remove=("cup1",)).notes == ()
+
+
+def test_removing_all_that_there_is_tells_nothing(room):
+    assert commit(room, remove=tuple(room.names)).notes == ()
+
+
+def test_removing_tells_what_was_only_said(room):
+    commit(room, add=(new("lost1", "Cup", None, on="table2"),))
+    assert commit(room, remove=("table2",)).notes == ("on table2 was lost1",)
+
+
+def test_a_map_in_other_words_is_read_too(tmp_path):
+    """A move written as triples, as a document or an undo has it."""
+    semantic_map = home.new_map(tmp_path, TBOX)
+    commit(semantic_map, add=(new("table1", "Table", (0.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),))
+    commit(semantic_map, add=(new("cup1", "Cup", (0.0, 0.0, TOP), on="table1"),))
+    node = v.entity_iri("cup1_coordinates")
+    x = list(semantic_map.reasoner.asserted(node, v.COORDINATE_XYZ[0], None))
+    far = (node, v.COORDINATE_XYZ[0], v.literal("4.0", v.XSD_FLOAT))
+    made = commit(semantic_map, retract=tuple(x), insert=(far,))
+    assert len(made.notes) == 1
+    assert said(semantic_map) == set()
+    home.close(semantic_map)

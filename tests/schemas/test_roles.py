@@ -1,0 +1,61 @@
+"""The table of roles says of every command who may ask for it."""
+
+from __future__ import annotations
+
+import pytest
+
+from schemas import roles
+from schemas.calls import reply_type
+from schemas.commands import COMMANDS, Add, Clear, Get, Load, Remove
+from schemas.replies import Changed
+
+
+def test_every_command_has_a_row():
+    assert set(roles.COMMANDS) == set(COMMANDS)
+
+
+def test_every_change_takes_more_than_a_viewer():
+    """Whatever is answered with a commit, and whatever moves the scene."""
+    changes = {verb for verb, kind in COMMANDS.items() if reply_type(kind) is Changed}
+    assert changes
+    for verb in changes | {"move", "pause", "step", "reset"}:
+        assert not {"viewer", "robot"} & roles.COMMANDS[verb], verb
+
+
+@pytest.mark.parametrize("role", roles.ROLES)
+def test_everybody_may_ask(role):
+    assert roles.refusal(role, Get(name="x")) is None
+
+
+@pytest.mark.parametrize(
+    ("command", "allowed"),
+    [
+        (Add(class_="Cup"), {"operator", "admin", "node"}),
+        (Add(class_="Cup", source="perception"), {"operator", "perception", "admin", "node"}),
+        (Remove(names=("x",), source="scene"), {"node"}),
+        (Clear(), {"operator", "admin", "node"}),
+        (Clear(source="perception"), {"operator", "admin", "node"}),
+        (Load(content=b""), {"operator", "admin", "node"}),
+        (Load(content=b"", tbox=True), {"admin", "node"}),
+    ],
+)
+def test_who_may_change(command, allowed):
+    assert {role for role in roles.ROLES if roles.refusal(role, command) is None} == allowed
+
+
+def test_a_refusal_says_whose_word_it_takes():
+    assert roles.refusal("viewer", Load(content=b"", tbox=True)) == (
+        "your certificate (viewer) may not load --tbox; that takes the role 'admin'"
+    )
+    assert "may change the map as perception" in roles.refusal("perception", Add(class_="Cup"))
+
+
+def test_what_is_not_in_the_table_is_for_nodes(monkeypatch):
+    monkeypatch.delitem(roles.COMMANDS, "get")
+    assert roles.refusal("admin", Get(name="x"))
+    assert roles.refusal("node", Get(name="x")) is None
+
+
+def test_a_role_that_there_is_not_may_nothing():
+    assert all(roles.refusal("janitor", kind) for kind in (Get(name="x"), Clear()))
+    assert roles.followed("janitor") == ()

@@ -1,0 +1,269 @@
+"""A whole system with `--secure`: who may what, who it was, and that nobody but the router listens."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import stat
+import time
+
+import psutil
+import pytest
+
+from nodes import bus
+from nodes.extern.client import connect
+from nodes.identity import Identity, authority
+from schemas import codec, commands, errors, keys
+from schemas.commits import Commit
+from schemas.health import Health
+from schemas.replies import Changed
+from tests.conftest import running, until
+
+NAMES = {"vera": "viewer", "bob": "operator", "eye": "perception", "spot": "robot", "root": "admin"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("secure") / "K"
+    authority.init(folder)
+    for name, role in NAMES.items():
+        authority.add(folder, name, role)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory, folder):
+    data = tmp_path_factory.mktemp("secure") / "d"
+    with running(data, "--secure", folder) as system:
+        yield system
+
+
+@pytest.fixture
+def as_(system, folder):
+    """Of a name, `client(...)` of it."""
+    return lambda name, **options: connect(system.endpoint, identity=str(folder / name), **options)
+
+
+@pytest.fixture
+def raw(system, folder):
+    """Of a name, a session of it that checks nothing by itself."""
+
+    def opened(name):
+        identity = Identity.read(folder / name)
+        return bus.open_session(bus.Network(connect=(bus.over_tls(system.endpoint),), identity=identity))
+
+    return opened
+
+
+def test_a_stranger_sees_nothing(system):
+    assert "--identity DIR/NAME" in system.cli("status", "--connect", bus.over_tls(system.endpoint), status=3)
+    system.cli("status", status=3)  # without TLS
+
+
+def test_who_comes_with_a_certificate_of_another_authority_is_turned_away_at_once(system, tmp_path):
+    authority.init(tmp_path / "L")
+    authority.add(tmp_path / "L", "bob", "operator")
+    began = time.monotonic()
+    said = system.cli("status", "--identity", tmp_path / "L" / "bob", status=3)
+    assert "does not admit the certificate of bob" in said
+    assert time.monotonic() - began < 10  # it does not wait for a system that is starting
+
+
+def test_who_asks_is_answered_and_who_may_not_change_is_told(system, folder):
+    assert "fridge1" in system.cli("get", "fridge1", "--identity", folder / "vera")
+    assert "true" in system.cli("sparql", "ASK {?s ?p ?o}", "--identity", folder / "vera")
+    for words in (
+        ("add", "Cup", "cup9"),
+        ("remove", "fridge1"),
+        ("undo",),
+        ("move", "chair1", "--at", "1", "1", "0"),
+    ):
+        for name in ("vera", "spot"):
+            said = system.cli(*words, "--identity", folder / name, status=1)
+            assert said.startswith(f"semmap: your certificate ({NAMES[name]}) may not {words[0]}; ")
+
+
+def test_a_change_is_signed_with_the_name_that_the_certificate_proves(as_, system, folder):
+    with as_("bob", agent="alice") as bob, as_("vera") as vera, vera.commits(timeout=30) as commits:
+        made = bob.add("Cup", "signed1", at=(1.0, 2.0, 0.75), reason="signed")
+        commit = next(c for c in commits if c.seq == made.commit)
+        assert (commit.agent, commit.source, commit.authenticated) == ("bob", "operator", True)
+        assert vera.get("signed1").pose_provenance.agent == "bob"
+        (first,) = vera.history(until=1)
+        assert not first.authenticated
+    said = system.cli("history", "signed1", "--identity", folder / "vera")
+    assert "operator/@bob" in said.replace("\n", "")
+    logged = json.loads(system.cli("history", "signed1", "--format", "json", "--identity", folder / "vera"))
+    assert (logged[0]["agent"], logged[0]["authenticated"]) == ("bob", True)
+
+
+def test_perception_speaks_as_perception_only(as_, raw):
+    with as_("eye") as eye:
+        made = eye.add("Cup", "seen1", at=(1.5, 2.0, 0.75))
+        assert eye.get("seen1").pose_provenance.source == "perception"
+        assert made.commit is not None
+        with pytest.raises(errors.Refused, match="only an operator may"):
+            eye.remove("fridge1")
+    with (
+        as_("eye", source="operator") as eye,
+        pytest.raises(errors.Refused, match=r"your certificate \(perception\) may not speak as operator"),
+    ):
+        eye.remove("fridge1")
+    forged = commands.Remove(names=("fridge1",), source="operator")
+    with raw("eye") as session, pytest.raises(errors.Refused, match="may not speak as operator"):
+        bus.ask(session, keys.commands_as("eye"), "remove", forged, Changed)
+
+
+def test_the_coordinator_refuses_what_a_client_did_not(raw):
+    with raw("vera") as session, pytest.raises(errors.Refused, match=r"\(viewer\) may not clear"):
+        bus.ask(session, keys.commands_as("vera"), "clear", commands.Clear(), Changed)
+    tbox = commands.Load(content=b"", tbox=True)
+    with raw("bob") as session, pytest.raises(errors.Refused, match=r"\(operator\) may not load --tbox"):
+        bus.ask(session, keys.commands_as("bob"), "load", tbox, Changed)
+    with raw("root") as session, pytest.raises(errors.SemmapError) as caught:  # admitted, and no TBox
+        bus.ask(session, keys.commands_as("root"), "load", tbox, Changed)
+    assert "certificate" not in caught.value.text
+
+
+def test_nobody_asks_in_anothers_name(raw):
+    add = commands.Add(class_="Cup", name="forged1", at=(0.0, 0.0, 1.0))
+    with raw("root") as session:
+        for prefix in (
+            keys.CMD,
+            keys.commands_as("bob"),
+            keys.commands_as("coordinator"),
+            keys.commands_as(),
+        ):
+            with pytest.raises(errors.NoAnswer):
+                bus.ask(session, prefix, "add", add, Changed, patience_s=0.0)
+        for key in (f"{keys.CMD}/add", f"{keys.commands_as('root')}/add", keys.CMD):
+            session.put(key, codec.encode(add))
+        wild = list(session.get(f"{keys.commands_as('root')}/*", payload=codec.encode(add)))
+        assert all(reply.ok is None for reply in wild)
+        with pytest.raises(errors.UnknownName):
+            bus.ask(session, keys.commands_as("root"), "get", commands.Get(name="forged1"), object)
+
+
+def test_nothing_of_a_nodes_can_be_forged(raw, as_, system):
+    with raw("root") as forger, as_("vera") as vera:
+        beats: list[str] = []
+        bus.follow(vera.session, keys.HEALTH, lambda _, health: beats.append(health.node))
+        before = vera.status().commit
+        beat = Health(node="x", pid=1, started_ns=0, stamp_ns=0, state="ready")
+        forger.put(keys.health_key("x"), codec.encode(beat))
+        forger.put(
+            keys.COMMIT.key, codec.encode(Commit(seq=before + 1, stamp_ns=0, id="f", source="operator"))
+        )
+        forger.declare_queryable(f"{keys.commands_as()}/add", lambda query: query.drop(), complete=True)
+        forger.liveliness().declare_token(keys.live_key("coordinator", "9"))
+        with as_("bob") as bob:
+            made = bob.add("Cup", "cup2", at=(2.0, 2.0, 0.75))
+        assert made.commit == before + 1
+        until(lambda: len(beats) > 8, "beats of nodes")
+        assert "x" not in beats
+        assert system.process.poll() is None
+
+
+def test_nobody_but_the_router_listens(as_):
+    with as_("vera") as vera:
+        nodes = {node.node: psutil.Process(node.pid) for node in vera.status().nodes}
+    assert set(nodes) == {"router", "coordinator", "kb_node", "sim_node", "recorder"}
+    listening = {
+        node: [c.laddr.port for c in process.net_connections(kind="inet") if c.status == psutil.CONN_LISTEN]
+        for name, process in nodes.items()
+        for node, process in [(name, process), *((f"{name}'s", child) for child in process.children(True))]
+    }
+    assert {node for node, ports in listening.items() if ports} == {"router"}
+    assert len(listening["router"]) == 1
+
+
+def test_the_data_is_its_users_alone(system):
+    modes = {stat.S_IMODE(p.stat().st_mode) for p in system.data.rglob("*") if p.is_file()}
+    folders = {stat.S_IMODE(p.stat().st_mode) for p in (system.data, *system.data.rglob("*")) if p.is_dir()}
+    assert (modes, folders) == ({0o600}, {0o700})
+
+
+def test_a_standing_query_reaches_a_viewer(as_):
+    with as_("vera") as vera, vera.watch("SELECT ?c { ?c a dm:Cup }") as standing:
+        with as_("bob") as bob:
+            bob.add("Cup", "cup3", at=(3.0, 2.0, 0.75))
+        news = next(standing.changes(timeout=30))
+        assert "cup3" in str(news.appeared)
+
+
+def test_entities_are_followed_by_class(as_, raw):
+    heard: list[str] = []
+    with raw("vera") as session:
+        session.declare_subscriber(
+            keys.entity_key("Cup", "*").replace("%2A", "*"), lambda s: heard.append(str(s.key_expr))
+        )
+        with as_("bob") as bob:
+            for n in range(100):
+                bob.add("Cup", f"followed{n}", at=(3.0, 2.0 + n / 10, 0.75))
+                if heard:
+                    break
+        until(lambda: heard, "an entity")
+
+
+def test_a_killed_router_is_back_and_found_again(as_):
+    with as_("vera") as vera:
+        pid = next(node.pid for node in vera.status().nodes if node.node == "router")
+        os.kill(pid, signal.SIGKILL)
+
+        def another():
+            try:
+                return [n for n in vera.status().nodes if n.node == "router" and n.pid != pid]
+            except errors.NoAnswer:
+                return []
+
+        until(another, "another router")
+        assert vera.get("fridge1").name == "fridge1"
+
+
+def test_who_is_revoked_is_shut_out_and_who_is_added_let_in(as_, folder, raw):
+    authority.add(folder, "kim", "operator")
+    with as_("kim") as kim:
+        until(lambda: _answered(kim), "an answer")
+        assert kim.add("Cup", "kims1", at=(4.0, 2.0, 0.75)).commit is not None
+        authority.revoke(folder, "kim")
+        until(lambda: not _answered(kim), "silence")
+        with raw("kim") as session, pytest.raises(errors.NoAnswer, match="revoked"):
+            bus.ask(
+                session, keys.commands_as("kim"), "get", commands.Get(name="kims1"), object, patience_s=0.5
+            )
+    with as_("vera") as vera:
+        until(lambda: _answered(vera), "an answer to another")
+        assert vera.history("kims1")[0].agent == "kim"
+
+
+def test_changes_are_done_once_while_the_router_begins_anew(as_, folder):
+    """A question that is cut off may have been executed; it is asked again, and known by its id."""
+    made = []
+    with as_("bob") as bob:
+        before = bob.status().commit
+        for n in range(45):
+            if n % 15 == 7:
+                authority.add(folder, f"guest{n}", "viewer")
+            made.append(bob.add("Cup", f"once{n}", at=(5.0, 2.0 + n / 20, 0.75)).commit)
+            time.sleep(0.02)
+        until(lambda: bob.status().in_agreement, "rest")
+        commits = [c for c in bob.history(since=before + 1, limit=1000) if c.verb == "add"]
+    assert [c.seq for c in commits] == made
+    assert [c.changed[0] for c in commits] == [f"once{n}" for n in range(45)]
+
+
+def _answered(client):
+    try:
+        client.get("fridge1")
+    except errors.SemmapError:
+        return False
+    return True
+
+
+def test_what_one_may_not_follow_is_told(system, folder):
+    said = system.cli("watch", "semmap/**", "--identity", folder / "vera", status=1)
+    assert (
+        "your certificate (viewer) may not follow 'semmap/**'; it may follow all of: semmap/jena/commit"
+        in said
+    )
