@@ -22,8 +22,8 @@ from nodes.kb_node.reasoner.terms import is_literal
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
 VALUE, DERIVED, COMPUTED = 1, 2, 3
-"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), another rule, or no rule
-at all. A computed one is given like an asserted one, and was not said."""
+"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), another rule, or no
+rule at all. A computed one is given like an asserted one, and was not said."""
 GIVEN: Final = frozenset((ASSERTED, COMPUTED))
 """Edges that rest on no other."""
 
