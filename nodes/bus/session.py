@@ -92,6 +92,15 @@ class Network(Struct, frozen=True):
         return config
 
 
+def require_tls(endpoint: str) -> None:
+    """Raises BadRequest for an endpoint without certificates, or with a set-up of its own."""
+    if not endpoint.startswith(TLS) or "#" in endpoint:
+        raise errors.BadRequest(
+            "certificates are shown at endpoints of TLS only, such as tls/127.0.0.1:7447;"
+            f" '{endpoint}' is not one"
+        )
+
+
 class HungUp(errors.NoAnswer):
     """Somebody listens there, and does not want to talk with us."""
 

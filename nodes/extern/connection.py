@@ -55,6 +55,7 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
     if identity is not None:
         identity.require_valid()
         where = bus.over_tls(where)
+        bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
             f"the system at {where} only answers those who show a certificate; say who you are:"

@@ -100,6 +100,8 @@ class SemanticMap:
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
+        self.digest = ""
+        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
         self._checkpointed = 0
         self._changed = self._changed_then = 0
         """Triples that changed, and those of them that are in the checkpoint."""
@@ -162,7 +164,7 @@ class SemanticMap:
 
     def snapshot(self) -> Snapshot:
         """Every entity, as of the last commit."""
-        return Snapshot(seq=self.seq, entities=tuple(self.entities()))
+        return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
@@ -281,11 +283,11 @@ class SemanticMap:
 
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
-    ) -> None:
-        """Make a commit durable. Raises NotWritten, and _Tried instead if it is only tried."""
+    ) -> Commit:
+        """The commit, durable and with its digest. Raises NotWritten; _Tried if it is only tried."""
         if self._look is not None:
             raise _Tried(self._look(commit))
-        self._journal.append(commit, tbox, begun=begun)
+        return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -302,9 +304,9 @@ class SemanticMap:
         self.follow_places()
         before = self.classes
 
-        def make_durable(commit: Commit) -> None:
+        def make_durable(commit: Commit) -> Commit:
             tbox_validation.require_fit(self.abox(), before, self.classes)
-            self._write(commit, rdf.serialise(new, "ntriples"))
+            return self._write(commit, rdf.serialise(new, "ntriples"))
 
         return self._switch(commit, new, make_durable)
 
@@ -348,6 +350,7 @@ class SemanticMap:
             else:
                 self._entities[name] = entity
         self.seq = commit.seq - 1
+        self.digest = self._journal.digest(self.seq).hex()
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
@@ -427,6 +430,7 @@ class SemanticMap:
         else:
             self._change(insert=tuple(start.said()), lenient=True)
         self.seq = self._checkpointed = start.seq
+        self.digest = self._journal.digest(start.seq).hex()
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
         elif is_ours:
@@ -436,9 +440,9 @@ class SemanticMap:
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    self._switch(commit, self.tbox_at(commit.seq), lambda _: None)
+                    self._switch(commit, self.tbox_at(commit.seq), _as_it_is)
                 else:
-                    self._apply(commit, lambda _: None)
+                    self._apply(commit, _as_it_is)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._progress()
@@ -473,7 +477,7 @@ class SemanticMap:
         )
 
     def _switch(
-        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], None]
+        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
         """Like `_apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
         before = self.tbox, self.reasoner, self.classes, self.beliefs
@@ -488,7 +492,7 @@ class SemanticMap:
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             if self._follows:
                 commit = self._with_places_anew(commit)
-            make_durable(commit)
+            commit = make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes, self.beliefs = before
             raise
@@ -497,7 +501,7 @@ class SemanticMap:
     def _apply(
         self,
         commit: Commit,
-        make_durable: Callable[[Commit], None],
+        make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
     ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
@@ -512,7 +516,7 @@ class SemanticMap:
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
             if self._follows:
                 commit = self._with_places(commit)
-            make_durable(commit)
+            commit = make_durable(commit)
         except BaseException:
             self._reverse(commit, {name: self._entities.get(name) for name in commit.names})
             raise
@@ -600,7 +604,7 @@ class SemanticMap:
         return Change.together(changes)
 
     def _taken(self, commit: Commit) -> Commit:
-        self.seq = commit.seq
+        self.seq, self.digest = commit.seq, commit.digest
         self.places.take(commit.names, commit.retracted, commit.inserted)
         self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
@@ -636,3 +640,8 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
+
+
+def _as_it_is(commit: Commit) -> Commit:
+    """One that is durable already."""
+    return commit

@@ -267,6 +267,8 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
+        for endpoint in (listen, *values["connect"]):
+            bus.require_tls(endpoint)
         if values["connect"]:
             return  # the router is elsewhere
         register = Register.read(Path(secure))
