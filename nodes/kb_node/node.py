@@ -114,7 +114,7 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
-        node.count(lambda: self.map.seq)
+        node.head(lambda: (self.map.seq, self.map.digest))
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:

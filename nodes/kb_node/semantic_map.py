@@ -90,6 +90,8 @@ class SemanticMap:
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
+        self.digest = ""
+        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
         self._checkpointed = 0
         self._changed = self._changed_then = 0
         """Triples that changed, and those of them that are in the checkpoint."""
@@ -126,7 +128,7 @@ class SemanticMap:
 
     def snapshot(self) -> Snapshot:
         """Every entity, as of the last commit."""
-        return Snapshot(seq=self.seq, entities=tuple(self.entities()))
+        return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
@@ -232,11 +234,11 @@ class SemanticMap:
 
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
-    ) -> None:
-        """Make a commit durable. Raises NotWritten, and _Tried instead if it is only tried."""
+    ) -> Commit:
+        """The commit, durable and with its digest. Raises NotWritten; _Tried if it is only tried."""
         if self._look is not None:
             raise _Tried(self._look(commit))
-        self._journal.append(commit, tbox, begun=begun)
+        return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -252,9 +254,9 @@ class SemanticMap:
         commit = self._signed(transaction, retracted, inserted, tbox=True)
         before = self.classes
 
-        def make_durable(commit: Commit) -> None:
+        def make_durable(commit: Commit) -> Commit:
             tbox_validation.require_fit(self.abox(), before, self.classes)
-            self._write(commit, rdf.serialise(new, "ntriples"))
+            return self._write(commit, rdf.serialise(new, "ntriples"))
 
         return self._switch(commit, new, make_durable)
 
@@ -297,6 +299,7 @@ class SemanticMap:
             else:
                 self._entities[name] = entity
         self.seq = commit.seq - 1
+        self.digest = self._journal.digest(self.seq).hex()
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
@@ -372,6 +375,7 @@ class SemanticMap:
         if start.columns is None or not is_ours or not self.reasoner.fill(start.columns):
             self._change(insert=tuple(start.said()))
         self.seq = self._checkpointed = start.seq
+        self.digest = self._journal.digest(start.seq).hex()
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
         elif is_ours:
@@ -381,9 +385,9 @@ class SemanticMap:
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    self._switch(commit, self.tbox_at(commit.seq), lambda _: None)
+                    self._switch(commit, self.tbox_at(commit.seq), _as_it_is)
                 else:
-                    self._apply(commit, lambda _: None)
+                    self._apply(commit, _as_it_is)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._progress()
@@ -416,7 +420,7 @@ class SemanticMap:
         )
 
     def _switch(
-        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], None]
+        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
         """Like `_apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
         before = self.tbox, self.reasoner, self.classes
@@ -427,8 +431,7 @@ class SemanticMap:
             self._change(insert=abox)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
-            make_durable(commit)
+            commit = make_durable(self._with_effects(commit, set(), Change(frozenset(concerned)), set()))
         except BaseException:
             self.tbox, self.reasoner, self.classes = before
             raise
@@ -437,7 +440,7 @@ class SemanticMap:
     def _apply(
         self,
         commit: Commit,
-        make_durable: Callable[[Commit], None],
+        make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
     ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
@@ -449,7 +452,7 @@ class SemanticMap:
         change = self._change(delete=commit.retracted, insert=commit.inserted)
         try:
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
-            make_durable(commit)
+            commit = make_durable(commit)
         except BaseException:
             self._change(delete=commit.inserted, insert=commit.retracted)
             raise
@@ -481,7 +484,7 @@ class SemanticMap:
         return Change.together(changes)
 
     def _taken(self, commit: Commit) -> Commit:
-        self.seq = commit.seq
+        self.seq, self.digest = commit.seq, commit.digest
         self.places.take(commit.names, commit.retracted, commit.inserted)
         self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
@@ -517,3 +520,8 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
+
+
+def _as_it_is(commit: Commit) -> Commit:
+    """One that is durable already."""
+    return commit

@@ -6,10 +6,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from nodes.kb_node.relations.convex import contact, over_flat_top
-from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance
+from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance, hull
 from nodes.kb_node.relations.solids import LOWEST_M, Bounds, Solid
 from nodes.kb_node.relations.thresholds import Thresholds
 from ontology.model_shapes import Interior
@@ -99,6 +100,22 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
             return 1.0
     whole = area(base)
     return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
+
+
+def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
+    """Whether the middle of a base is over what bears it at a height, or between that."""
+    base = upper.base
+    region = hull(
+        [
+            corner
+            for other in lower
+            for part in other.parts
+            if part.has_flat_top and abs(part.high[2] - height) <= LOWEST_M
+            for corner in clipped(base, part.shadow)
+        ]
+    )
+    x0, y0, x1, y1 = (limit(along) for limit in (min, max) for along in zip(*base, strict=True))
+    return len(region) > 2 and contains(region, ((x0 + x1) / 2, (y0 + y1) / 2))
 
 
 def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
@@ -206,7 +223,8 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     ceilings = [support.height for support in upper.supports if support.height >= least]
     if upper.bottom >= least:
         ceilings.append(upper.bottom)
-    share = area(clipped(lower.outline, upper.outline)) / max(area(lower.outline), 1e-9)
+    smaller = max(min(lower.footprint, upper.footprint), 1e-9)
+    share = area(clipped(lower.outline, upper.outline)) / smaller
     if share == 0.0 or not ceilings:
         return None
     height = min(ceilings)

@@ -58,7 +58,7 @@ def _attachments(space: Space, solid: Solid) -> Iterator[About]:
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
     """Whether the other may hang on the solid, or not do so any more because that bears it."""
-    return other.bottom > solid.bottom and other.bottom <= solid.top + space.limits.gap_m
+    return solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m
 
 
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
