@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import denied, fact_of
-from nodes.kb_node.relations.selection import selected
+from nodes.kb_node.relations.selection import only_meant, selected
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
@@ -51,9 +51,9 @@ class Now:
         return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
-        """Where a thing is relative to others. Raises UnknownName."""
-        self._map.entity(query.name)
-        return tuple(relations(self._map.places.space(), query))
+        """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
+        named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
+        return tuple(relations(self._map.places.space(), named))
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
@@ -124,8 +124,22 @@ class Then:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
         assert query.as_of is not None
-        self._past.entity(query.name, query.as_of)
-        return tuple(relations(self._space(self._past.entities(query.as_of, None, ())), query))
+        everyone = self._past.entities(query.as_of, None, ())
+        there = {entity.name: entity for entity in everyone}
+        named = _named(query, there.get, lambda: everyone)
+        return tuple(relations(self._space(everyone), named))
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
+
+
+def _named(
+    query: Relations, find: Callable[[str], Entity | None], everyone: Callable[[], Sequence[Entity]]
+) -> Relations:
+    """The query with the names of those whom its words mean: a name, else a reference, else a class."""
+    names = {
+        field: only_meant(everyone(), word)
+        for field in ("name", "other", "viewer")
+        if (word := getattr(query, field)) is not None and find(word) is None
+    }
+    return structs.replace(query, **names) if names else query
