@@ -30,7 +30,8 @@ _ROUND_ABOUT = np.array([0.22, 0.22, 0.12])
 _NOWHERE: Colour = (0.85, 0.20, 0.55)
 _WORDS = {
     "isOn": "on", "isInside": "inside", "isLocatedIn": "in", "isAttachedTo": "attached to",
-    "isUnder": "under", "isAbove": "above", "isNextTo": "next to", "isBetween": "between", "touches": "touches",
+    "isUnder": "under", "isAbove": "above", "isNextTo": "next to", "isBetween": "between",
+    "touches": "touches",
 }  # fmt: skip
 
 
@@ -100,7 +101,7 @@ def view_of(situation: Situation) -> Image.Image:
 
 
 def _close(situation: Situation, solids: list[Solid]) -> list[Solid]:
-    """What the picture is about, if that is on or inside something much larger, and nothing is said besides."""
+    """What the picture is about, if all that is said of it is that it is on or inside something larger."""
     relations = {relation for _, relation, _ in (*situation.said, *situation.also)}
     small = [solid for solid in solids if max(solid.size) < 0.5 * max(max(s.size) for s in solids)]
     carried = {name for name, _, _ in situation.said}
