@@ -42,6 +42,11 @@ class Facts:
         for kept in self._kept:
             yield from kept.all()
 
+    def holds(self, fact: Fact) -> bool:
+        """Whether one of them does."""
+        name, relation, other = fact
+        return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
+
     def upward(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
         found = set(names)
@@ -106,21 +111,20 @@ class _Kept:
         for name in moved:
             concerned.update(dict.fromkeys(self.about.get(name, ())))
             concerned[name] = None
-        for solid in fresh:
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
-        for solid in left if self.rule.when_gone else ():
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
+        if not concerned.keys() >= space.solids.keys():
+            for solid in (*fresh, *left) if self.rule.when_gone else fresh:
+                self._add_whom_it_concerns(space, solid, concerned)
         for name in concerned:
             before = self.of.get(name, ())
             now = self._work_out(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
 
-    def _whom_it_concerns(self, space: Space, solid: Solid) -> Iterator[str]:
+    def _add_whom_it_concerns(self, space: Space, solid: Solid, found: dict[str, None]) -> None:
         concerns = self.rule.concerns
         for other in space.around(solid, self.rule.margin_m(space.limits)):
-            if not other.is_place and concerns(space, solid, other):
-                yield other.name
+            if other.name not in found and not other.is_place and concerns(space, solid, other):
+                found[other.name] = None
 
     def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)
