@@ -114,6 +114,7 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
         node.head(lambda: (self.map.seq, self.map.digest))
+        node.soon(self._follow_places)
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -144,6 +145,11 @@ class KnowledgeBase:
             Watch.answered_by(self.on_watch),
             Renew.answered_by(self.on_renew),
         )
+
+    def _follow_places(self) -> None:
+        """Between other work: the first commit after a start waits for what is left of it."""
+        if self.map.follow_some():
+            self._node.soon(self._follow_places)
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
