@@ -18,6 +18,7 @@ from nodes.bus.session import (
     is_local,
     open_session,
     over_tls,
+    require_tls,
 )
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "own_config",
     "publisher",
     "read_reply",
+    "require_tls",
     "serve",
     "serve_puts",
     "watched",

@@ -178,16 +178,19 @@ class Node:
         deadline_s = time.monotonic() + patience_s
 
         def send() -> None:
-            bus.ask_later(
-                self.session,
-                self._prefix(prefix),
-                call.VERB,
-                call,
-                reply_type(type(call)),
-                answer,
-                timeout_s=timeout_s,
-                lifelines=self._lifelines,
-            )
+            try:
+                bus.ask_later(
+                    self.session,
+                    self._prefix(prefix),
+                    call.VERB,
+                    call,
+                    reply_type(type(call)),
+                    answer,
+                    timeout_s=timeout_s,
+                    lifelines=self._lifelines,
+                )
+            except Exception as error:  # whoever waits for the future would wait for ever
+                future.set_exception(error)
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
@@ -234,9 +237,9 @@ class Node:
         """What the heartbeats say of the node's state, from the next one on; a function is asked by each."""
         self._heartbeat.describe(detail)
 
-    def count(self, commit: Callable[[], int]) -> None:
-        """Let the heartbeats tell the number of the last commit."""
-        self._heartbeat.count(commit)
+    def head(self, head: Callable[[], tuple[int, str]]) -> None:
+        """Let the heartbeats tell the number and the digest of the last commit."""
+        self._heartbeat.head(head)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """What the heartbeats say of what the node works with, from now on."""

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from nodes.supervisor.orphans import end_when_orphaned
 from nodes.supervisor.privacy import UMASK
 from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
@@ -126,6 +127,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
 def main(argv: list[str]) -> int:
     """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
     name, settings_path = argv
+    end_when_orphaned()
     os.umask(UMASK)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     settings: Settings = codec.decode(Path(settings_path).read_bytes(), Settings)

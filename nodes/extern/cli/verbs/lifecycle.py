@@ -157,7 +157,8 @@ def down(data: Path | None, connect: str | None) -> None:
     from nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
+        meant = {connect, bus.over_tls(connect)}
+        there = [Path(s.data) for s in registry.systems() if meant & {s.listen, s.reachable}]
         if not there:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = there
@@ -267,6 +268,8 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
+        for endpoint in (listen, *values["connect"]):
+            bus.require_tls(endpoint)
         if values["connect"]:
             return  # the router is elsewhere
         register = Register.read(Path(secure))
