@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 from msgspec import structs
 
 from nodes.kb_node import gc_pause, preconditions, proofs
+from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
@@ -17,6 +18,7 @@ from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.relations.space import Space
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -75,6 +77,14 @@ class SemanticMap:
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
+        self.beliefs = Beliefs(self.reasoner, self.classes.limits, progress)
+        self._believed: dict[int, Believed] = {}
+        """What the last commits changed of what is computed, until somebody asks."""
+        self._following: Iterator[None] | None = None
+        self._follows = False
+        """Whether what is computed is worked out at each commit; not yet after a start."""
+        self._believes = False
+        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
         self.places = Places(
@@ -82,6 +92,7 @@ class SemanticMap:
             self.entities,
             lambda p: self.reasoner.asserted(None, p, None),
             lambda: self.classes.limits,
+            self._space,
         )
         self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
         """Told of each commit before it is checked; what it returns is called if that is not made."""
@@ -104,6 +115,43 @@ class SemanticMap:
     def __len__(self) -> int:
         return len(self._entities)
 
+    def follow_places(self) -> None:
+        """Work out where everything is, if that was not done since the start.
+
+        Whoever asks what follows needs it, and the first commit.
+        """
+        while self.follow_some():
+            self._progress()
+
+    def follow_some(self) -> bool:
+        """Do a part of that, some tens of milliseconds; whether there is more to do."""
+        if self._follows:
+            return False
+        following, self._following = self._following or self._follow(), None
+        for _ in following:
+            self._following = following
+            return True
+        return False
+
+    def _follow(self) -> Iterator[None]:
+        self.beliefs.begin()
+        yield from self.beliefs.filling(self._entities)
+        self._follows = self._believes = True
+        for name, entity in self._entities.items():
+            types = self._types(entity)
+            if types != entity.types:
+                self._entities[name] = structs.replace(entity, types=types)
+
+    def believe_places(self) -> None:
+        """Let the reasoner have what is computed of where things are, if it has not."""
+        if not self._believes:
+            self.follow_places()
+
+    def _space(self) -> Space | None:
+        """The solids that relations are computed of, if any are."""
+        self.follow_places()
+        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space
+
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
         if name in self._entities:
@@ -123,6 +171,7 @@ class SemanticMap:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
+        self.believe_places()
         found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
@@ -150,12 +199,22 @@ class SemanticMap:
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
+        self.believe_places()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
     def steadily(self, items: Iterable[T]) -> Iterator[T]:
         """The items, for long work on them: the node tells meanwhile that it lives."""
         return steadily(items, self._progress)
+
+    def all_believed(self) -> Believed:
+        """What is computed and what is set aside."""
+        self.believe_places()
+        return self.beliefs.all()
+
+    def believed_of(self, commit: Commit) -> Believed:
+        """What a commit changed of that; it is told once."""
+        return self._believed.pop(commit.seq, UNCHANGED)
 
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
@@ -177,6 +236,8 @@ class SemanticMap:
         (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
         from the TBox or the disk does not take the commit.
         """
+        if self._undo_log is None:
+            self._believed.clear()
         try:
             made = self._commit(transaction)
         except errors.SemmapError:
@@ -186,6 +247,7 @@ class SemanticMap:
         return made or self._journal.commit_of(transaction.id)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
+        self.follow_places()
         transaction, notes = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(transaction, held)
@@ -252,6 +314,7 @@ class SemanticMap:
         retracted = (*transaction.retract, *sorted(self.tbox - new))
         inserted = (*transaction.insert, *sorted(new - self.tbox))
         commit = self._signed(transaction, retracted, inserted, tbox=True)
+        self.follow_places()
         before = self.classes
 
         def make_durable(commit: Commit) -> Commit:
@@ -268,6 +331,7 @@ class SemanticMap:
         When the disk does not take them, all are refused and the map is as before.
         """
         log = self._undo_log = []
+        self._believed.clear()
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -291,7 +355,7 @@ class SemanticMap:
     def _take_back(self, memento: _Memento) -> None:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
-        self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+        self._reverse(commit, before)
         self.places.take(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
@@ -322,11 +386,12 @@ class SemanticMap:
 
     def picture(self) -> Checkpoint:
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        self.believe_places()
         self._pictured = self.seq, self._changed
         columns = self.reasoner.columns()
         return Checkpoint(
             seq=self.seq,
-            triples=() if columns is not None else tuple(self.abox()),
+            triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),
             columns=columns,
             entities=tuple(self._entities.values()),
             read_by=conclusions_format.mark(),
@@ -372,8 +437,11 @@ class SemanticMap:
 
     def _replay(self, start: Checkpoint) -> None:
         is_ours = start.read_by == conclusions_format.mark()
-        if start.columns is None or not is_ours or not self.reasoner.fill(start.columns):
-            self._change(insert=tuple(start.said()))
+        if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
+            self.reasoner.believe(aside=start.triples)
+            self._believes = True
+        else:
+            self._change(insert=tuple(start.said()), lenient=True)
         self.seq = self._checkpointed = start.seq
         self.digest = self._journal.digest(start.seq).hex()
         if start.seq == 0:
@@ -391,6 +459,8 @@ class SemanticMap:
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._progress()
+        if self.seq > start.seq or start.read_by != conclusions_format.mark():
+            self.follow_places()  # else the entities have the classes that they have by their places
 
     def _signed(
         self,
@@ -423,17 +493,21 @@ class SemanticMap:
         self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
         """Like `_apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
-        before = self.tbox, self.reasoner, self.classes
+        before = self.tbox, self.reasoner, self.classes, self.beliefs
         abox = {*self.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
             self.tbox, self.reasoner = tbox, tbox_validation.compiled(tbox)
             self.classes = ClassTable(self.reasoner)
-            self._change(insert=abox)
+            self.beliefs = Beliefs(self.reasoner, self.classes.limits, self._progress)
+            self._change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
-            commit = make_durable(self._with_effects(commit, set(), Change(frozenset(concerned)), set()))
+            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
+            if self._follows:
+                commit = self._with_places_anew(commit)
+            commit = make_durable(commit)
         except BaseException:
-            self.tbox, self.reasoner, self.classes = before
+            self.tbox, self.reasoner, self.classes, self.beliefs = before
             raise
         return self._taken(commit)
 
@@ -449,37 +523,96 @@ class SemanticMap:
         owners = subjects.union(
             *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
-        change = self._change(delete=commit.retracted, insert=commit.inserted)
+        self.beliefs.begin()
+        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=not self._follows)
         try:
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
+            if self._follows:
+                commit = self._with_places(commit)
             commit = make_durable(commit)
         except BaseException:
-            self._change(delete=commit.inserted, insert=commit.retracted)
+            self._reverse(commit, {name: self._entities.get(name) for name in commit.names})
             raise
         return self._taken(commit)
 
-    def _change(self, *, delete: Collection[Triple] = (), insert: Collection[Triple]) -> Change:
-        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent."""
+    def _reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
+        """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
+        self._change(delete=commit.inserted, insert=commit.retracted)
+        if not self._follows:
+            return
+        after = {entity.name: entity for entity in commit.changed}
+        self.beliefs.follow(
+            changed=[entity for entity in before.values() if entity is not None],
+            removed=[name for name, entity in before.items() if entity is None],
+            before=lambda name: after.get(name) or self._entities.get(name),
+            retracted=commit.inserted,
+            inserted=commit.retracted,
+        )
+
+    def _with_places(self, commit: Commit) -> Commit:
+        """`commit` with the entities, too, whose classes change by where things are."""
+        entities = self._entities
+        moved = self.beliefs.follow(
+            changed=commit.changed,
+            removed=[departed.name for departed in commit.removed],
+            before=entities.get,
+            retracted=commit.retracted,
+            inserted=commit.inserted,
+        )
+        self._believed[commit.seq] = self.beliefs.believed
+        if not moved:
+            return commit
+        changed = {entity.name: entity for entity in commit.changed}
+        gone = {departed.name for departed in commit.removed}
+        for iri in sorted(moved):
+            name = v.entity_name(iri)
+            entity = changed.get(name) or (None if name in gone else entities.get(name))
+            if entity is not None and v.iri(entity.iri) == iri:
+                changed[name] = structs.replace(entity, types=self._types(entity))
+        return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
+
+    def _with_places_anew(self, commit: Commit) -> Commit:
+        """The same for a commit that replaces the TBox, so that everything is worked out anew."""
+        gone = {departed.name for departed in commit.removed}
+        after = {name: e for name, e in self._entities.items() if name not in gone}
+        after.update((entity.name, entity) for entity in commit.changed)
+        self.beliefs.fill(after)
+        for name, entity in after.items():
+            after[name] = structs.replace(entity, types=self._types(entity))
+        changed = tuple(e for name, e in after.items() if e != self._entities.get(name))
+        return structs.replace(commit, changed=changed)
+
+    def _types(self, entity: Entity) -> tuple[str, ...]:
+        """The classes of an entity as it is now, by what is computed, too."""
+        return self.classes.spoken_types(self.reasoner.types(v.iri(entity.iri)))
+
+    def _change(
+        self, *, delete: Collection[Triple] = (), insert: Collection[Triple], lenient: bool = False
+    ) -> Change:
+        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent.
+
+        When it is `lenient`, what is asserted of places and contradicts the rest is set aside.
+        """
         try:
             if len(delete) + len(insert) <= PART or not self.reasoner.is_compiled:
-                return self.reasoner.apply(delete=delete, insert=insert)
-            return self._change_in_parts(delete, insert)
+                return self.beliefs.change(delete, insert, lenient=lenient)
+            return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
             raise proofs.refusal(error) from None
 
-    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple]) -> Change:
+    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple], lenient: bool) -> Change:
         """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
-        reasoner, changes = self.reasoner, list[Change]()
+        reasoner, changes = self.beliefs, list[Change]()
         deleted, inserted = list[Triple](), list[Triple]()
         try:
             for part in parts(delete, PART, self._progress):
-                changes.append(reasoner.apply(delete=part))
+                changes.append(reasoner.change(part, (), lenient=lenient))
                 deleted += part
             for part in parts(insert, PART, self._progress):
-                changes.append(reasoner.apply(insert=part))
+                changes.append(reasoner.change((), part, lenient=lenient))
                 inserted += part
         except BaseException:
-            reasoner.apply(delete=inserted, insert=deleted)
+            reasoner.change(inserted, deleted)
             raise
         return Change.together(changes)
 

@@ -158,7 +158,8 @@ def down(data: Path | None, connect: str | None) -> None:
     from nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
+        meant = {connect, bus.over_tls(connect)}
+        there = [Path(s.data) for s in registry.systems() if meant & {s.listen, s.reachable}]
         if not there:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = there
