@@ -36,7 +36,8 @@ def seed(settings: Settings) -> None:
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
-        open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
+        models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
+        open_world(Path(settings.world), models)
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -85,7 +86,7 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, Path(settings.data)))
 
 
 def _perception_node(settings: Settings) -> None:
