@@ -9,6 +9,7 @@ from nodes.recorder.config import RecorderConfig
 from nodes.recorder.drawing.graph import graph_of
 from nodes.recorder.drawing.stage import Stage
 from nodes.recorder.drawing.surfaces import Kind
+from nodes.recorder.growth import LOOK_S, Growth
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.state.asserted_relations import Relations, missed
@@ -48,6 +49,8 @@ class Recorder:
         Follower(node, self._map, keys.COMMIT, heard=self._on_commit, begun=self._on_map)
         node.follow(keys.POSES, self._on_poses)
         node.every(0.5, self._tick)
+        self._growth, self._amiss = Growth(recording.path), ""
+        node.every(LOOK_S, self._look_after_the_file)
         PerceptionRecorder(node, recording, self._at)
 
     # The map
@@ -177,6 +180,14 @@ class Recorder:
             self._at(time.time_ns())
             self._show_all()
 
+    def _look_after_the_file(self) -> None:
+        """Whoever looks at the status is told of a recording that is not written, for as long as it is so."""
+        before, self._amiss = self._amiss, self._growth.amiss(self._recording.logged)
+        if self._amiss and not before:
+            self._node.report(self._amiss)
+        if self._amiss != before:
+            self._describe()
+
     # Both
 
     def _at(self, stamp_ns: int, seq: int | None = None) -> None:
@@ -191,7 +202,11 @@ class Recorder:
         if not self._arranged and self._map.entities:
             self._arranged = True
             self._recording.arrange(self._stage.poses)
-        self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
+        self._describe()
+
+    def _describe(self) -> None:
+        into = f"into {self._recording.path.name}, {self._live}"
+        self._node.ready(f"commit {self._map.seq}, {self._amiss or into}")
 
 
 def run(config: RecorderConfig) -> None:
