@@ -72,7 +72,7 @@ def test_what_a_recording_notes_is_counted(tmp_path):
 
 
 FULL = """
-import resource, signal, sys, time
+import os, resource, signal, sys, time
 from pathlib import Path
 from nodes.recorder.growth import Growth
 from nodes.recorder.recording import open_recording
@@ -82,7 +82,7 @@ with open_recording(Path(sys.argv[1]), None) as recording:
     growth = Growth(recording.path)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
     for i in range(60):
-        recording.note("x" * 20_000)
+        recording.note(os.urandom(10_000).hex())
         time.sleep(0.25)
         if i % 4 == 0 and (amiss := growth.amiss(recording.logged)):
             print(amiss, flush=True)
