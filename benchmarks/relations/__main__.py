@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from benchmarks.relations import rightness, speed, watched
+from benchmarks.relations import flicker, rightness, speed, watched
 from benchmarks.table import Row, lines
 
 
@@ -15,6 +15,7 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
     on, touches = rightness.against_contacts(scenes)
     inside = rightness.inside_against_samples(pairs)
     flat = rightness.flat()
+    went, _ = flicker.gone()
     rest = watched.at_rest(watched_s)
     moves = {size: speed.move_ms(size) for size in sizes}
     return [
@@ -31,6 +32,7 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
             0,
         ),
         Row("of these, on the table in the end", rest.on_the_table / rest.things, "", more=True),
+        Row("watching 20 things at rest for two minutes: relations that go again", went, "facts", 0, 0),
         *(Row(f"relations after a move, {size}, p50", ms, "ms", 0.15, 0.08) for size, ms in moves.items()),
         Row(
             f"relations after a move, {max(sizes)} against {min(sizes)}",

@@ -15,6 +15,8 @@ from schemas.endpoints import CONFIG_VARIABLE, CONNECT_VARIABLE, IDENTITY_VARIAB
 
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
+_ANEW_S = 1.0
+"""Seconds: a router that begins anew is back before."""
 _AGAIN_S = 0.1
 
 
@@ -78,7 +80,9 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
                 break
             except errors.NoAnswer as error:
                 turned_away = isinstance(error, bus.HungUp) or (
-                    identity is not None and presence.is_listening(where)
+                    identity is not None
+                    and time.monotonic() > deadline_s - _START_S + _ANEW_S
+                    and presence.is_listening(where)
                 )
                 if turned_away or not presence.is_announced(where):
                     raise

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from nodes.supervisor.orphans import end_when_orphaned
 from nodes.supervisor.privacy import UMASK
 from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
@@ -35,7 +36,8 @@ def seed(settings: Settings) -> None:
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
-        open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
+        models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
+        open_world(Path(settings.world), models)
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -84,7 +86,7 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, Path(settings.data)))
 
 
 def _perception_node(settings: Settings) -> None:
@@ -126,6 +128,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
 def main(argv: list[str]) -> int:
     """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
     name, settings_path = argv
+    end_when_orphaned()
     os.umask(UMASK)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     settings: Settings = codec.decode(Path(settings_path).read_bytes(), Settings)

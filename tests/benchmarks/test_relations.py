@@ -1,6 +1,7 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
 from benchmarks.relations.__main__ import as_json
+from benchmarks.relations.flicker import gone
 from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
@@ -30,6 +31,12 @@ def test_the_flat_is_as_it_was_described():
         ("tap1", "isOn", "sink1")
     ]  # the model's rim is lower than its box, for its own tap
     assert all(name.startswith("door") for name, _, _ in found.extra)
+
+
+def test_things_at_rest_under_noisy_eyes_keep_their_relations():
+    went, hold = gone(seconds=30.0)
+    assert went == 0
+    assert hold > 35
 
 
 def test_the_rooms_are_of_tables_with_cups_on_them():

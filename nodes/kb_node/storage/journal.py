@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from nodes.kb_node.storage import checkpoint_encoding, commit_encoding
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint as Checkpoint
@@ -110,13 +110,15 @@ class Journal:
 
     def append(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
-    ) -> None:
+    ) -> bytes:
         """Make `commit` durable, with the TBox (N-Triples) that holds from now on if it is another.
 
-        `begun` is its body, if that was begun before.
+        `begun` is its body, if that was begun before. Returns the digest of all commits with this one.
 
         Raises NotWritten when the disk does not take it.
         """
+        if commit.digest:  # one from another journal, where it was chained to what was before it there
+            commit = structs.replace(commit, digest="")
         if self._digest is None:
             with self._file.reading() as db:
                 self._digest = _digest_of(db, self.last)
@@ -131,6 +133,7 @@ class Journal:
                 row = (commit.seq, tbox, _chain(b"", tbox))
                 db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
+        return digest
 
     @contextmanager
     def together(self) -> Iterator[None]:
@@ -148,7 +151,7 @@ class Journal:
 
     def commits(self, after: int = 0) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
-        return (codec.decode(body, Commit) for body in self._bodies(after))
+        return (_signed(body, digest) for body, digest in self._bodies(after))
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read every commit and TBox. Raises Damaged at the first damaged commit, Refused for a TBox."""
@@ -170,8 +173,8 @@ class Journal:
 
     def commit(self, seq: int) -> Commit:
         """The commit with that number, which must be there. Raises Damaged."""
-        for body in self._bodies(seq - 1, size=1):
-            return codec.decode(body, Commit)
+        for body, digest in self._bodies(seq - 1, size=1):
+            return _signed(body, digest)
         raise Damaged(self.path, seq)
 
     def commit_of(self, command_id: str) -> Commit | None:
@@ -246,7 +249,8 @@ class Journal:
                 log.warning("%s: the checkpoint after commit %d is damaged and not used", self.path, seq)
         return Checkpoint(seq=0)
 
-    def _bodies(self, after: int, size: int = _PAGE) -> Iterator[bytes]:
+    def _bodies(self, after: int, size: int = _PAGE) -> Iterator[tuple[bytes, bytes]]:
+        """The sound bodies and their digests."""
         with self._file.reading() as db:
             before = _digest_of(db, after)
         seq = after
@@ -256,7 +260,7 @@ class Journal:
                 if number != seq or not _is_sound(before, body, digest):
                     raise Damaged(self.path, seq)
                 before = digest
-                yield body
+                yield body, digest
 
     def _page(self, after: int, size: int) -> list[tuple[int, bytes, bytes]]:
         """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
@@ -280,6 +284,11 @@ class _Undoing(Struct):
     """The part of a commit that tells what it took back."""
 
     undoes: tuple[int, ...] = ()
+
+
+def _signed(body: bytes, digest: bytes) -> Commit:
+    commit: Commit = codec.decode(body, Commit)
+    return structs.replace(commit, digest=digest.hex())
 
 
 def _is_sound(before: bytes, body: object, digest: object) -> bool:

@@ -189,16 +189,20 @@ def _floor_and_lid(
 
 
 def _together(one: list[Interior], other: list[Interior]) -> list[Interior]:
-    """The interiors of both readings; where they meet those of the first."""
-    apart = [
-        room
-        for room in other
-        if not any(
-            all(min(a[k], b[k]) > max(c[k], d[k]) for k in range(3))
-            for a, b, c, d in ((room.high, known.high, room.low, known.low) for known in one)
-        )
-    ]
-    return [*one, *apart]
+    """The interiors of both readings; of those that meet the larger."""
+    kept: list[Interior] = []
+    for room in sorted([*one, *other], key=lambda room: -_volume(room)):
+        if not any(_meet(room, known) for known in kept):
+            kept.append(room)
+    return sorted(kept, key=lambda room: room.low[::-1])
+
+
+def _meet(one: Interior, other: Interior) -> bool:
+    return all(one.low[k] < other.high[k] and other.low[k] < one.high[k] for k in range(3))
+
+
+def _volume(room: Interior) -> float:
+    return float(np.prod(np.subtract(room.high, room.low)))
 
 
 def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:

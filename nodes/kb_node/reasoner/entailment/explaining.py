@@ -36,7 +36,7 @@ def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
     for _ in range(_NEAR):
         further: set[Term] = set()
         for term in sorted(near):
-            for triple in (*reasoner.asserted(term), *reasoner.asserted(None, None, term)):
+            for triple in (*reasoner.given(term), *reasoner.given(None, None, term)):
                 s, p, o = triple
                 if triple in facts or is_schema(triple) or (p == TYPE and s not in near):
                     continue
