@@ -23,6 +23,10 @@ class Effort:
         self._left = _MOST
         self._seen: dict[Triple, None] | None = {} if traced else None
 
+    def begin(self) -> None:
+        """Another proof is looked for, with as many suppositions again."""
+        self._left = _MOST
+
     @property
     def is_traced(self) -> bool:
         """Whether it keeps what it looks at."""

@@ -327,6 +327,7 @@ class Prover:
 
     def nothing_can_be(self, cls: Term) -> bool:
         """Whether a class is empty in all models: a member with what must exist for it is a contradiction."""
+        self._effort.begin()
         x = self.fresh()
         return self.follows([(x, TYPE, cls)], lambda: self._has_impossible_witnesses([x], steps=2))
 
