@@ -37,7 +37,8 @@ def seed(settings: Settings) -> None:
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
-        open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
+        models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
+        open_world(Path(settings.world), models)
     if settings.models is not None or _own_shapes(settings).is_file():
         from nodes.sim_node.models.write_shapes import write_own
 
@@ -98,7 +99,7 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, Path(settings.data)))
 
 
 def _perception_node(settings: Settings) -> None:
