@@ -33,7 +33,7 @@ def health_of_nobody(ground: Ground) -> None:
     pids = _pids(ground)
     with _stranger(ground) as session:
         session.put(keys.health_key("x"), codec.encode(_health("x", 1)))
-        time.sleep(2 * NOTICED_S)
+        ground.observe(2 * NOTICED_S)
     assert ground.system.process.poll() is None
     assert _pids(ground) == pids
 
