@@ -36,10 +36,6 @@ class Lifelines:
         replier = reply.replier_id if ready else None
         return replier is None or any(str(replier.zid) in there for there in ready)
 
-    def instances(self, node: str) -> int:
-        """How many say that they are this node; more than one only for a moment, after a restart."""
-        return len(self._instances.get(node, ()))
-
     def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
         """For questions, from now on, that any of these nodes may answer."""
         return self._tokens.get(nodes) or self._tokens.setdefault(nodes, zenoh.CancellationToken())
