@@ -48,7 +48,7 @@ def flat(tmp_path):
     abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
     made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
     yield made
-    journal.close()
+    made._journal.close()
 
 
 @pytest.mark.long
