@@ -32,6 +32,7 @@ from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
+from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -224,6 +225,16 @@ class KnowledgeBase:
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit, or in parts."""
+        before = self.map.seq
+        try:
+            return self._load(load)
+        finally:
+            if self.map.seq == before:
+                self._sparql.forget()
+
+    def _load(self, load: LoadDocument) -> Loaded:
+        if rdf.syntax_of(load.content) == "turtle" and not (load.replace or load.parts or load.dry_run):
+            self._sparql.foresee(load.id, load.content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
@@ -234,6 +245,8 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
+            if not document_change.is_all(triples, transaction):
+                self._sparql.forget()
             if load.dry_run:
                 names, effects = self._tried_load(transaction)
                 return Loaded(
