@@ -57,7 +57,7 @@ def test_they_have_the_rows_that_there_are(flat):
     service = SparqlService(lambda: flat.reasoner.asserted(), news.put, believed=flat.all_believed)
     rows, truth = {}, {}
     for query, evaluate in QUERIES.items():
-        begun = service.ask(Watch(query=query, inferred=True), flat.seq).result(WAIT_S)
+        begun = service.ask(Watch(query=query, inferred=True, lease=600.0), flat.seq).result(WAIT_S)
         rows[begun.watch] = (evaluate, set(begun.rows))
         assert set(begun.rows) == evaluate(flat.reasoner)
     movable = [e for e in flat.entities() if e.pose is not None and not e.place and not e.fixed]
