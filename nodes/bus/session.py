@@ -148,8 +148,9 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             if network.identity is not None:
                 raise errors.NoAnswer(
-                    f"no system answers at {where}: none runs there, or it does not admit the certificate of"
-                    f" {network.identity.name}, or it is none that {network.identity.authority} vouches for"
+                    f"no system answers at {where}: none runs there with --secure, or it does not admit"
+                    f" the certificate of {network.identity.name}, or {network.identity.authority} does not"
+                    " vouch for it"
                 ) from None
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if not network.listen and _HUNG_UP in str(error):

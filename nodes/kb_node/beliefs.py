@@ -8,7 +8,7 @@ When it is so again it comes back, unless it contradicts what was asserted since
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
@@ -131,15 +131,31 @@ class Beliefs:
         self._carry_out(self.computed.after(changed, removed, before, retracted, inserted), retracted)
         return frozenset(self._moved)
 
-    def fill(self, entities: Collection[Entity]) -> None:
+    def fill(self, entities: Mapping[str, Entity]) -> None:
         """Begin with these entities, and all that is asserted."""
+        for _ in self.filling(entities):
+            self._progress()
+
+    def filling(self, entities: Mapping[str, Entity]) -> Iterator[None]:
+        """The same in steps, between which nothing changes; the last may take long.
+
+        What the reasoner has already, of a map before, stays if it is so.
+        """
         if self.computed.is_idle:
             return
+        yield from self.computed.facts.filling(entities.values())
         said = [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
-        step = self.computed.after(entities, (), lambda _: None, (), said)
-        gone = set(self._reasoner.computed()) - step.come
-        back = {t for t in self._reasoner.set_aside() if t not in step.denied and t not in self.withheld}
-        self._carry_out(step._replace(gone=gone, undenied=back), ())
+        step = self.computed.begin(entities.get, said)
+        there, aside = set(self._reasoner.computed()), set(self._reasoner.set_aside())
+        step = step._replace(
+            come=step.come - there,
+            gone=there - step.come,
+            denied=step.denied - aside,
+            undenied=aside - step.denied - self.withheld.keys(),
+        )
+        for triple in aside & self.computed.denied:
+            self._admit(triple)
+        self._carry_out(step, ())
 
     def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
         lost = [*step.gone, *step.denied, *retracted]

@@ -32,6 +32,7 @@ from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
+from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -114,6 +115,7 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
         node.head(lambda: (self.map.seq, self.map.digest))
+        node.soon(self._follow_places)
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -144,6 +146,11 @@ class KnowledgeBase:
             Watch.answered_by(self.on_watch),
             Renew.answered_by(self.on_renew),
         )
+
+    def _follow_places(self) -> None:
+        """Between other work: the first commit after a start waits for what is left of it."""
+        if self.map.follow_some():
+            self._node.soon(self._follow_places)
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
@@ -218,6 +225,16 @@ class KnowledgeBase:
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit, or in parts."""
+        before = self.map.seq
+        try:
+            return self._load(load)
+        finally:
+            if self.map.seq == before:
+                self._sparql.forget()
+
+    def _load(self, load: LoadDocument) -> Loaded:
+        if rdf.syntax_of(load.content) == "turtle" and not (load.replace or load.parts or load.dry_run):
+            self._sparql.foresee(load.id, load.content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
@@ -228,6 +245,8 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
+            if not document_change.is_all(triples, transaction):
+                self._sparql.forget()
             if load.dry_run:
                 names, effects = self._tried_load(transaction)
                 return Loaded(

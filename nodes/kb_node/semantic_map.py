@@ -80,6 +80,7 @@ class SemanticMap:
         self.beliefs = Beliefs(self.reasoner, self.classes.limits, progress)
         self._believed: dict[int, Believed] = {}
         """What the last commits changed of what is computed, until somebody asks."""
+        self._following: Iterator[None] | None = None
         self._follows = False
         """Whether what is computed is worked out at each commit; not yet after a start."""
         self._believes = False
@@ -119,11 +120,23 @@ class SemanticMap:
 
         Whoever asks what follows needs it, and the first commit.
         """
+        while self.follow_some():
+            self._progress()
+
+    def follow_some(self) -> bool:
+        """Do a part of that, some tens of milliseconds; whether there is more to do."""
         if self._follows:
-            return
-        self._follows = self._believes = True
+            return False
+        following, self._following = self._following or self._follow(), None
+        for _ in following:
+            self._following = following
+            return True
+        return False
+
+    def _follow(self) -> Iterator[None]:
         self.beliefs.begin()
-        self.beliefs.fill(self._entities.values())
+        yield from self.beliefs.filling(self._entities)
+        self._follows = self._believes = True
         for name, entity in self._entities.items():
             types = self._types(entity)
             if types != entity.types:
@@ -563,7 +576,7 @@ class SemanticMap:
         gone = {departed.name for departed in commit.removed}
         after = {name: e for name, e in self._entities.items() if name not in gone}
         after.update((entity.name, entity) for entity in commit.changed)
-        self.beliefs.fill(after.values())
+        self.beliefs.fill(after)
         for name, entity in after.items():
             after[name] = structs.replace(entity, types=self._types(entity))
         changed = tuple(e for name, e in after.items() if e != self._entities.get(name))

@@ -7,6 +7,7 @@ session. Everybody connects again by themselves, within a fraction of a second.
 from __future__ import annotations
 
 import signal
+from datetime import UTC, datetime, timedelta
 
 from msgspec import structs
 
@@ -18,6 +19,22 @@ from nodes.runtime.loop import Node
 from schemas import keys
 
 _LOOK_S = 0.5
+
+
+_TELL_S = 60.0
+_SOON = timedelta(days=30)
+
+
+def in_words(register: Register, now: datetime) -> str:
+    """How many are admitted, and whose certificate expires next, if that is soon."""
+    said = f"{len(register.admitted)} certificates"
+    valid = [member for member in register.admitted if member.expires > now]
+    first = min(valid, key=lambda member: member.expires, default=None)
+    if len(valid) < len(register.admitted):
+        said += f", {len(register.admitted) - len(valid)} of them expired"
+    if first is not None and first.expires - now < _SOON:
+        said += f"; that of {first.name} expires on {first.expires:%Y-%m-%d}"
+    return said
 
 
 class Router:
@@ -51,7 +68,8 @@ class Router:
                 if self._stopped or self._live.now is not register:
                     node.stop()
 
-            node.ready(f"{len(register.admitted)} certificates")
+            node.ready(in_words(register, datetime.now(UTC)))
+            node.every(_TELL_S, lambda: node.describe(in_words(register, datetime.now(UTC))))
             node.every(_LOOK_S, look)
             node.run()
 

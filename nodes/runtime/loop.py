@@ -16,6 +16,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
+from functools import partial
 from itertools import count
 from typing import Any, TypeVar
 
@@ -177,7 +178,7 @@ class Node:
         future: Future[Any] = Future()
         deadline_s = time.monotonic() + patience_s
 
-        def send() -> None:
+        def send(everybody: bool = False) -> None:
             try:
                 bus.ask_later(
                     self.session,
@@ -188,6 +189,7 @@ class Node:
                     answer,
                     timeout_s=timeout_s,
                     lifelines=self._lifelines,
+                    everybody=everybody,
                 )
             except Exception as error:  # whoever waits for the future would wait for ever
                 future.set_exception(error)
@@ -199,6 +201,12 @@ class Node:
             try:
                 reply = read()
                 future.set_result(reply.decode() if decoded else reply)
+            except bus.ForeignReply as error:
+                if time.monotonic() > deadline_s + bus.PATIENCE_S:
+                    future.set_exception(error)
+                    return
+                self.report(error.text)
+                self._at(time.monotonic() + _AGAIN_S, partial(send, everybody=True))
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)

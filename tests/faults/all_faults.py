@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from tests.faults.forgeries import FORGERIES
 from tests.faults.processes import PROCESSES
 from tests.faults.table import Fault
 
-FAULTS: tuple[Fault, ...] = PROCESSES
+FAULTS: tuple[Fault, ...] = PROCESSES + FORGERIES

@@ -60,6 +60,7 @@ class Ground:
         self._words = words
         self._stack = contextlib.ExitStack()
         self.system = self.start()
+        self.observed_s = 0.0
         self.load = Load(self.endpoint)
         self.load.start()
 
@@ -67,6 +68,11 @@ class Ground:
         """Start it (again)."""
         self.system = self._stack.enter_context(running(self.data, *self._words, endpoint=self.endpoint))
         return self.system
+
+    def observe(self, seconds: float) -> None:
+        """See what happens for a while, which does not count as time that the system takes."""
+        time.sleep(seconds)
+        self.observed_s += seconds
 
     def client(self) -> contextlib.AbstractContextManager[Client]:
         return self.system.client()

@@ -37,7 +37,7 @@ def stop(node: str, ground: Ground) -> None:
     noticed_s = time.monotonic() - began_s
     assert noticed_s < NOTICED_S, f"{node} hung for {noticed_s:.1f} s"
     wait_for(lambda: node in _pids(ground), f"{node} is back")
-    time.sleep(NOTICED_S)
+    ground.observe(NOTICED_S)
     now = _pids(ground)
     others = {other: (pid, now.get(other)) for other, pid in before.items() if other != node}
     assert all(was == is_ for was, is_ in others.values()), f"besides {node} others were replaced: {others}"
@@ -90,9 +90,9 @@ def stop_up(ground: Ground) -> None:
     """Whoever watches is held up; then nobody is taken to hang because of that."""
     before = _pids(ground)
     ground.system.process.send_signal(signal.SIGSTOP)
-    time.sleep(2 * NOTICED_S)
+    ground.observe(2 * NOTICED_S)
     ground.system.process.send_signal(signal.SIGCONT)
-    time.sleep(NOTICED_S)
+    ground.observe(NOTICED_S)
     assert _pids(ground) == before
 
 

@@ -95,7 +95,7 @@ class Home:
         anew.reasoner = Reasoner(TBOX)
         anew.beliefs = Beliefs(anew.reasoner)
         anew.beliefs.change((), sorted(self.said), lenient=True)
-        anew.beliefs.fill(tuple(self.there.values()))
+        anew.beliefs.fill(self.there)
         return anew.state()
 
     def holds(self, triple):

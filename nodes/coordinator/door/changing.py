@@ -5,7 +5,7 @@ from __future__ import annotations
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, new_id, once
+from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
@@ -25,6 +25,16 @@ UNCHANGED = "unchanged: already up to date"
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
     """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
+    try:
+        return (yield from _add(view, command, found))
+    except errors.NameTaken:
+        if command.name is not None or view.is_confirmed:
+            raise
+    yield from taken_anew(view)  # it was not as it seemed: somebody published what was never committed
+    return (yield from _add(view, command, found))
+
+
+def _add(view: KnownMap, command: Add, found: ClassInfo) -> Talk[Changed]:
     name = command.name or view.free_name(found.name)
     if name in view.entities:
         raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")

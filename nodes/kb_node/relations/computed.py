@@ -42,6 +42,12 @@ class Computed:
         """Whether the TBox has no property that could be computed."""
         return not self._relations
 
+    def begin(self, known: Known, said: Iterable[Triple]) -> Step:
+        """All facts are new, and so is all that is said of places."""
+        denied = {t for t in self._take_up((), filter(_is_of_place, said)) if self._is_so_no_more(t, known)}
+        self.denied |= denied
+        return Step(set(self._triples(self.facts, known)), set(), denied, set())
+
     def after(
         self,
         changed: Collection[Entity],

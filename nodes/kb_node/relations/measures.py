@@ -15,6 +15,8 @@ from nodes.kb_node.relations.solids import LOWEST_M, Bounds, Solid
 from nodes.kb_node.relations.thresholds import Thresholds
 from ontology.model_shapes import Interior
 
+_ROUNDING = 1e-9
+"""0.80 - 0.75 is more than 0.05 in floats."""
 _SIDEWAYS = math.sin(math.radians(10.0))
 """A normal nearer to the horizontal than this is that of two who stand side by side."""
 _FLAT = math.cos(math.radians(2.0))
@@ -43,10 +45,11 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     """
     if upper is lower or not overlap(upper.bounds, lower.bounds):
         return None
-    if upper.bottom - lower.top > limits.gap_m:
+    reach = limits.gap_m + _ROUNDING
+    if upper.bottom - lower.top > reach:
         return None
     # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
-    most = min(limits.gap_m, upper.bottom - lower.bottom + limits.contact_m)
+    most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
     if most < 0.0 and upper.is_level and lower.is_level:
         return None
     most = max(most, limits.contact_m)
@@ -57,7 +60,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         for other in lower.parts:
             (low_x, low_y, low_z), (high_x, high_y, high_z) = other.low, other.high
             least = z0 - high_z
-            if least > most or z1 <= low_z or (is_level and least < -limits.gap_m):
+            if least > most or z1 <= low_z or (is_level and least < -reach):
                 continue
             if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
                 pairs.append((least, part, other))
@@ -70,7 +73,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         gap, upright = least, 1.0
         if not over_flat_top(part, other):
             gap, (_, _, upright) = contact(part, other, most)
-            if not -limits.gap_m <= gap <= most:
+            if not -reach <= gap <= most:
                 continue
             if upright < limits.upright:
                 if upright > _SIDEWAYS and abs(gap) <= limits.contact_m:

@@ -98,7 +98,7 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
-        least = solid.bottom - limits.gap_m
+        least = solid.bottom - limits.gap_m - 1e-6
         for other in self.around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)

@@ -90,6 +90,16 @@ class SparqlService:
         self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
+    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
+        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes."""
+        if self._large is not None and not self._infers and self._since_filling is None:
+            self._large.foresee(commit_id, turtle, base)
+
+    def forget(self) -> None:
+        """What was foreseen does not come."""
+        if self._large is not None:
+            self._large.forget()
+
     def foretell(self, commit: Commit) -> Callable[[], None]:
         """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
         if self._large is None or self._infers or self._since_filling is not None:

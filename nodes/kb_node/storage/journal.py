@@ -9,9 +9,12 @@ from __future__ import annotations
 import hashlib
 import logging
 import sqlite3
+import threading
+from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import accumulate
 from pathlib import Path
 
 from msgspec import Struct, structs
@@ -57,6 +60,8 @@ class Journal:
         self.path = path
         self._file = JournalFile(path)
         self._digest: bytes | None = None  # that of the last commit, once it is known
+        self._stamps = array("q")
+        self._reading_stamps = threading.Lock()
         try:
             with self._file.reading() as db:
                 form = db.execute("SELECT value FROM meta WHERE key='format'").fetchone()
@@ -215,8 +220,21 @@ class Journal:
             return db.execute(query, (until,)).fetchall()
 
     def seq_at(self, stamp_ns: int) -> int:
-        """The last commit up to a time, as far as the clock ran forward; 0 before the first."""
-        return bisect_right(range(1, self.last + 1), stamp_ns, key=self.stamp_of)
+        """The last commit that is stamped up to a time; 0 before the first.
+
+        Where the clock was set back meanwhile a time comes twice, and the second counts.
+        """
+        with self._reading_stamps:
+            stamps = self._stamps_so_far()
+            earliest_since = list(accumulate(reversed(stamps), min))[::-1]
+        return bisect_right(earliest_since, stamp_ns)
+
+    def _stamps_so_far(self) -> array[int]:
+        """Those of all commits: read once, as far as they are not known yet."""
+        stamps = self._stamps
+        while rows := self._page(len(stamps), _PAGE):
+            stamps.extend(codec.decode(body, _Stamp).stamp_ns for _, body, _ in rows)
+        return stamps
 
     def stamp_of(self, seq: int) -> int:
         """When a commit was made [ns since 1970]."""

@@ -16,6 +16,7 @@ from msgspec import structs
 from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from nodes.extern.cli.output.printable import say
 from nodes.identity import SUPERVISOR, Identity
 from nodes.identity.register import Register
 from nodes.runtime import extras
@@ -144,7 +145,7 @@ def up(settings: Settings) -> None:
 
     if settings.truth == "perceived" and not settings.perception:
         complain("no perception node started; add --perception or publish your own observations")
-    run_up(settings, say=lambda line: click.echo(line))
+    run_up(settings, say=say)
 
 
 @click.command()

@@ -1,7 +1,8 @@
-"""Fills a store on disk from triples on stdin: `python -m nodes.kb_node.sparql.triples.filling PATH`.
+"""Fills a store on disk from stdin: `python -m nodes.kb_node.sparql.triples.filling PATH [BASE]`.
 
-They come in frames, each a MessagePack list of triples behind its length. Says on stdout how many triples the
-store has: fewer than came where two differ in the spelling of a number.
+There are triples in frames, each a MessagePack list behind its length. With a base IRI, a Turtle document
+follows behind an empty frame. Says on stdout how many triples the store has: fewer than came where two differ
+in the spelling of a number.
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ _LENGTH_BYTES: Final = 4
 _triples = msgpack.Decoder(list[tuple[str, str, str]])
 
 
+END: Final = bytes(_LENGTH_BYTES)
+"""An empty frame."""
+
+
 def frame(triples: Triples) -> bytes:
     """Some triples as they are sent."""
     body = msgpack.encode(triples)
@@ -27,19 +32,22 @@ def frame(triples: Triples) -> bytes:
 
 
 class _Text(io.RawIOBase):
-    """The frames of a stream, to be read as N-Triples."""
+    """The frames of a stream, up to an empty one, to be read as N-Triples."""
 
     def __init__(self, frames: BinaryIO) -> None:
         super().__init__()
         self._frames = frames
         self._rest = memoryview(b"")
+        self._is_over = False
 
     def readable(self) -> bool:
         return True
 
     def readinto(self, buffer: Any) -> int:
-        if not self._rest and (head := self._frames.read(_LENGTH_BYTES)):
-            triples = _triples.decode(self._frames.read(int.from_bytes(head, "big")))
+        if not self._rest and not self._is_over:
+            length = int.from_bytes(self._frames.read(_LENGTH_BYTES), "big")
+            triples = _triples.decode(self._frames.read(length)) if length else ()
+            self._is_over = not length
             self._rest = memoryview("".join([f"{s} {p} {o} .\n" for s, p, o in triples]).encode())
         there = memoryview(buffer)
         count = min(len(there), len(self._rest))
@@ -47,15 +55,17 @@ class _Text(io.RawIOBase):
         return count
 
 
-def main(path: str) -> None:
+def main(path: str, base: str | None = None) -> None:
     """Read to the end, then say."""
     os.nice(5)  # the map itself comes first
     store = ox.Store(path)
     text = io.BufferedReader(_Text(sys.stdin.buffer), 1 << 20)
     store.bulk_load(input=text, format=ox.RdfFormat.N_TRIPLES)
+    if base is not None:
+        store.bulk_load(input=sys.stdin.buffer, format=ox.RdfFormat.TURTLE, base_iri=base)
     store.flush()
     print(len(store), flush=True)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -4,7 +4,8 @@ The triples go to the process that fills the store piece by piece, between the n
 may come meanwhile. So the store begins as something between two states of the map; taking in all commits
 since the first piece, which say what is there and what is not, makes it the map as it is.
 
-The store of a map that is mostly one large commit is begun when this is, and filled while it is checked.
+The store of a map that is mostly one large commit is begun when this is, and filled while it is checked; if
+the commit is what a document says, when that comes, and filled from it while it is read.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
+from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -32,6 +34,10 @@ _PIECE: Final = 1000
 """Subjects in a piece: some milliseconds of the node's thread."""
 _FRAME: Final = 20_000
 """Triples of a commit that are sent at once."""
+_BYTES_OF_A_TRIPLE: Final = 40
+"""At least, in a document."""
+_OTHERWISE: Final = (b"_:", b"[", b"(", b"\xef\xbb\xbf")
+"""With these a document may say something else to the map: blank nodes have other labels there."""
 _FAR_BEHIND: Final = 20_000
 _FAR_BEHIND_BYTES: Final = 16 << 20
 """Commits, and their size in the journal: a store that lacks more is made anew."""
@@ -85,24 +91,40 @@ class LargeMap:
             return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]
         return None
 
+    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
+        """What a document says will be inserted by a commit of that id: begin its store if that is worth it.
+
+        Whoever finds that it is not so, or that there will be no commit, has to `forget` it.
+        """
+        is_much = len(turtle) > self._large * _BYTES_OF_A_TRIPLE and not any(
+            map(turtle.__contains__, _OTHERWISE)
+        )
+        if is_much and not self.is_large:
+            self._begin(commit_id, (), turtle, base)
+
     def foretell(self, commit: Commit) -> Callable[[], None]:
         """A commit will be made if it stands the check: begin its store if that is worth it.
 
         What is returned gives it up again.
         """
-        if self._foretold is not None:  # and was taken back
+        if self._foretold is None or self._foretold[0] != commit.id or commit.retracted:
+            self.forget()  # what was taken back
+            if self.is_much(commit) and not (commit.retracted or self.is_large):
+                self._begin(commit.id, commit.inserted)
+        return self.forget
+
+    def forget(self) -> None:
+        """What was foreseen or foretold does not come."""
+        if self._foretold is not None:
             self._foretold[1].give_up()
             self._foretold = None
-        if not self.is_much(commit) or commit.retracted or self.is_large:
-            return lambda: None
-        try:
+
+    def _begin(self, commit_id: str, inserted: Sequence[Triple], turtle: bytes = b"", base: str = "") -> None:
+        self.forget()
+        with suppress(OSError):  # `fill` says so
             path = self._stores.begin()
-        except OSError:
-            return lambda: None  # `fill` says so
-        before = list(self._reasoner().asserted())
-        filler = StoreFiller(path, _frames(before, commit.inserted))
-        self._foretold = commit.id, filler
-        return filler.give_up
+            before = list(self._reasoner().asserted())
+            self._foretold = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
 
     def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[Filled]:
         """Make the store of the map after commit `seq`, as it is; the node's thread resolves the future.
@@ -112,8 +134,10 @@ class LargeMap:
         nothing but how they are spelled.
         """
         future: Future[Filled] = Future()
+        count: int | None = None
         if commit is not None and self._foretold is not None and self._foretold[0] == commit.id:
             (_, filler), self._foretold = self._foretold, None
+            count = len(self._reasoner())
         else:
             try:
                 filler = StoreFiller(self._stores.begin(), self._pieces())
@@ -122,10 +146,12 @@ class LargeMap:
                 return future
         self._filler = filler
 
+        def finish(done: Future[tuple[int, int]]) -> Filled:
+            sent, found = done.result()
+            return self._finished(filler.path, found == (sent if count is None else count), seq, now())
+
         def on_done(done: Future[tuple[int, int]]) -> None:
-            self._soon(
-                lambda: settle(future, lambda: self._finished(filler.path, *done.result(), seq, now()))
-            )
+            self._soon(lambda: settle(future, lambda: finish(done)))
 
         filler.outcome.add_done_callback(on_done)
         return future
@@ -141,8 +167,8 @@ class LargeMap:
         self._soon(lambda: settle(future, take))
         return future.result()
 
-    def _finished(self, path: Path, sent: int, found: int, seq: int, settled: int) -> Filled:
-        if found < sent:
+    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> Filled:
+        if not is_whole:
             shutil.rmtree(path, ignore_errors=True)
             raise errors.Refused("some literals differ only in spelling")
         try:

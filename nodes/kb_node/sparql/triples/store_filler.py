@@ -11,7 +11,7 @@ from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 
-from nodes.kb_node.sparql.triples.filling import frame
+from nodes.kb_node.sparql.triples.filling import END, frame
 from schemas import errors
 from schemas.explanations import Triple
 
@@ -19,11 +19,15 @@ from schemas.explanations import Triple
 class StoreFiller:
     """Fills a new store at `path`; on any error nothing is left of it."""
 
-    def __init__(self, path: Path, pieces: Iterable[Sequence[Triple]]) -> None:
-        """`pieces` are iterated over by the thread."""
+    def __init__(
+        self, path: Path, pieces: Iterable[Sequence[Triple]], turtle: bytes = b"", *, base: str = ""
+    ) -> None:
+        """`pieces` are iterated over by the thread; what is said in `turtle`, of that base, comes, too."""
         self.path = path
+        self._turtle = turtle
+        self._base = base
         self.outcome: Future[tuple[int, int]] = Future()
-        """How many triples were sent, and how many the store has; its error is Refused."""
+        """How many triples were sent in pieces, and how many the store has; its error is Refused."""
         self._process: subprocess.Popen[bytes] | None = None
         self._is_wanted = True
         threading.Thread(target=self._run, args=(pieces,), name="sparql-filling", daemon=True).start()
@@ -48,6 +52,7 @@ class StoreFiller:
 
     def _pump(self, pieces: Iterable[Sequence[Triple]]) -> tuple[int, int]:
         command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.triples.filling", str(self.path)]
+        command += [self._base] if self._turtle else []
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             self._process = process
             assert process.stdin is not None
@@ -58,5 +63,9 @@ class StoreFiller:
                     raise ValueError("it is not wanted any more")
                 process.stdin.write(frame(piece))
                 sent += len(piece)
+            if self._turtle:
+                process.stdin.write(END)
+                process.stdin.write(self._turtle)
+                self._turtle = b""
             process.stdin.close()
             return sent, int(process.stdout.read())

@@ -216,6 +216,56 @@ def test_a_store_foretold_for_a_commit_that_was_taken_back_is_not_another_ones(t
         node.close()
 
 
+def turtle(triples):
+    return "".join(f"{s} {p} {o} .\n" for s, p, o in triples).encode()
+
+
+def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypatch):
+    node = Node(new_map(tmp_path), large=50)
+    node.map.commit(transaction("one", chair("one")))
+    try:
+        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
+        node.service.foresee("many", turtle(said), v.ABOX)
+        monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
+        monkeypatch.setattr(large_map, "_frames", None)
+        node.commit("many", said)
+        node.commit("two", chair("two"))
+        assert (node.count(), node.made, len(stores(node))) == (32, 1, 1)
+    finally:
+        node.close()
+
+
+@pytest.mark.parametrize("why", ["another commit", "something else in it", "no commit", "it retracts, too"])
+def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
+    node = Node(new_map(tmp_path), large=50)
+    node.map.commit(transaction("one", chair("one")))
+    try:
+        node.service.foresee("many", turtle(chairs(30)), v.ABOX)
+        if why in ("no commit", "something else in it"):
+            node.service.forget()
+        if why != "no commit":
+            gone = chair("one") if "too" in why else ()
+            node.commit("other" if "another" in why else "many", chairs(29), gone)
+        left = {"no commit": 1, "it retracts, too": 29}.get(why, 30)
+        assert (node.count(), len(stores(node))) == (left, left > 1)
+        until(lambda: not list((tmp_path / FOLDER).glob("filling-*")), "nothing else is left")
+    finally:
+        node.close()
+
+
+@pytest.mark.parametrize(
+    "text", ["_:a :p _:b .", ":a :p [] .", ":a :p (1) .", "\ufeff:a :p 1 .", ":a :p 1 ."]
+)
+def test_what_may_say_something_else_to_the_map_is_not_foreseen_nor_a_short_document(tmp_path, text):
+    node = Node(new_map(tmp_path), large=50)
+    try:
+        content = text.encode() + b"#" * (3000 if text != ":a :p 1 ." else 100)
+        node.service.foresee("many", content, v.ABOX)
+        assert not (tmp_path / FOLDER).exists()
+    finally:
+        node.close()
+
+
 def refuse(*_, **__):
     raise NotWritten("the disk is full")
 
