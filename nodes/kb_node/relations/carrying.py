@@ -40,7 +40,8 @@ class Loads:
         solid = self._space.solids.get(name)
         if solid is None or solid.is_place:
             return
-        for other in sorted(self._space.around(solid), key=lambda other: other.name):
+        may_be = (other for other in self._space.around(solid) if self._space.may_bear(solid, other))
+        for other in sorted(may_be, key=lambda other: other.name):
             bearer = self._bearer(other)
             if bearer is not None and bearer.name == name:
                 yield other.name, bearer
