@@ -27,6 +27,7 @@ IN_TURN = "turns"
 """The version in `--before` and this one in turn."""
 LARGE = "scale"
 """A part that is measured when it is asked for: it takes minutes and gigabytes."""
+FURTHER = (UNIVERSITY, VARIANTS, IN_TURN, LARGE)
 CORE_SIZES, LARGE_SIZES = "10,100,1000,10000,100000", "10000,100000"
 T = TypeVar("T")
 
@@ -42,17 +43,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--entities", type=int, default=10_000, help="in the node, on disk and over Zenoh")
     parser.add_argument("--sim-entities", type=int, default=300, help="with bodies in the simulator")
     parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
-    parser.add_argument(
-        "--parts",
-        default=",".join(PARTS),
-        help=f"of: {','.join((*PARTS, UNIVERSITY, VARIANTS, IN_TURN, LARGE))}",
-    )
-    parser.add_argument(
-        "--before", type=Path, metavar="DIR", help=f"the root of another version, for {IN_TURN}"
-    )
-    parser.add_argument(
-        "--ontology", type=Path, metavar="FILE", help=f"over DUL, for {VARIANTS}: SOMA-HOME.owl"
-    )
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, *FURTHER))}")
+    parser.add_argument("--before", type=Path, metavar="DIR", help=f"another version's root, for {IN_TURN}")
+    parser.add_argument("--ontology", type=Path, help=f"one over DUL, such as SOMA-HOME.owl, for {VARIANTS}")
     parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")

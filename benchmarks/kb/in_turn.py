@@ -1,4 +1,4 @@
-"""Another version and this one in turn: what a change gains is seen side by side only, on a machine with others."""
+"""Another version and this one in turn: on a machine with others a gain is seen side by side only."""
 
 from __future__ import annotations
 

@@ -32,11 +32,40 @@ class View:
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
-        if s is None and p is None and o is None:
-            for node, term in enumerate(self._store.terms):
-                if term and not self._abox.is_literal(node):
-                    yield from self.asserted(term, None, None)
+        if p is None and (s is None or o is None):
+            if s is not None:
+                return self._said_of(s)
+            return self._everything() if o is None else self._said_with(o)
+        return self._matching(s, p, o)
+
+    def _everything(self) -> Iterator[Triple]:
+        for node, term in enumerate(self._store.terms):
+            if term and not self._abox.is_literal(node):
+                yield from self._said_of(term)
+
+    def _said_of(self, s: Term) -> Iterator[Triple]:
+        """The asserted triples of a subject."""
+        store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(s)
+        if node is None:
             return
+        for cls in self._given(node):
+            yield (s, TYPE, self._schema.classes[cls])
+        for edge in store.out.all(node):
+            if store.source[edge] == ASSERTED:
+                yield (s, axioms[store.predicate[edge]].term, store.terms[store.object[edge]])
+
+    def _said_with(self, o: Term) -> Iterator[Triple]:
+        """The asserted triples of an object."""
+        if self._schema.find_class(o) is not None:
+            yield from self._asserted_types(None, o)
+        store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(o)
+        if node is None:
+            return
+        for edge in store.into.all(node):
+            if store.source[edge] == ASSERTED:
+                yield (store.terms[store.subject[edge]], axioms[store.predicate[edge]].term, o)
+
+    def _matching(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         if p is None or p == TYPE:
             yield from self._asserted_types(s, o)
         if p != TYPE:
