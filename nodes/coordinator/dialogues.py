@@ -74,6 +74,14 @@ class _Held(Generic[T]):
             self.ask_later(call).add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
 
 
+def alone(talk: Talk[T]) -> Talk[list[T | errors.SemmapError]]:
+    """`in_step` for one talk: as most changes come."""
+    try:
+        return [(yield from talk)]
+    except errors.SemmapError as error:
+        return [error]
+
+
 def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:
     """Several talks as one, with their results in their order; a talk that ends with an error gives that."""
     results: dict[int, T | errors.SemmapError] = {}
