@@ -80,7 +80,7 @@ class Kinds:
 
     def literal(self, term: Term) -> Kind:
         """The kind of a literal: the datatypes that hold its value, and its nominal."""
-        if self._text is not None and _TEXT.fullmatch(term):
+        if term[-1] == '"' and self._text is not None and _TEXT.fullmatch(term):
             return self._text
         number = _NUMBER.fullmatch(term) if self._numbers else None
         return self._literal(term) if number is None else self._numbers[(number.lastindex or 0) - 1]
