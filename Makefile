@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint format docs diagrams schema shapes models train-perception wheel clean
+.PHONY: help setup demo test test-long test-faults lint format docs diagrams schema shapes models relations-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -35,6 +35,9 @@ test: setup  ## The tests, under 5 minutes
 test-long: setup  ## The tests that take longer too
 	$(BIN)/pytest -n 2
 
+test-faults: setup  ## Kill, stop, forge: nothing acknowledged may be lost or done twice; some ten minutes
+	$(BIN)/python -m tests.faults
+
 lint: setup  ## Style, types and the rules of who imports whom
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -60,6 +63,9 @@ shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, fo
 
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m nodes.sim_node.models.sheet docs/models.png
+
+relations-picture: setup  ## Draw the sixty situations of docs/relations.md
+	$(BIN)/python -m benchmarks.relations.picture docs/relations.png
 
 train-perception: setup  ## Learn anew what perception knows: an hour on two cores; recorded scenes too where they are
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd

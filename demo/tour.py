@@ -165,6 +165,26 @@ def tour(t: Tour) -> None:
     t.do("add", "Chair", "--default", "--wait", holds="body: present")
     t.do("update", "beer7", "--ref", "warm beer", "--yaw", "0.5", holds="updated beer7")
 
+    t.tell("Where things are: measured from poses and shapes, and explained")
+    t.do("list", "--on", "dining table", holds="beer7")
+    t.do("relations", "beer7", holds="beer7 is on table1")
+    t.do("explain", "apple1", "isInside", "bowl1", holds="within a hollow of bowl1")
+    t.do("explain", "beer7", "isOn", "counter1", status=1, holds="beer7 is not on counter1")
+
+    t.tell("Carry the bowl away: what is in it goes along, and whoever watches the table is told")
+    with t.watching("watch", "--on", "dining table", begins="watching", shows=("- bowl1", "+ bowl1")):
+        t.do("update", "bowl1", "--at", "8.2", "1.3", "0", "--carry", holds="bowl1 carried apple1 along")
+        t.do("list", "--in", "bowl1", holds="apple1")
+        t.do("undo", holds="undid commit")
+
+    t.tell("Said against seen: a move takes back what it makes wrong; what is wrong from the start is noted")
+    t.do("set", "beer7", "isOn", "table1")
+    t.do("update", "beer7", "--at", "8.2", "1.6", "0", holds="taken back: beer7 was said to be on table1")
+    t.do("set", "beer7", "isOn", "table1", holds="note: beer7 was said to be on table1; it stands")
+    t.do("check", holds="note: beer7 was said to be on table1; it stands")
+    t.do("update", "beer7", "--at", "8.0", "2.3", "0.76")
+    t.do("unset", "beer7", "isOn", "table1")
+
     t.tell("What cannot be is refused, with the reason, and nothing is changed")
     t.do("add", "Chiar", status=2, holds="did you mean")
     t.do("add", "Beer", "beer7", status=1, holds="taken")

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import msgspec
 from msgspec import Struct
@@ -17,7 +18,7 @@ Flat = tuple[float, float]
 Corner = tuple[float, float, float]
 
 
-class Surface(Struct, frozen=True, kw_only=True):
+class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A level patch that carries things: its height and the rectangle around it, in the model's frame [m].
 
     `fill` is the share of the rectangle that is really there (a disc has pi / 4).
@@ -29,7 +30,7 @@ class Surface(Struct, frozen=True, kw_only=True):
     fill: float = 1.0
 
 
-class Interior(Struct, frozen=True, kw_only=True):
+class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed."""
 
     low: Corner
@@ -38,7 +39,7 @@ class Interior(Struct, frozen=True, kw_only=True):
     open: bool = True
 
 
-class ConvexPart(Struct, frozen=True, kw_only=True):
+class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One convex part that collides, in the model's frame [m]: the Minkowski sum of what it names.
 
     Segments from -v to v (`straight`), an ellipsoid or a disc with these semi-axes (`round`), and the hull of
@@ -52,19 +53,24 @@ class ConvexPart(Struct, frozen=True, kw_only=True):
     points: tuple[Corner, ...] = ()
 
 
-class ModelShape(Struct, frozen=True, kw_only=True):
-    """A model at the size `size_m`; an entity of another size has it stretched along each axis."""
+class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """A model at the size `size_m`; an entity of another size has it stretched along each axis.
+
+    `turns`: one that is long where the model is wide has it turned a quarter first, as the simulator does
+    with the library's models.
+    """
 
     size_m: Size
     surfaces: tuple[Surface, ...] = ()
     interiors: tuple[Interior, ...] = ()
     parts: tuple[ConvexPart, ...] = ()
+    turns: bool = True
 
 
 def own_size_m(model: str) -> Size | None:
     """Extent of a model of the library along its own axes [m]; of "" that of the box which stands in for one.
 
-    None for a model from a file of the user's: only the simulator knows it.
+    None for a model that is not known, as one from a file of the user's that `add_own` was not told of.
     """
     shape = shapes().get(model)
     return None if shape is None else shape.size_m
@@ -72,5 +78,11 @@ def own_size_m(model: str) -> Size | None:
 
 @cache
 def shapes() -> dict[str, ModelShape]:
-    """Model name to shape, for the library's models."""
+    """Model name to shape, for the library's models and the user's own."""
     return msgspec.json.decode(MODEL_SHAPES_JSON.read_bytes(), type=dict[str, ModelShape])
+
+
+def add_own(path: Path) -> None:
+    """Take up the shapes of the user's own models, if there is such a file; before any is asked for."""
+    if path.is_file():
+        shapes().update(msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape]))

@@ -87,6 +87,6 @@ def alternative_reference(entity: Term, node: Term, text: str) -> list[Triple]:
 
 def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]) -> list[Triple]:
     return [
-        (node, predicate, v.literal(repr(float(value)), v.XSD_FLOAT))
+        (node, predicate, f'"{float(value)!r}"^^{v.XSD_FLOAT}')  # a number has nothing to escape
         for predicate, value in zip(properties, values, strict=True)
     ]

@@ -229,7 +229,8 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
 class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
     """Where a thing is relative to others, as measured; with `other` also what does not hold of the two.
 
-    `viewer` (an entity) or `viewpoint` adds left of, right of, in front of and behind, as seen from there.
+    `name`, `other` and `viewer` are names, or references or classes that only one thing has. `viewer` or
+    `viewpoint` adds left of, right of, in front of and behind, as seen from there.
     """
 
     name: str

@@ -108,6 +108,9 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `verb` and `undoes` are those of the transaction. `tbox`: it replaced the TBox, so the classes are others.
     A very large commit is published `abridged`, without its triples and entities: whoever follows the map
     takes a new snapshot then. The journal always holds all of it.
+
+    `digest` is that of the journal up to and with this commit, in hexadecimal: where it is the same, so is
+    all that came before. Within the journal, which keeps it beside, it is empty.
     """
 
     seq: int
@@ -123,6 +126,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     undoes: tuple[int, ...] = ()
     tbox: bool = False
     abridged: Extent | None = None
+    digest: str = ""
     retracted: tuple[Triple, ...] = ()
     inserted: tuple[Triple, ...] = ()
     changed: tuple[Entity, ...] = ()
@@ -189,6 +193,7 @@ class Effects(Struct, frozen=True, kw_only=True):
     notes: tuple[str, ...] = ()
     trial: Trial | None = None
     """Of a dry run: nothing was done."""
+    digest: str = ""
 
     @classmethod
     def of(cls, commit: Commit) -> Effects:
@@ -203,6 +208,7 @@ class Effects(Struct, frozen=True, kw_only=True):
             abridged=commit.abridged,
             changed=commit.changed,
             removed=commit.removed,
+            digest=commit.digest,
             notes=commit.notes,
         )
 
@@ -265,12 +271,13 @@ def abridged(commit: Commit) -> Commit:
 class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The entities as they are after commit `seq`: all, or a page of them in the order of their names.
 
-    With `more`, further pages follow.
+    With `more`, further pages follow. `digest` is that of commit `seq`.
     """
 
     seq: int
     entities: tuple[Entity, ...]
     more: bool = False
+    digest: str = ""
 
 
 class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

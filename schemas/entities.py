@@ -76,11 +76,15 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
+def name_stem(class_name: str) -> str:
+    """What the names of a class's entities begin with: the class in lower case, without a prefix."""
+    stem = re.sub(r"[^\w.-]", "", composed(class_name.rpartition(":")[2].lower()))[:120]
+    return stem if stem[:1].isalpha() else f"_{stem}"
+
+
 def free_name(class_name: str, taken: Container[str]) -> str:
     """The class in lower case, without a prefix, and the first number that is free: `chair1`."""
-    stem = re.sub(r"[^\w.-]", "", composed(class_name.rpartition(":")[2].lower()))[:120]
-    stem = stem if stem[:1].isalpha() else f"_{stem}"
-    number = 1
+    stem, number = name_stem(class_name), 1
     while f"{stem}{number}" in taken:
         number += 1
     return f"{stem}{number}"

@@ -22,5 +22,7 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     last_error: str = ""
     commit: int | None = None
     """Of the knowledge base: the number of the last commit, so that a follower notices what it has missed."""
+    digest: str = ""
+    """That of the last commit, so that a follower notices one that was never made."""
     notes: tuple[str, ...] = ()
     """What whoever runs the system should know once, and `status` goes on to show."""

@@ -71,7 +71,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.UNTOLD, follow=_NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
-    *_topic(keys.POSES),
+    *_topic(keys.POSES, publish=frozenset(("robot",))),
     *_topic(keys.HEALTH),
     *_topic(keys.OBSERVATIONS, publish=frozenset(("perception",))),
     *_topic(keys.CLOUD, publish=frozenset(("perception",))),

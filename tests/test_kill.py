@@ -3,64 +3,44 @@
 from __future__ import annotations
 
 import os
-import random
 import signal
-import threading
-import time
 
 import pytest
 
-from schemas import errors
 from tests.conftest import running, until
+from tests.killing import Busy, kill_again_and_again
 
 
-class Committer(threading.Thread):
-    """Adds chairs at full speed, and remembers what was acknowledged with which commit."""
+class Committer(Busy):
+    """Adds chairs, and remembers what was acknowledged with which commit."""
 
     def __init__(self, system):
-        super().__init__()
+        super().__init__(system)
         self.acknowledged = {}
-        self.unanswered = set()
-        self.stopping = threading.Event()
-        self._system = system
+        self.lost = set()
+        self._number = 0
 
-    def run(self):
-        with self._system.client() as client:
-            i = 0
-            while not self.stopping.is_set():
-                i += 1
-                name = f"chair{i}"
-                try:
-                    reply = client.add("Chair", name, at=(i % 97, i % 89, 0.0), ref="chair", alt=("seat",))
-                    self.acknowledged[name] = reply.commit
-                except errors.NoAnswer:
-                    self.unanswered.add(name)
+    def step(self, client):
+        self._number += 1
+        i = self._number
+        reply = client.add("Chair", f"chair{i}", at=(i % 97, i % 89, 0.0), ref="chair", alt=("seat",))
+        self.acknowledged[f"chair{i}"] = reply.commit
+
+    def unanswered(self):
+        self.lost.add(f"chair{self._number}")
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(50, marks=pytest.mark.long)])
 def test_every_acknowledged_commit_is_there_and_no_other_one_half(tmp_path, kills):
-    chance = random.Random(kills)
     with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system:
         committer = Committer(system)
-        committer.start()
-        pid = 0
-        for _ in range(kills):
-            count = len(committer.acknowledged)
-            until(lambda seen=count: len(committer.acknowledged) > seen, "commits go on")
-            time.sleep(chance.uniform(0.0, 0.3))
-            pid = until(lambda last=pid: (now := system.pid("kb_node")) != last and now, "it is back")
-            os.kill(pid, signal.SIGKILL)
-        count = len(committer.acknowledged)
-        until(lambda: len(committer.acknowledged) > count, "commits go on")
-        committer.stopping.set()
-        committer.join(60)
-        assert not committer.is_alive()
+        kill_again_and_again(system, "kb_node", committer, kills)
         with system.client() as client:
             there = {e.name: e for e in client.list()}
             commits = client.history(limit=10_000)
             assert client.check().consistent
     assert committer.acknowledged.keys() <= there.keys()
-    assert there.keys() - committer.acknowledged.keys() <= committer.unanswered
+    assert there.keys() - committer.acknowledged.keys() <= committer.lost
     for entity in there.values():
         assert entity.pose is not None
         assert (entity.preferred_reference, entity.alternative_references) == ("chair", ("seat",))

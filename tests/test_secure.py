@@ -221,6 +221,22 @@ def test_a_killed_router_is_back_and_found_again(as_):
         assert vera.get("fridge1").name == "fridge1"
 
 
+def test_a_router_that_hangs_is_replaced_and_nobody_else(as_):
+    with as_("vera") as vera:
+        before = {node.node: node.pid for node in vera.status().nodes}
+        os.kill(before["router"], signal.SIGSTOP)
+
+        def others():
+            try:
+                pids = {node.node: node.pid for node in vera.status().nodes}
+            except errors.NoAnswer:
+                return {}
+            return pids if pids.get("router", before["router"]) != before["router"] else {}
+
+        after = until(others, "another router")
+    assert {node for node in before if before[node] != after[node]} == {"router"}
+
+
 def test_who_is_revoked_is_shut_out_and_who_is_added_let_in(as_, folder, raw):
     authority.add(folder, "kim", "operator")
     with as_("kim") as kim:

@@ -6,9 +6,11 @@ import argparse
 import json
 import os
 import platform
+import signal
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -48,6 +50,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--ontology", type=Path, help=f"one over DUL, such as SOMA-HOME.owl, for {VARIANTS}")
     parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
+    parser.add_argument(
+        "--patience", type=int, default=1800, help=f"seconds for each size in {LARGE}, then the next one"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     words.sizes = ",".join(words.sizes) if words.sizes else None
@@ -155,11 +160,29 @@ def _large(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
     """Whole systems of growing size."""
     found = []
     for size in map(int, (words.sizes or LARGE_SIZES).split(",")):
-        with tempfile.TemporaryDirectory(dir=words.folder) as folder:
-            found.append(scale.measure(Path(folder), size))
-        print(found[-1], flush=True)
+        try:
+            with tempfile.TemporaryDirectory(dir=words.folder) as folder, _within(words.patience):
+                found.append(scale.measure(Path(folder), size))
+        except TimeoutError:
+            print(f"{size:,} entities were given up after {words.patience} s", flush=True)
     report[LARGE] = [one._asdict() for one in found]
-    return table.of_scale(found)
+    return table.of_scale(found) if found else []
+
+
+@contextmanager
+def _within(seconds: int) -> Iterator[None]:
+    """Raises TimeoutError in this thread when it takes longer."""
+
+    def give_up(*_: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def _alone(function: Callable[..., T], *values: Any) -> T:

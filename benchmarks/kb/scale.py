@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
@@ -21,12 +21,13 @@ from nodes.extern.client import Client
 from nodes.extern.testing import free_endpoint, own_system
 from ontology import vocabulary as v
 from schemas import errors
+from schemas.health import Health
 
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _COUNTED = "Cup"
 _REPEAT = 100
 _LARGE = 100_000
-_QUIET_S = 30.0
+_QUIET_S = 10.0
 _CHECKED_UP_TO = 100_000
 _JSON_UP_TO = 100_000
 """Entities: a scene of more is measured as Turtle only."""
@@ -39,12 +40,15 @@ class Scale(NamedTuple):
     load_turtle_s: float
     load_json_s: float | None
     memory_loaded_mb: float
+    cpu_of_load_s: dict[str, float]
+    """CPU time of the load from Turtle in each node: on a busy machine it tells more than the clock."""
     first_sparql_after_load_s: float
     memory_queried_mb: float
     """The store of SPARQL included."""
     memory_of_nodes_mb: dict[str, float]
     start_s: float
     """From `semmap up` until `get` answers."""
+    cpu_of_start_s: dict[str, float]
     first_sparql_s: float
     """The first one after that start: a count."""
     sparql_s: float
@@ -71,18 +75,20 @@ def measure(folder: Path, size: int) -> Scale:
     data = folder / "turtle"
     with _running(data) as (client, _):
         load_turtle_s = timed(lambda: client.load(turtle))
+        cpu_of_load_s = _cpu_s(client)
         memory_loaded = sum(_memory_mb(client).values())
         counted = big_files.count_of(_COUNTED, size)
         first_after_load_s = timed(lambda: _require_count(client, counted))
         memory_of_nodes = _memory_mb(client)
         if size >= _LARGE:
-            time.sleep(_QUIET_S)  # in which the knowledge base writes its checkpoint
+            time.sleep(_QUIET_S)  # in which the knowledge base begins to write its checkpoint
     turtle.unlink()
     name = f"thing{size // 2}"
     began_s = time.perf_counter()
     with _running(data) as (client, endpoint):
         client.get(name)
         start_s = time.perf_counter() - began_s
+        cpu_of_start_s = _cpu_s(client)
         first_sparql_s = timed(lambda: _require_count(client, counted))
         random_ = random.Random(size)
         adds = [timed(lambda i=i: _add(client, i, random_)) for i in range(_REPEAT)]  # type: ignore[misc]
@@ -97,10 +103,12 @@ def measure(folder: Path, size: int) -> Scale:
         load_turtle_s=load_turtle_s,
         load_json_s=load_json_s,
         memory_loaded_mb=memory_loaded,
+        cpu_of_load_s=cpu_of_load_s,
         first_sparql_after_load_s=first_after_load_s,
         memory_queried_mb=sum(memory_of_nodes.values()),
         memory_of_nodes_mb=memory_of_nodes,
         start_s=start_s,
+        cpu_of_start_s=cpu_of_start_s,
         first_sparql_s=first_sparql_s,
         sparql_s=median(later),
         sparql_by_command_line_s=median(spoken),
@@ -145,19 +153,34 @@ def _place(random_: random.Random) -> tuple[float, float, float]:
     return (random_.uniform(-100, 0), random_.uniform(-100, 0), 0.0)
 
 
+def _cpu_s(client: Client) -> dict[str, float]:
+    """CPU time that each node has used since it was started, its children left out."""
+    return {node.node: sum(psutil.Process(node.pid).cpu_times()[:2]) for node in _nodes(client)}
+
+
 def _memory_mb(client: Client) -> dict[str, float]:
     """Proportional set size of each node with its children; pages that they share count once."""
+    found: dict[str, float] = {}
+    for node in _nodes(client):
+        process = psutil.Process(node.pid)
+        family = [process, *process.children(recursive=True)]
+        found[node.node] = sum(_pss_mb(p) for p in family)
+    return found
+
+
+def _pss_mb(process: psutil.Process) -> float:
+    """Proportional set size; 0 of a process that has ended meanwhile."""
+    try:
+        return float(process.memory_full_info().pss / 1e6)
+    except psutil.NoSuchProcess:
+        return 0.0
+
+
+def _nodes(client: Client) -> Sequence[Health]:
     deadline_s = time.monotonic() + 60.0
     while True:
         try:
-            nodes = client.status().nodes
-            break
+            return client.status().nodes
         except errors.NoAnswer:
             if time.monotonic() > deadline_s:
                 raise
-    found: dict[str, float] = {}
-    for node in nodes:
-        process = psutil.Process(node.pid)
-        family = [process, *process.children(recursive=True)]
-        found[node.node] = sum(p.memory_full_info().pss for p in family) / 1e6
-    return found

@@ -32,12 +32,16 @@ from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Pose, Provenance
 
 _CELL_M, _COLUMNS, _ROWS = 0.24, 6, 4
-_TABLE_M = (_COLUMNS * _CELL_M + 0.1, _ROWS * _CELL_M + 0.1, 0.75)
+TABLE_M = (_COLUMNS * _CELL_M + 0.1, _ROWS * _CELL_M + 0.1, 0.75)
 _LARGEST_M = 0.18
 _LOOKS = 5
 """Looks after each move; at five a second it takes one second."""
 _SAME_M = 0.06
 _SEEDS = (5, 6, 7)
+CAMERAS = [
+    look_at(np.array([side * 0.8, side * 0.8, 1.9]), np.array([0.0, 0.0, 0.75]), 640, 480, math.radians(58.0))
+    for side in (-1.0, 1.0)
+]
 
 
 class Kept(NamedTuple):
@@ -98,7 +102,7 @@ class ObedientMap:
         distances = {
             math.dist(e.pose.position_m[:2], (x, y)): name
             for name, e in self.entities.items()
-            if e.pose is not None and e.pose.position_m[2] > _TABLE_M[2] / 2.0
+            if e.pose is not None and e.pose.position_m[2] > TABLE_M[2] / 2.0
         }
         nearest = min(distances, default=math.inf)
         return distances[nearest] if nearest < _SAME_M else None
@@ -126,24 +130,17 @@ def identity(
 ) -> Kept:
     """Move things about and see who keeps their names."""
     rng, config = np.random.default_rng(seed), TrackingConfig()
-    cells = [(column, row) for column in range(_COLUMNS) for row in range(_ROWS)]
-    rng.shuffle(cells)
+    cells = _cells(rng)
     items = [_item(n, cell, rng) for n, cell in enumerate(cells[:things])]
     free = cells[things:]
     semantic_map, tracks = ObedientMap(), Tracks()
-    table = Item("table", "table", _TABLE_M, (0.6, 0.5, 0.4), (0.0, 0.0, 0.0), 0.0)
-    views = [
-        look_at(
-            np.array([side * 0.8, side * 0.8, 1.9]), np.array([0.0, 0.0, 0.75]), 640, 480, math.radians(58.0)
-        )
-        for side in (-1.0, 1.0)
-    ]
+    table = Item("table", "table", TABLE_M, (0.6, 0.5, 0.4), (0.0, 0.0, 0.0), 0.0)
 
     def see(count: int) -> None:
         nonlocal tracks
         bodies = stage.show([table, *items])
         for _ in range(count):
-            clouds = stage.shoot(bodies, views, rng).clouds
+            clouds = stage.shoot(bodies, CAMERAS, rng).clouds
             seen = perceive(clouds).observations.observations
             told = associate(semantic_map.entities, tracks, seen, occupancy_in(clouds), classes, config)
             tracks = told.tracks
@@ -169,6 +166,17 @@ def identity(
     return Kept(moves, kept, held, len(semantic_map.entities))
 
 
+def things_on_a_table(things: int, rng: np.random.Generator) -> list[Item]:
+    """Each in a cell of its own."""
+    return [_item(n, cell, rng) for n, cell in enumerate(_cells(rng)[:things])]
+
+
+def _cells(rng: np.random.Generator) -> list[tuple[int, int]]:
+    cells = [(column, row) for column in range(_COLUMNS) for row in range(_ROWS)]
+    rng.shuffle(cells)
+    return cells
+
+
 def _item(number: int, cell: tuple[int, int], rng: np.random.Generator) -> Item:
     small = [
         kind
@@ -187,7 +195,7 @@ def _spot(cell: tuple[int, int], rng: np.random.Generator) -> tuple[float, float
     x, y = (
         (n + 0.5) * _CELL_M - many * _CELL_M / 2.0 for n, many in zip(cell, (_COLUMNS, _ROWS), strict=True)
     )
-    return (x + dx, y + dy, _TABLE_M[2] + 0.001)
+    return (x + dx, y + dy, TABLE_M[2] + 0.001)
 
 
 def _cell_of(item: Item) -> tuple[int, int]:

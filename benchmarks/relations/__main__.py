@@ -1,4 +1,4 @@
-"""`python -m benchmarks.relations [--scenes N] [--pairs N] [--sizes N ...] [--json FILE]`."""
+"""`python -m benchmarks.relations [--scenes N] [--pairs N] [--sizes N ...] [--watched S] [--json FILE]`."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import argparse
 import json
 from pathlib import Path
 
-from benchmarks.relations import rightness, speed
+from benchmarks.relations import flicker, rightness, speed, watched
 from benchmarks.table import Row, lines
 
 
-def rows(scenes: int, pairs: int, sizes: list[int]) -> list[Row]:
+def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
     """All figures."""
     on, touches = rightness.against_contacts(scenes)
     inside = rightness.inside_against_samples(pairs)
     flat = rightness.flat()
+    went, _ = flicker.gone()
+    rest = watched.at_rest(watched_s)
     moves = {size: speed.move_ms(size) for size in sizes}
     return [
         Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),
@@ -22,6 +24,15 @@ def rows(scenes: int, pairs: int, sizes: list[int]) -> list[Row]:
         Row(f"isInside against sampled points, {pairs} pairs: F1", inside.f1, "", 0.97, 0.99, more=True),
         Row("the flat: said by hand and computed", 1 - len(flat.missing) / flat.said, "", 1, 1, more=True),
         Row("the flat: computed beyond what was said", len(flat.extra), "facts", 0, 0),
+        Row(
+            f"perception watches 20 things at rest, {watched_s:g} s: come and go",
+            rest.changes,
+            "relations",
+            0,
+            0,
+        ),
+        Row("of these, on the table in the end", rest.on_the_table / rest.things, "", more=True),
+        Row("watching 20 things at rest for two minutes: relations that go again", went, "facts", 0, 0),
         *(Row(f"relations after a move, {size}, p50", ms, "ms", 0.15, 0.08) for size, ms in moves.items()),
         Row(
             f"relations after a move, {max(sizes)} against {min(sizes)}",
@@ -40,9 +51,10 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=200, help="random settled scenes")
     parser.add_argument("--pairs", type=int, default=2000, help="of a container and a thing")
     parser.add_argument("--sizes", type=int, nargs="+", default=[500, 10_000, 100_000], help="entities")
+    parser.add_argument("--watched", type=float, default=120.0, metavar="S", help="of things at rest [s]")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
-    found = rows(words.scenes, words.pairs, words.sizes)
+    found = rows(words.scenes, words.pairs, words.sizes, words.watched)
     print(lines(found))
     if words.json_file is not None:
         words.json_file.write_text(json.dumps([as_json(row) for row in found], indent=1) + "\n")

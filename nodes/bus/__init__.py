@@ -1,7 +1,7 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
 from nodes.bus import own_config
-from nodes.bus.asking import TIMEOUT_S, Encoded, ask, ask_later, read_reply
+from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, ask, ask_later, read_reply
 from nodes.bus.lifelines import Lifelines, appear, follow_presence
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -18,6 +18,7 @@ from nodes.bus.session import (
     is_local,
     open_session,
     over_tls,
+    require_tls,
 )
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "TIMEOUT_S",
     "TLS",
     "Encoded",
+    "ForeignReply",
     "HungUp",
     "Lifelines",
     "Network",
@@ -48,6 +50,7 @@ __all__ = [
     "own_config",
     "publisher",
     "read_reply",
+    "require_tls",
     "serve",
     "serve_puts",
     "watched",

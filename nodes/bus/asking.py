@@ -9,6 +9,7 @@ consolidated.
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
@@ -20,12 +21,18 @@ from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
 from schemas import codec, errors, keys
 
+log = logging.getLogger(__name__)
+
 TIMEOUT_S = 30.0
 _HAD_IT_S = 0.1
 """A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
+
+
+class ForeignReply(errors.NoAnswer):
+    """Only somebody has answered who is not one of the nodes that serve the key."""
 
 
 class Encoded(Struct, frozen=True):
@@ -57,32 +64,44 @@ def ask(
 
     `meanwhile` is called again and again while the answer takes its time. `first_hand`: whoever serves just
     this verb is asked, and those who serve all verbs of the prefix only if there is no such one. With
-    `lifelines`, those of this session, the question ends, and is asked again, when who was asked is gone.
+    `lifelines`, those of this session, the question ends, and is asked again, when who was asked is gone; and
+    a reply counts only if it is by a node that serves the key: where another program has answered, everybody
+    who serves the key is asked.
 
-    Raises the error of the reply; NoAnswer when nobody serves the key for `patience_s` or the one
-    that does takes longer than `timeout_s`.
+    Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
+    key for `patience_s` or the one that does takes longer than `timeout_s`.
     """
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline_s = time.monotonic() + patience_s
+    servers, foreign = keys.servers(prefix, verb), False
+    target = zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING
     while True:
         asked_at_s = time.monotonic()
         replies = _get(
             session,
             key,
-            lifelines.of(keys.servers(prefix, verb)) if lifelines else None,
+            lifelines.of(servers) if lifelines else None,
             payload=payload,
             encoding=encoding,
             timeout=timeout_s,
-            target=zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING,
+            target=target,
         )
         for reply in replies if meanwhile is None else _polled(replies, meanwhile):
-            return read_reply(key, reply, kind, timeout_s).decode()
+            if lifelines is None or lifelines.vouch(servers, reply):
+                return read_reply(key, reply, kind, timeout_s).decode()
+            if not foreign:
+                foreign, deadline_s = True, time.monotonic() + patience_s
+                log.warning("%s", _foreign(key, servers))
+            target = zenoh.QueryTarget.ALL
         if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
             deadline_s = now_s + patience_s
         if first_hand:
             first_hand = False
+            target = zenoh.QueryTarget.ALL if foreign else zenoh.QueryTarget.BEST_MATCHING
             continue
+        if now_s > deadline_s and foreign:
+            raise ForeignReply(_foreign(key, servers))
         if now_s > deadline_s:
             _nobody(key)
         if meanwhile is not None:
@@ -123,26 +142,46 @@ def ask_later(
     *,
     timeout_s: float = TIMEOUT_S,
     lifelines: Lifelines | None = None,
+    everybody: bool = False,
 ) -> None:
     """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
 
-    It is called once, on the thread with which Zenoh receives everything, so it should only queue.
+    `everybody` who serves the key is asked, as one should after a ForeignReply. `answer` is called once, on
+    the thread with which Zenoh receives everything, so it should only queue.
     """
     key = f"{prefix}/{verb}"
-    waiting = [answer]
+    waiting, servers = [answer], keys.servers(prefix, verb)
+    foreign: list[zenoh.Reply] = []
 
     def on_reply(reply: zenoh.Reply) -> None:
-        if waiting:
+        if lifelines is not None and not lifelines.vouch(servers, reply):
+            foreign.append(reply)
+        elif waiting:
             waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
+
+    def refuse() -> NoReturn:
+        if foreign:
+            raise ForeignReply(_foreign(key, servers))
+        _nobody(key)
 
     def on_end() -> None:
         if waiting:
-            waiting.pop()(lambda: _nobody(key))
+            waiting.pop()(refuse)
 
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
-    lifeline = lifelines.of(keys.servers(prefix, verb)) if lifelines else None
-    _get(session, key, lifeline, handler=handler, payload=payload, encoding=encoding, timeout=timeout_s)
+    lifeline = lifelines.of(servers) if lifelines else None
+    target = zenoh.QueryTarget.ALL if everybody else zenoh.QueryTarget.BEST_MATCHING
+    _get(
+        session,
+        key,
+        lifeline,
+        handler=handler,
+        payload=payload,
+        encoding=encoding,
+        timeout=timeout_s,
+        target=target,
+    )
 
 
 def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
@@ -154,6 +193,13 @@ def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Enc
     if str(error.encoding) != _ERROR_ENCODING:
         raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
     raise errors.from_message(codec.decode(error.payload.to_bytes(), errors.ErrorMessage))
+
+
+def _foreign(key: str, servers: tuple[str, ...]) -> str:
+    return (
+        f"a program that is not {errors.enumerated(servers)} answers on {key}; its answers are ignored"
+        " (semmap up --secure keeps strangers out)"
+    )
 
 
 def _nobody(key: str) -> NoReturn:

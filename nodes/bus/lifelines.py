@@ -6,7 +6,6 @@ until that is noticed nobody has, and it waits for its time-out.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -24,11 +23,22 @@ class Lifelines:
     def __init__(self, session: zenoh.Session) -> None:
         self._tokens: dict[tuple[str, ...], zenoh.CancellationToken] = {}
         self._there: set[str] = set()
+        self._instances: dict[str, frozenset[str]] = {}
         session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change, history=True)
 
     def is_there(self, node: str) -> bool:
         """Is a process of this node ready?"""
         return any(keys.live_node(key) == node for key in tuple(self._there))
+
+    def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
+        """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
+        ready = [there for node in nodes if (there := self._instances.get(node))]
+        replier = reply.replier_id if ready else None
+        return replier is None or any(str(replier.zid) in there for there in ready)
+
+    def instances(self, node: str) -> int:
+        """How many say that they are this node; more than one only for a moment, after a restart."""
+        return len(self._instances.get(node, ()))
 
     def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
         """For questions, from now on, that any of these nodes may answer."""
@@ -36,18 +46,24 @@ class Lifelines:
 
     def _on_change(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
+        node, instance = keys.live_node(key), keys.last_chunk(key)
         if sample.kind != zenoh.SampleKind.DELETE:
             self._there.add(key)
+            self._instances[node] = self._instances.get(node, frozenset()) | {instance}
             return
         self._there.discard(key)
-        gone = keys.live_node(key)
+        self._instances[node] = self._instances.get(node, frozenset()) - {instance}
+        gone = node
         for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
             self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]
 
 
 def appear(session: zenoh.Session, node: str) -> Any:
-    """Let this process be seen as a ready `node`, for as long as it lives and keeps what is returned."""
-    return session.liveliness().declare_token(keys.live_key(node, str(os.getpid())))
+    """Let this session be seen as a ready `node`, for as long as it lives and keeps what is returned.
+
+    The token bears the session's id, which replies bear too, so that others can tell whose they are.
+    """
+    return session.liveliness().declare_token(keys.live_key(node, str(session.info.zid())))
 
 
 def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:

@@ -92,6 +92,15 @@ class Network(Struct, frozen=True):
         return config
 
 
+def require_tls(endpoint: str) -> None:
+    """Raises BadRequest for an endpoint without certificates, or with a set-up of its own."""
+    if not endpoint.startswith(TLS) or "#" in endpoint:
+        raise errors.BadRequest(
+            "certificates are shown at endpoints of TLS only, such as tls/127.0.0.1:7447;"
+            f" '{endpoint}' is not one"
+        )
+
+
 class HungUp(errors.NoAnswer):
     """Somebody listens there, and does not want to talk with us."""
 
@@ -139,8 +148,9 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         if not network.listen and any(said in str(error) for said in _NOT_REACHED):
             if network.identity is not None:
                 raise errors.NoAnswer(
-                    f"no system answers at {where}: none runs there, or it does not admit the certificate of"
-                    f" {network.identity.name}, or it is none that {network.identity.authority} vouches for"
+                    f"no system answers at {where}: none runs there with --secure, or it does not admit"
+                    f" the certificate of {network.identity.name}, or {network.identity.authority} does not"
+                    " vouch for it"
                 ) from None
             raise errors.NoAnswer(f"no system answers at {where}; start one with: semmap up") from None
         if not network.listen and _HUNG_UP in str(error):

@@ -26,7 +26,7 @@ AskLater = Callable[[Call], Future[Any]]
 """The same, without waiting."""
 Talk = Generator[Call, Any, T]
 Answer = Any
-"""A message or a SemmapError."""
+"""A message or an exception."""
 
 
 def ask(call: Call[T]) -> Talk[T]:
@@ -71,20 +71,28 @@ class _Held(Generic[T]):
         except Exception as error:
             self.future.set_exception(error)
         else:
-            self.ask_later(call).add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
+            try:
+                asked = self.ask_later(call)
+            except Exception as error:  # whatever it is, the talk is told of it, and ends
+                self.go_on(error)
+            else:
+                asked.add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
 
 
-def alone(talk: Talk[T]) -> Talk[list[T | errors.SemmapError]]:
+def alone(talk: Talk[T]) -> Talk[list[T | Exception]]:
     """`in_step` for one talk: as most changes come."""
     try:
         return [(yield from talk)]
-    except errors.SemmapError as error:
+    except Exception as error:
         return [error]
 
 
-def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:
-    """Several talks as one, with their results in their order; a talk that ends with an error gives that."""
-    results: dict[int, T | errors.SemmapError] = {}
+def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | Exception]]:
+    """Several talks as one, with their results in their order.
+
+    A talk that ends with an exception, expected or not, gives that; the others go on.
+    """
+    results: dict[int, T | Exception] = {}
     answers: dict[int, Answer] = dict.fromkeys(range(len(talks)))
     while answers:
         calls: dict[int, Call] = {}
@@ -93,20 +101,20 @@ def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | errors.SemmapError]]:
                 calls[i] = _go_on(talks[i], answer)
             except StopIteration as end:
                 results[i] = end.value
-            except errors.SemmapError as error:
+            except Exception as error:
                 results[i] = error
         answers = yield from _ask_together(calls)
     return [results[i] for i in range(len(talks))]
 
 
 def _go_on(talk: Talk[T], answer: Answer) -> Call:
-    return talk.throw(answer) if isinstance(answer, errors.SemmapError) else talk.send(answer)
+    return talk.throw(answer) if isinstance(answer, Exception) else talk.send(answer)
 
 
 def _answer_of(ask: Callable[[], Any]) -> Answer:
     try:
         return ask()
-    except errors.SemmapError as error:
+    except Exception as error:
         return error
 
 
@@ -127,7 +135,7 @@ def _each(calls: Mapping[int, Call]) -> Talk[dict[int, Answer]]:
     for i, call in calls.items():
         try:
             answers[i] = yield call
-        except errors.SemmapError as error:
+        except Exception as error:
             answers[i] = error
     return answers
 

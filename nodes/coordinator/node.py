@@ -50,7 +50,7 @@ class Coordinator:
         self._bridge = Bridge(node)
         self._door = Door(self._bridge.ask)
         self._turns = Turns(self._change_together)
-        self._keeping = Keeping(config, self._door, self._ask_sim, node.report)
+        self._keeping = Keeping(config, self._door, self._turns.change, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
         self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []

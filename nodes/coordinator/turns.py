@@ -14,8 +14,8 @@ from concurrent.futures import Future
 from itertools import islice
 from typing import Any, NamedTuple
 
+from nodes.coordinator.scene.settled import Settled
 from nodes.runtime.futures import settle
-from schemas import errors
 from schemas.commands import Add, Clear, Load, Remove, Set, Undo, Unset, Update
 from schemas.replies import Changed
 
@@ -24,8 +24,8 @@ GROUP = 16
 AT_ONCE = 2
 """How many groups may be under way: one that the knowledge base works on, and one that waits there."""
 
-Change = Add | Update | Set | Unset | Remove | Clear | Load | Undo
-Results = list[Changed | errors.SemmapError]
+Change = Add | Update | Set | Unset | Remove | Clear | Load | Undo | Settled
+Results = list[Changed | Exception]
 
 
 class _Waiting(NamedTuple):
@@ -108,11 +108,15 @@ class Turns:
             for i, (_, _, future) in enumerate(members):
                 settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
 
-        self._together(changes).add_done_callback(on_done)
+        results: Future[Results] = Future()
+        results.add_done_callback(on_done)
+        settle(results, lambda: self._together(changes))
 
 
 def _entity(change: Change) -> str | None:
     """The one that it is about; None when it depends on others, or is to go alone."""
+    if isinstance(change, Settled):
+        return next(iter(change.poses)) if len(change.poses) == 1 else None
     if change.dry_run:
         return None
     if isinstance(change, Add):
@@ -120,7 +124,7 @@ def _entity(change: Change) -> str | None:
     return change.name if isinstance(change, (Update, Set, Unset)) else None
 
 
-def _result(result: Changed | errors.SemmapError) -> Changed:
-    if isinstance(result, errors.SemmapError):
+def _result(result: Changed | Exception) -> Changed:
+    if isinstance(result, Exception):
         raise result
     return result

@@ -15,6 +15,8 @@ from schemas.endpoints import CONFIG_VARIABLE, CONNECT_VARIABLE, IDENTITY_VARIAB
 
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
+_ANEW_S = 1.0
+"""Seconds: a router that begins anew is back before."""
 _AGAIN_S = 0.1
 
 
@@ -55,6 +57,7 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
     if identity is not None:
         identity.require_valid()
         where = bus.over_tls(where)
+        bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
         raise errors.NoAnswer(
             f"the system at {where} only answers those who show a certificate; say who you are:"
@@ -77,7 +80,9 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
                 break
             except errors.NoAnswer as error:
                 turned_away = isinstance(error, bus.HungUp) or (
-                    identity is not None and presence.is_listening(where)
+                    identity is not None
+                    and time.monotonic() > deadline_s - _START_S + _ANEW_S
+                    and presence.is_listening(where)
                 )
                 if turned_away or not presence.is_announced(where):
                     raise

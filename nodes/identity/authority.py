@@ -34,6 +34,7 @@ _AUTHORITY_DAYS: Final = 3650
 _AUTHORITY_NAME: Final = "semmap"
 _AUTHORITY_KEY: Final = "ca.key"
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_HOST: Final = re.compile(r"(?=.{1,253}$)[A-Za-z0-9-]{1,63}(\.[A-Za-z0-9-]{1,63})*\.?")
 _EARLY: Final = timedelta(minutes=5)
 """Clocks differ."""
 
@@ -54,9 +55,15 @@ def _alone(change: Callable[Concatenate[Path, P], Member]) -> Callable[Concatena
 
 
 def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Register:
-    """Make the authority and the system's own certificates in `folder`. Raises Refused where there is one."""
+    """Make the authority and the system's own certificates in `folder`.
+
+    Raises Refused where there is one, BadRequest for what is no host, BadFile where it cannot be written.
+    """
     if (folder / FILE).exists() or (folder / AUTHORITY).exists():
         raise errors.Refused(f"there are keys in {folder} already; add to them with: semmap keys add NAME")
+    hosts = tuple(dict.fromkeys((*HOSTS, *hosts)))
+    for host in hosts:
+        _host(host)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         folder.chmod(0o700)
@@ -73,7 +80,7 @@ def init(folder: Path, hosts: tuple[str, ...] = (), days: int = DAYS) -> Registe
     )
     _write(folder, AUTHORITY, certificate.public_bytes(serialization.Encoding.PEM))
     _write(folder, _AUTHORITY_KEY, _key_bytes(key))
-    register = Register(hosts=tuple(dict.fromkeys((*HOSTS, *hosts))))
+    register = Register(hosts=hosts)
     for own in OWN:
         register = _issued(folder, register, own, "node", days)
     register.write(folder)
@@ -221,10 +228,8 @@ def _host(host: str) -> x509.GeneralName:
     try:
         return x509.IPAddress(ipaddress.ip_address(host.strip("[]")))
     except ValueError:
-        pass
-    try:
-        return x509.DNSName(host)
-    except ValueError:
+        if _HOST.fullmatch(host):
+            return x509.DNSName(host)
         raise errors.BadRequest(f"'{host}' is neither a host name nor an address") from None
 
 

@@ -8,9 +8,7 @@ from typing import Final
 
 from msgspec import Struct
 
-from nodes.identity import certificate
 from schemas import errors
-from schemas.roles import ROLES
 
 AUTHORITY: Final = "ca.crt"
 SUPERVISOR: Final = "supervisor"
@@ -30,6 +28,9 @@ class Identity(Struct, frozen=True):
     @classmethod
     def read(cls, path: Path | str) -> Identity:
         """The identity `DIR/NAME`: `DIR/NAME.crt`, `DIR/NAME.key` and `DIR/ca.crt`. Raises BadFile."""
+        from nodes.identity import certificate  # most clients show none
+        from schemas.roles import ROLES
+
         path = Path(path).expanduser()
         path = path.with_suffix("") if path.suffix in (".crt", ".key") else path
         crt, key, authority = (

@@ -20,10 +20,9 @@ from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
+from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.relations.said import denied
-from nodes.kb_node.relations.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
@@ -33,6 +32,7 @@ from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
+from ontology import vocabulary as v
 from schemas import errors, keys, wording
 from schemas.bridge import (
     Entities,
@@ -102,8 +102,9 @@ class KnowledgeBase:
             lambda: self.map.reasoner.asserted(),
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
-            self.map.entities,
+            self.map.all_believed,
         )
+        self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         handlers = self._handlers()
         node.serve(keys.BRIDGE, handlers)
@@ -113,7 +114,8 @@ class KnowledgeBase:
         node.every(CHECKPOINT_PERIOD_S, self._checkpoint)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())
-        node.count(lambda: self.map.seq)
+        node.head(lambda: (self.map.seq, self.map.digest))
+        node.soon(self._follow_places)
         node.ready(self._summary())
 
     def _handlers(self) -> dict[str, Handler]:
@@ -144,6 +146,11 @@ class KnowledgeBase:
             Watch.answered_by(self.on_watch),
             Renew.answered_by(self.on_renew),
         )
+
+    def _follow_places(self) -> None:
+        """Between other work: the first commit after a start waits for what is left of it."""
+        if self.map.follow_some():
+            self._node.soon(self._follow_places)
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction: journal (durable), publish, reply."""
@@ -188,7 +195,7 @@ class KnowledgeBase:
     def _spread(self, commit: Commit, *, told: bool) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
         self._announcer.announce(commit, told=told)
-        self._node.afterwards(partial(self._sparql.follow, commit))
+        self._node.afterwards(partial(self._sparql.follow, commit, self.map.believed_of(commit)))
         self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
         self._node.describe(self._summary)
         if commit.tbox:
@@ -218,6 +225,16 @@ class KnowledgeBase:
 
     def on_load(self, load: LoadDocument) -> Loaded:
         """An RDF document in one commit, or in parts."""
+        before = self.map.seq
+        try:
+            return self._load(load)
+        finally:
+            if self.map.seq == before:
+                self._sparql.forget()
+
+    def _load(self, load: LoadDocument) -> Loaded:
+        if rdf.syntax_of(load.content) == "turtle" and not (load.replace or load.parts or load.dry_run):
+            self._sparql.foresee(load.id, load.content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
@@ -228,6 +245,8 @@ class KnowledgeBase:
             )
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self.map, load, triples)
+            if not document_change.is_all(triples, transaction):
+                self._sparql.forget()
             if load.dry_run:
                 names, effects = self._tried_load(transaction)
                 return Loaded(
@@ -330,6 +349,7 @@ class KnowledgeBase:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
         reasoner, names = self.map.reasoner, self.map.classes.prefixed
         needed: list[Triple] | None = None
+        self.map.believe_places()
         if questions.is_quick(reasoner, asked):
             try:
                 return answer(reasoner, asked, anew=False)
@@ -337,8 +357,8 @@ class KnowledgeBase:
                 needed = nearby(reasoner, asked.terms)
             except NotCompilable:
                 pass
-        triples = list(reasoner.asserted()) if needed is None else needed
-        return self._aside.submit(lambda: answer(questions.copy_of(triples, names), asked))
+        held = reasoner.held() if needed is None else Held(needed, [])
+        return self._aside.submit(lambda: answer(questions.copy_of(held, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""
@@ -378,13 +398,12 @@ class KnowledgeBase:
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
-        said = tuple(answers.said_of_place(self.map))
-        entities = tuple(self.map.entities()) if said else ()
-        triples = [*self.map.tbox, *self.map.abox()]
-        limits = self.map.classes.limits
+        self.map.follow_places()
+        held, denied = self.map.reasoner.held(), self._now.denied()
+        withheld = tuple(answers.withheld(self.map))
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(triples, query.engine), denied=tuple(denied(Space(entities, limits), said))
+                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld
             )
         )
 

@@ -51,18 +51,20 @@ class Places:
         in_order: Callable[[], Iterable[Entity]],
         asserted: Callable[[Term], Iterable[Triple]],
         limits: Callable[[], Thresholds],
+        kept: Callable[[], Space | None] = lambda: None,
     ) -> None:
         """`entities` by name, as they change; `asserted(property)` are the triples of one.
 
-        `limits()` are the thresholds of the TBox.
+        `limits()` are the thresholds of the TBox. `kept()` are the solids if somebody else keeps them.
         """
+        self._kept = kept
         self._entities = entities
         self._surroundings = Surroundings(in_order, entities.get, limits)
         self._sayings = Sayings(asserted)
 
     def space(self) -> Space:
         """The solids as they are now."""
-        return self._surroundings.space()
+        return self._kept() or self._surroundings.space()
 
     def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
         """A commit touched these entities, and triples went and came."""

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 from msgspec import structs
 
 from nodes.kb_node import gc_pause, preconditions, proofs
+from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
@@ -17,6 +18,7 @@ from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.relations.space import Space
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -75,6 +77,14 @@ class SemanticMap:
         self.tbox = self.tbox_at(start.seq)
         self.reasoner = reasoner or closure_cache.reasoner(self.tbox, journal.path.parent)
         self.classes = ClassTable(self.reasoner)
+        self.beliefs = Beliefs(self.reasoner, self.classes.limits, progress)
+        self._believed: dict[int, Believed] = {}
+        """What the last commits changed of what is computed, until somebody asks."""
+        self._following: Iterator[None] | None = None
+        self._follows = False
+        """Whether what is computed is worked out at each commit; not yet after a start."""
+        self._believes = False
+        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self._entities: dict[str, Entity] = {}
         self._patterns = Patterns()
         self.places = Places(
@@ -82,12 +92,17 @@ class SemanticMap:
             self.entities,
             lambda p: self.reasoner.asserted(None, p, None),
             lambda: self.classes.limits,
+            self._space,
         )
+        self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
+        """Told of each commit before it is checked; what it returns is called if that is not made."""
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
         self.seq = 0
+        self.digest = ""
+        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
         self._checkpointed = 0
         self._changed = self._changed_then = 0
         """Triples that changed, and those of them that are in the checkpoint."""
@@ -99,6 +114,43 @@ class SemanticMap:
 
     def __len__(self) -> int:
         return len(self._entities)
+
+    def follow_places(self) -> None:
+        """Work out where everything is, if that was not done since the start.
+
+        Whoever asks what follows needs it, and the first commit.
+        """
+        while self.follow_some():
+            self._progress()
+
+    def follow_some(self) -> bool:
+        """Do a part of that, some tens of milliseconds; whether there is more to do."""
+        if self._follows:
+            return False
+        following, self._following = self._following or self._follow(), None
+        for _ in following:
+            self._following = following
+            return True
+        return False
+
+    def _follow(self) -> Iterator[None]:
+        self.beliefs.begin()
+        yield from self.beliefs.filling(self._entities)
+        self._follows = self._believes = True
+        for name, entity in self._entities.items():
+            types = self._types(entity)
+            if types != entity.types:
+                self._entities[name] = structs.replace(entity, types=types)
+
+    def believe_places(self) -> None:
+        """Let the reasoner have what is computed of where things are, if it has not."""
+        if not self._believes:
+            self.follow_places()
+
+    def _space(self) -> Space | None:
+        """The solids that relations are computed of, if any are."""
+        self.follow_places()
+        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""
@@ -119,12 +171,13 @@ class SemanticMap:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self._entities[name] for name in sorted(self._entities))
+        self.believe_places()
         found = filter(None, map(self._known, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
     def snapshot(self) -> Snapshot:
         """Every entity, as of the last commit."""
-        return Snapshot(seq=self.seq, entities=tuple(self.entities()))
+        return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
@@ -146,12 +199,22 @@ class SemanticMap:
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
+        self.believe_places()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
     def steadily(self, items: Iterable[T]) -> Iterator[T]:
         """The items, for long work on them: the node tells meanwhile that it lives."""
         return steadily(items, self._progress)
+
+    def all_believed(self) -> Believed:
+        """What is computed and what is set aside."""
+        self.believe_places()
+        return self.beliefs.all()
+
+    def believed_of(self, commit: Commit) -> Believed:
+        """What a commit changed of that; it is told once."""
+        return self._believed.pop(commit.seq, UNCHANGED)
 
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
@@ -173,6 +236,8 @@ class SemanticMap:
         (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
         from the TBox or the disk does not take the commit.
         """
+        if self._undo_log is None:
+            self._believed.clear()
         try:
             made = self._commit(transaction)
         except errors.SemmapError:
@@ -182,6 +247,7 @@ class SemanticMap:
         return made or self._journal.commit_of(transaction.id)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
+        self.follow_places()
         transaction, notes = self._spelled_out(transaction)
         held = preconditions.held(self.reasoner, transaction, self._progress)
         preconditions.require(transaction, held)
@@ -199,8 +265,14 @@ class SemanticMap:
                 )
         with gc_pause.uncollected():
             commit = self._signed(transaction, retracted, inserted, notes=(*notes, *denied.notes))
-            begun = commit_encoding.early(commit) if self._look is None else None
-            return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+            if self._look is not None:
+                return self._apply(commit, self._write, self._with_doubts)
+            give_up, begun = self.foretell(commit), commit_encoding.early(commit)
+            try:
+                return self._apply(commit, lambda whole: self._write(whole, begun=begun), self._with_doubts)
+            except BaseException:
+                give_up()
+                raise
 
     def _with_doubts(self, commit: Commit) -> Commit:
         """With a word on what it says of places and is not so."""
@@ -224,11 +296,11 @@ class SemanticMap:
 
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
-    ) -> None:
-        """Make a commit durable. Raises NotWritten, and _Tried instead if it is only tried."""
+    ) -> Commit:
+        """The commit, durable and with its digest. Raises NotWritten; _Tried if it is only tried."""
         if self._look is not None:
             raise _Tried(self._look(commit))
-        self._journal.append(commit, tbox, begun=begun)
+        return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
         """Let another TBox hold, in one commit with the transaction's changes of the ABox.
@@ -242,11 +314,12 @@ class SemanticMap:
         retracted = (*transaction.retract, *sorted(self.tbox - new))
         inserted = (*transaction.insert, *sorted(new - self.tbox))
         commit = self._signed(transaction, retracted, inserted, tbox=True)
+        self.follow_places()
         before = self.classes
 
-        def make_durable(commit: Commit) -> None:
+        def make_durable(commit: Commit) -> Commit:
             tbox_validation.require_fit(self.abox(), before, self.classes)
-            self._write(commit, rdf.serialise(new, "ntriples"))
+            return self._write(commit, rdf.serialise(new, "ntriples"))
 
         return self._switch(commit, new, make_durable)
 
@@ -258,6 +331,7 @@ class SemanticMap:
         When the disk does not take them, all are refused and the map is as before.
         """
         log = self._undo_log = []
+        self._believed.clear()
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -281,7 +355,7 @@ class SemanticMap:
     def _take_back(self, memento: _Memento) -> None:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
-        self.reasoner.apply(delete=commit.inserted, insert=commit.retracted)
+        self._reverse(commit, before)
         self.places.take(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
@@ -289,6 +363,7 @@ class SemanticMap:
             else:
                 self._entities[name] = entity
         self.seq = commit.seq - 1
+        self.digest = self._journal.digest(self.seq).hex()
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
         """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
@@ -311,11 +386,12 @@ class SemanticMap:
 
     def picture(self) -> Checkpoint:
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        self.believe_places()
         self._pictured = self.seq, self._changed
         columns = self.reasoner.columns()
         return Checkpoint(
             seq=self.seq,
-            triples=() if columns is not None else tuple(self.abox()),
+            triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),
             columns=columns,
             entities=tuple(self._entities.values()),
             read_by=conclusions_format.mark(),
@@ -361,9 +437,13 @@ class SemanticMap:
 
     def _replay(self, start: Checkpoint) -> None:
         is_ours = start.read_by == conclusions_format.mark()
-        if start.columns is None or not is_ours or not self.reasoner.fill(start.columns):
-            self._change(insert=tuple(start.said()))
+        if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
+            self.reasoner.believe(aside=start.triples)
+            self._believes = True
+        else:
+            self._change(insert=tuple(start.said()), lenient=True)
         self.seq = self._checkpointed = start.seq
+        self.digest = self._journal.digest(start.seq).hex()
         if start.seq == 0:
             self._show(entity_reading.of_the_tbox(self.reasoner, self.classes))
         elif is_ours:
@@ -373,12 +453,14 @@ class SemanticMap:
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    self._switch(commit, self.tbox_at(commit.seq), lambda _: None)
+                    self._switch(commit, self.tbox_at(commit.seq), _as_it_is)
                 else:
-                    self._apply(commit, lambda _: None)
+                    self._apply(commit, _as_it_is)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._progress()
+        if self.seq > start.seq or start.read_by != conclusions_format.mark():
+            self.follow_places()  # else the entities have the classes that they have by their places
 
     def _signed(
         self,
@@ -408,28 +490,31 @@ class SemanticMap:
         )
 
     def _switch(
-        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], None]
+        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
         """Like `_apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
-        before = self.tbox, self.reasoner, self.classes
+        before = self.tbox, self.reasoner, self.classes, self.beliefs
         abox = {*self.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
             self.tbox, self.reasoner = tbox, tbox_validation.compiled(tbox)
             self.classes = ClassTable(self.reasoner)
-            self._change(insert=abox)
+            self.beliefs = Beliefs(self.reasoner, self.classes.limits, self._progress)
+            self._change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in self._entities.values()}
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
-            make_durable(commit)
+            if self._follows:
+                commit = self._with_places_anew(commit)
+            commit = make_durable(commit)
         except BaseException:
-            self.tbox, self.reasoner, self.classes = before
+            self.tbox, self.reasoner, self.classes, self.beliefs = before
             raise
         return self._taken(commit)
 
     def _apply(
         self,
         commit: Commit,
-        make_durable: Callable[[Commit], None],
+        make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
     ) -> Commit:
         """Change the triples, check them, make the commit durable, and only then let the entities show it."""
@@ -438,42 +523,101 @@ class SemanticMap:
         owners = subjects.union(
             *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
-        change = self._change(delete=commit.retracted, insert=commit.inserted)
+        self.beliefs.begin()
+        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=not self._follows)
         try:
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
-            make_durable(commit)
+            if self._follows:
+                commit = self._with_places(commit)
+            commit = make_durable(commit)
         except BaseException:
-            self._change(delete=commit.inserted, insert=commit.retracted)
+            self._reverse(commit, {name: self._entities.get(name) for name in commit.names})
             raise
         return self._taken(commit)
 
-    def _change(self, *, delete: Collection[Triple] = (), insert: Collection[Triple]) -> Change:
-        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent."""
+    def _reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
+        """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
+        self._change(delete=commit.inserted, insert=commit.retracted)
+        if not self._follows:
+            return
+        after = {entity.name: entity for entity in commit.changed}
+        self.beliefs.follow(
+            changed=[entity for entity in before.values() if entity is not None],
+            removed=[name for name, entity in before.items() if entity is None],
+            before=lambda name: after.get(name) or self._entities.get(name),
+            retracted=commit.inserted,
+            inserted=commit.retracted,
+        )
+
+    def _with_places(self, commit: Commit) -> Commit:
+        """`commit` with the entities, too, whose classes change by where things are."""
+        entities = self._entities
+        moved = self.beliefs.follow(
+            changed=commit.changed,
+            removed=[departed.name for departed in commit.removed],
+            before=entities.get,
+            retracted=commit.retracted,
+            inserted=commit.inserted,
+        )
+        self._believed[commit.seq] = self.beliefs.believed
+        if not moved:
+            return commit
+        changed = {entity.name: entity for entity in commit.changed}
+        gone = {departed.name for departed in commit.removed}
+        for iri in sorted(moved):
+            name = v.entity_name(iri)
+            entity = changed.get(name) or (None if name in gone else entities.get(name))
+            if entity is not None and v.iri(entity.iri) == iri:
+                changed[name] = structs.replace(entity, types=self._types(entity))
+        return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
+
+    def _with_places_anew(self, commit: Commit) -> Commit:
+        """The same for a commit that replaces the TBox, so that everything is worked out anew."""
+        gone = {departed.name for departed in commit.removed}
+        after = {name: e for name, e in self._entities.items() if name not in gone}
+        after.update((entity.name, entity) for entity in commit.changed)
+        self.beliefs.fill(after)
+        for name, entity in after.items():
+            after[name] = structs.replace(entity, types=self._types(entity))
+        changed = tuple(e for name, e in after.items() if e != self._entities.get(name))
+        return structs.replace(commit, changed=changed)
+
+    def _types(self, entity: Entity) -> tuple[str, ...]:
+        """The classes of an entity as it is now, by what is computed, too."""
+        return self.classes.spoken_types(self.reasoner.types(v.iri(entity.iri)))
+
+    def _change(
+        self, *, delete: Collection[Triple] = (), insert: Collection[Triple], lenient: bool = False
+    ) -> Change:
+        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent.
+
+        When it is `lenient`, what is asserted of places and contradicts the rest is set aside.
+        """
         try:
             if len(delete) + len(insert) <= PART or not self.reasoner.is_compiled:
-                return self.reasoner.apply(delete=delete, insert=insert)
-            return self._change_in_parts(delete, insert)
+                return self.beliefs.change(delete, insert, lenient=lenient)
+            return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
             raise proofs.refusal(error) from None
 
-    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple]) -> Change:
+    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple], lenient: bool) -> Change:
         """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
-        reasoner, changes = self.reasoner, list[Change]()
+        reasoner, changes = self.beliefs, list[Change]()
         deleted, inserted = list[Triple](), list[Triple]()
         try:
             for part in parts(delete, PART, self._progress):
-                changes.append(reasoner.apply(delete=part))
+                changes.append(reasoner.change(part, (), lenient=lenient))
                 deleted += part
             for part in parts(insert, PART, self._progress):
-                changes.append(reasoner.apply(insert=part))
+                changes.append(reasoner.change((), part, lenient=lenient))
                 inserted += part
         except BaseException:
-            reasoner.apply(delete=inserted, insert=deleted)
+            reasoner.change(inserted, deleted)
             raise
         return Change.together(changes)
 
     def _taken(self, commit: Commit) -> Commit:
-        self.seq = commit.seq
+        self.seq, self.digest = commit.seq, commit.digest
         self.places.take(commit.names, commit.retracted, commit.inserted)
         self._changed += len(commit.inserted) + len(commit.retracted)
         if self._undo_log is not None:
@@ -509,3 +653,8 @@ class SemanticMap:
 
     def _show(self, changed: Iterable[Entity]) -> None:
         self._entities.update((entity.name, entity) for entity in changed)
+
+
+def _as_it_is(commit: Commit) -> Commit:
+    """One that is durable already."""
+    return commit

@@ -23,7 +23,7 @@ def headline(commit: Commit) -> str:
 
 
 def page(commit: Commit) -> str:
-    """The whole commit as Markdown: who, when, why, the entities it touched, the triples."""
+    """The whole commit as Markdown: who, when, why, the entities it touched, its notes, the triples."""
     when = datetime.fromtimestamp(commit.stamp_ns / 1e9, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     who = f"**{commit.source}** {commit.agent}".strip()
     sure = "" if commit.confidence is None else f" · confidence {commit.confidence:.2f}"
@@ -33,6 +33,7 @@ def page(commit: Commit) -> str:
         commit.reason,
         *(_bullet(entity) for entity in commit.changed[:_LINES]),
         *(f"- **{gone.name}** left the map" for gone in commit.removed[:_LINES]),
+        *(f"> {note}" for note in commit.notes),
         _triples("Added", "+", commit.inserted),
         _triples("Removed", "-", commit.retracted),
         f"`{commit.id}`",

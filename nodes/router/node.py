@@ -7,11 +7,12 @@ session. Everybody connects again by themselves, within a fraction of a second.
 from __future__ import annotations
 
 import signal
+from datetime import UTC, datetime, timedelta
 
 from msgspec import structs
 
 from nodes import bus
-from nodes.identity.register import LiveRegister
+from nodes.identity.register import LiveRegister, Register
 from nodes.router.access import access_control
 from nodes.router.config import RouterConfig
 from nodes.runtime.loop import Node
@@ -20,36 +21,62 @@ from schemas import keys
 _LOOK_S = 0.5
 
 
-class _Signals:
-    """Told to stop? Sessions come and go, so it is not a node's own business."""
+_TELL_S = 60.0
+_SOON = timedelta(days=30)
 
-    def __init__(self) -> None:
-        self.stopped = False
-        self.node: Node | None = None
-        for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, self._stop)
 
-    def _stop(self, *_: object) -> None:
-        self.stopped = True
-        if self.node is not None:
-            self.node.stop()
+def in_words(register: Register, now: datetime) -> str:
+    """How many are admitted, and whose certificate expires next, if that is soon."""
+    said = f"{len(register.admitted)} certificates"
+    valid = [member for member in register.admitted if member.expires > now]
+    first = min(valid, key=lambda member: member.expires, default=None)
+    if len(valid) < len(register.admitted):
+        said += f", {len(register.admitted) - len(valid)} of them expired"
+    if first is not None and first.expires - now < _SOON:
+        said += f"; that of {first.name} expires on {first.expires:%Y-%m-%d}"
+    return said
+
+
+class Router:
+    """Routes for one register after another, until it is told to stop."""
+
+    def __init__(self, config: RouterConfig) -> None:
+        """Raises BadFile for a folder without keys."""
+        self._network = config.network
+        self._live = LiveRegister(config.keys)
+        self._node: Node | None = None
+        self._stopped = False
+
+    def run(self) -> None:
+        """Route until stopped."""
+        while not self._stopped:
+            self._route(self._live.now)
+
+    def stop(self) -> None:
+        """End `run`; fit for a signal's handler."""
+        self._stopped = True
+        if self._node is not None:
+            self._node.stop()
+
+    def _route(self, register: Register) -> None:
+        """Admit those of `register` until there is another one."""
+        network = structs.replace(self._network, access=access_control(register.admitted))
+        with bus.open_session(network) as session:
+            node = self._node = Node(keys.ROUTER, session)
+
+            def look() -> None:
+                if self._stopped or self._live.now is not register:
+                    node.stop()
+
+            node.ready(in_words(register, datetime.now(UTC)))
+            node.every(_TELL_S, lambda: node.describe(in_words(register, datetime.now(UTC))))
+            node.every(_LOOK_S, look)
+            node.run()
 
 
 def run(config: RouterConfig) -> None:
-    """Route until stopped. Raises BadFile for a folder without keys."""
-    signals, live = _Signals(), LiveRegister(config.keys)
-    while not signals.stopped:
-        register = live.now
-        network = structs.replace(config.network, access=access_control(register.admitted))
-        with bus.open_session(network) as session:
-            node = signals.node = Node(keys.ROUTER, session)
-            node.ready(f"{len(register.admitted)} certificates")
-
-            def look(node: Node = node, register: object = register) -> None:
-                if live.now is not register:
-                    node.stop()
-
-            node.every(_LOOK_S, look)
-            if not signals.stopped:
-                node.run()
-            signals.node = None
+    """Route until SIGTERM or SIGINT."""
+    router = Router(config)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: router.stop())
+    router.run()

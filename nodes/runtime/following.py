@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from nodes.runtime.loop import Node
 from nodes.runtime.map_replica import MapReplica
-from schemas import keys
+from schemas import errors, keys
 from schemas.calls import Call
 from schemas.commands import Classes
 from schemas.commits import Commit, Effects, Snapshot
@@ -21,6 +21,8 @@ from schemas.entities import ClassInfo
 from schemas.health import Health
 
 _LOOK_S = 0.2
+_BEHIND_S = 3.0
+"""A knowledge base that is behind the replica for so long never made what the replica is ahead by."""
 
 C = TypeVar("C", Commit, Effects)
 
@@ -57,6 +59,8 @@ class Follower(Generic[C]):
         self._fetching = False
         self._begun_ns = 0
         self._kb_started_ns = 0
+        self._ahead: tuple[int, float] | None = None
+        """A commit that the replica has and the knowledge base had not, and since when."""
         self._there = -1
         """The last commit, as of the knowledge base's last beat but one."""
         node.follow(topic, self._on_commit)
@@ -73,14 +77,28 @@ class Follower(Generic[C]):
         """Another process of the knowledge base may know another map, or less of the same."""
         if health.node != "kb_node":
             return
-        self._notice(health.commit)
         if health.started_ns == self._kb_started_ns:
+            self._notice(health.commit)
+            self._compare(health)
             return
         is_another = self._kb_started_ns or health.started_ns > self._begun_ns
         self._kb_started_ns = health.started_ns
         if self._replica.seq >= 0 and is_another:
             self._replica.doubt()
             self._fetch()
+
+    def _compare(self, health: Health) -> None:
+        """What the knowledge base says of its last commit, with what was heard of it."""
+        replica = self._replica
+        if health.commit is None or replica.seq < 0:
+            return
+        replica.confirm(health.commit, health.digest)
+        now_s = time.monotonic()
+        if self._ahead is None or health.commit >= self._ahead[0]:
+            self._ahead = (replica.seq, now_s) if replica.seq > health.commit else None
+        elif now_s - self._ahead[1] > _BEHIND_S:
+            self._ahead = None
+            replica.doubt()
 
     def _notice(self, commit: int | None) -> None:
         """What the knowledge base had at its last beat and is not here by now has been missed."""
@@ -124,9 +142,12 @@ class Follower(Generic[C]):
 
     def _ask(self, call: Call[Any], take: Callable[[Any], None]) -> None:
         def on_done(done: Future[Any]) -> None:
-            if done.exception() is None:
+            try:
                 take(done.result())
-            else:
+            except errors.NoAnswer:
                 self._fetching = False
+            except Exception as error:
+                self._fetching = False
+                self._node.report(f"cannot follow the map: {type(error).__name__}: {error}")
 
         self._node.ask_later(keys.BRIDGE, call).add_done_callback(on_done)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Literal
 
 from nodes import bus
+from nodes.runtime.notify import notify
 from schemas import codec, keys
 from schemas.health import Health
 
@@ -29,7 +30,7 @@ class Heartbeat:
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
         self._detail: Callable[[], str] = str
-        self._commit: Callable[[], int] | None = None
+        self._head: Callable[[], tuple[int | None, str]] = lambda: (None, "")
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
@@ -41,6 +42,7 @@ class Heartbeat:
         if now_s < self.due_s:
             return
         self.due_s = now_s + _PERIOD_S
+        commit, digest = self._head()
         health = Health(
             node=self._name,
             pid=os.getpid(),
@@ -49,9 +51,11 @@ class Heartbeat:
             state=self._state,
             detail=self._detail(),
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
-            commit=None if self._commit is None else self._commit(),
             notes=self._notes,
+            commit=commit,
+            digest=digest,
         )
+        notify(health)
         self._health.put(codec.encode(health))
 
     def ready(self, detail: str) -> None:
@@ -68,9 +72,9 @@ class Heartbeat:
         """Say this of the node's state, from the next beat on; a function is asked at each beat."""
         self._detail = detail if callable(detail) else lambda: detail
 
-    def count(self, commit: Callable[[], int]) -> None:
-        """Tell the number of the last commit with each beat, from the next one on."""
-        self._commit = commit
+    def head(self, head: Callable[[], tuple[int, str]]) -> None:
+        """Tell the number and the digest of the last commit with each beat, from the next one on."""
+        self._head = head
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Say this of what the node works with, from now on."""

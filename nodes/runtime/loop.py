@@ -16,6 +16,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
+from functools import partial
 from itertools import count
 from typing import Any, TypeVar
 
@@ -177,17 +178,21 @@ class Node:
         future: Future[Any] = Future()
         deadline_s = time.monotonic() + patience_s
 
-        def send() -> None:
-            bus.ask_later(
-                self.session,
-                self._prefix(prefix),
-                call.VERB,
-                call,
-                reply_type(type(call)),
-                answer,
-                timeout_s=timeout_s,
-                lifelines=self._lifelines,
-            )
+        def send(everybody: bool = False) -> None:
+            try:
+                bus.ask_later(
+                    self.session,
+                    self._prefix(prefix),
+                    call.VERB,
+                    call,
+                    reply_type(type(call)),
+                    answer,
+                    timeout_s=timeout_s,
+                    lifelines=self._lifelines,
+                    everybody=everybody,
+                )
+            except Exception as error:  # whoever waits for the future would wait for ever
+                future.set_exception(error)
 
         def answer(read: Callable[[], bus.Encoded]) -> None:
             self._events.put(lambda: take(read))
@@ -196,6 +201,12 @@ class Node:
             try:
                 reply = read()
                 future.set_result(reply.decode() if decoded else reply)
+            except bus.ForeignReply as error:
+                if time.monotonic() > deadline_s + bus.PATIENCE_S:
+                    future.set_exception(error)
+                    return
+                self.report(error.text)
+                self._at(time.monotonic() + _AGAIN_S, partial(send, everybody=True))
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)
@@ -234,9 +245,9 @@ class Node:
         """What the heartbeats say of the node's state, from the next one on; a function is asked by each."""
         self._heartbeat.describe(detail)
 
-    def count(self, commit: Callable[[], int]) -> None:
-        """Let the heartbeats tell the number of the last commit."""
-        self._heartbeat.count(commit)
+    def head(self, head: Callable[[], tuple[int, str]]) -> None:
+        """Let the heartbeats tell the number and the digest of the last commit."""
+        self._heartbeat.head(head)
 
     def note(self, notes: tuple[str, ...]) -> None:
         """What the heartbeats say of what the node works with, from now on."""

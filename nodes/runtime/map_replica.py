@@ -11,6 +11,8 @@ from schemas.entities import Entity
 
 PAGE: Final = 5000
 """Entities in a page of a snapshot: some megabytes, and some milliseconds of the knowledge base."""
+_DIGESTS: Final = 1000
+"""Commits whose digests are remembered."""
 
 
 _MOST_AHEAD: Final = 100
@@ -25,6 +27,7 @@ class SnapshotPages:
         self.are_complete = False
         self._shared = SharedParts()
         self._seq: int | None = None
+        self._digest = ""
         self._entities: list[Entity] = []
 
     @staticmethod
@@ -35,7 +38,7 @@ class SnapshotPages:
     def take(self, page: Snapshot) -> None:
         """The reply to `query`, which asks for the next page from then on."""
         if self._seq is None:
-            self._seq = page.seq
+            self._seq, self._digest = page.seq, page.digest
         self._entities += map(self._shared.entity, page.entities)
         self.are_complete = not page.more
         if page.more:
@@ -45,23 +48,35 @@ class SnapshotPages:
     def snapshot(self) -> Snapshot:
         """All that was fetched, with the number of the first page: what came later is taken again."""
         assert self._seq is not None
-        return Snapshot(seq=self._seq, entities=tuple(self._entities))
+        return Snapshot(seq=self._seq, entities=tuple(self._entities), digest=self._digest)
 
 
 C = TypeVar("C", Commit, Effects)
 
 
 class MapReplica(Generic[C]):
-    """The entities by name, as of commit `seq`; -1 before a first snapshot."""
+    """The entities by name, as of commit `seq`; -1 before a first snapshot.
+
+    Anybody may publish what looks like a commit. So it remembers the digests of those that it took, and
+    compares: where the knowledge base says another one, all of it is in doubt, and a snapshot counts.
+    """
 
     def __init__(self) -> None:
         self.seq = -1
         self.entities: dict[str, Entity] = {}
         self._heard = -1
+        self._lacking = -1
         self._doubted = False
         self._ahead: dict[int, C] = {}
         """Commits that came before those they follow: a reply may be read while others wait to be."""
         self._during_pages: dict[int, C] | None = None
+        self._digests: dict[int, str] = {}
+        self._confirmed = -1
+
+    @property
+    def is_confirmed(self) -> bool:
+        """Is it current, and does the knowledge base say so itself: in a reply, a snapshot, a heartbeat?"""
+        return self.is_current and self._confirmed == self.seq
 
     @property
     def is_current(self) -> bool:
@@ -85,19 +100,30 @@ class MapReplica(Generic[C]):
             self._during_pages = None
             return False
         self._doubted = False
-        self.seq = snapshot.seq
+        self.seq = self._confirmed = snapshot.seq
+        self._digests = {snapshot.seq: snapshot.digest}
         self.entities = {entity.name: entity for entity in snapshot.entities}
+        self._forget_what_never_was(snapshot.seq)
         since, self._during_pages = {**self._ahead, **(self._during_pages or {})}, None
         self._ahead.clear()
         for _, commit in sorted(since.items()):
             self.take(commit)
         return True
 
+    def _forget_what_never_was(self, seq: int) -> None:
+        """A commit that was heard of and that two snapshots lack was never made."""
+        if self._heard > seq and self._heard == self._lacking:
+            self._heard = seq
+            self._ahead.clear()
+        self._lacking = self._heard
+
     def take(self, commit: C) -> bool:
         """Take over a commit. False if a snapshot is needed.
 
         That is so if the commit is abridged, one before it was missed, or all of it is in doubt.
         """
+        if commit.seq <= self.seq:
+            self._compare(commit.seq, commit.digest)
         self._heard = max(self._heard, commit.seq)
         if self._during_pages is not None:
             self._during_pages[commit.seq] = commit
@@ -112,13 +138,30 @@ class MapReplica(Generic[C]):
     def _apply(self, commit: C) -> None:
         """Let the entities be as the next commit leaves them."""
         self.seq = commit.seq
+        self._digests[commit.seq] = commit.digest
+        self._digests.pop(commit.seq - _DIGESTS, None)
         for gone in commit.removed:
             self.entities.pop(gone.name, None)
         for entity in commit.changed:
             self.entities[entity.name] = entity
 
+    def confirm(self, seq: int, digest: str) -> None:
+        """The knowledge base itself says that this is commit `seq`, and with it all that came before."""
+        if self._compare(seq, digest):
+            self._confirmed = max(self._confirmed, seq)
+
+    def _compare(self, seq: int, digest: str) -> bool:
+        """Is it known that this is commit `seq`? All is in doubt if another one is known."""
+        known = self._digests.get(seq, "")
+        if known and digest and known != digest:
+            self.doubt()
+        return bool(known) and known == digest
+
     def doubt(self) -> None:
-        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number."""
+        """Another knowledge base may know less, after a repair: its snapshot counts, whatever its number.
+
+        So it is when commits contradict one another.
+        """
         self._heard = -1
         self._doubted = True
         self._ahead.clear()

@@ -30,3 +30,5 @@ class SimConfig:
     window: bool = False
     cameras: CameraConfig = field(default_factory=CameraConfig)
     network: Network = field(default_factory=Network)
+    data: Path | None = None
+    """The system's data folder, where model files may be, too."""

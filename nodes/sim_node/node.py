@@ -59,7 +59,8 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        self._world = open_world(config.world, Models(config.models), node.tick, self._classes(config.world))
+        models = Models(config.models, config.data)
+        self._world = open_world(config.world, models, node.tick, self._classes(config.world))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)

@@ -7,24 +7,31 @@ import contextlib
 import hashlib
 import io
 import os
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import time
 import xmlrpc.client
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from typing import Any
 
 from supervisor.xmlrpc import SupervisorTransport
 
-from nodes.supervisor import registry
+from nodes.runtime.notify import NOTIFY_VARIABLE
+from nodes.supervisor import orphans, registry
 from nodes.supervisor.privacy import UMASK, make_private
 from nodes.supervisor.settings import SETTINGS, Settings
 from schemas import codec, errors
 
 GROUP = "semmap"
-_SOCKET = f"semmap-{os.getuid()}-{{}}.sock"
+_SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
 _STOP_WAIT_S = 3
+_ANSWER_S = 3.0
+"""Seconds: supervisord answers within milliseconds, or it hangs."""
+_NO_ANSWER = (OSError, HTTPException, xmlrpc.client.Error)
 _STOP_WAITS_S = {"kb_node": 30}
 """Longer for those who may be writing: a checkpoint of a million entities takes some time."""
 LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
@@ -44,9 +51,18 @@ class Supervisor:
 
     @property
     def socket(self) -> Path:
-        """Its control socket: in the temporary folder, because paths of sockets must be short."""
-        digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
-        return Path(tempfile.gettempdir()) / _SOCKET.format(digest)
+        """Its control socket."""
+        return self._temporary(".sock")
+
+    @property
+    def notices(self) -> Path:
+        """The socket on which its nodes tell `semmap up` how they are."""
+        return self._temporary(".notices")
+
+    @property
+    def lock(self) -> Path:
+        """The file that `semmap up` holds a lock of."""
+        return self.data / "up.lock"
 
     @property
     def settings(self) -> Settings:
@@ -58,7 +74,8 @@ class Supervisor:
         self.logs.mkdir(parents=True, exist_ok=True)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
-        command = [sys.executable, "-P", "-m", "supervisor.supervisord", "-n", "-c", str(self._conf_path)]
+        command = [sys.executable, "-P", "-m", "nodes.supervisor.daemon", "-n", "-c", str(self._conf_path)]
+        environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
         with (self.logs / "supervisord.out").open("wb") as out:
             make_private(self.data)
             return subprocess.Popen(
@@ -67,6 +84,7 @@ class Supervisor:
                 stdout=out,
                 stderr=out,
                 start_new_session=True,
+                env=environment,
                 umask=UMASK,
             )
 
@@ -89,37 +107,47 @@ class Supervisor:
     def is_running(self) -> bool:
         """Does it answer?"""
         try:
-            self._rpc().supervisor.getPID()
-        except (OSError, xmlrpc.client.Error):
+            with self._rpc() as rpc:
+                rpc.supervisor.getPID()
+        except _NO_ANSWER:
             return False
         return True
 
     def processes(self) -> dict[str, dict[str, Any]]:
-        """State of each node's process, by node; empty when supervisord does not answer."""
+        """State of each node's process, by node. Raises NoAnswer when supervisord does not answer."""
         try:
-            return {info["name"]: info for info in self._rpc().supervisor.getAllProcessInfo()}
-        except (OSError, xmlrpc.client.Error):
-            return {}
+            with self._rpc() as rpc:
+                return {info["name"]: info for info in rpc.supervisor.getAllProcessInfo()}
+        except _NO_ANSWER:
+            raise errors.NoAnswer("supervisord does not answer") from None
 
-    def restart(self, node: str) -> None:
-        """Kill a node that hangs, then start it anew: there are never two of one kind."""
-        rpc, name = self._rpc().supervisor, f"{GROUP}:{node}"
-        with contextlib.suppress(xmlrpc.client.Fault):  # it has ended by itself
-            rpc.signalProcess(name, "KILL")  # it would not heed anything else, however long it may take
-            rpc.stopProcess(name)
-        rpc.startProcess(name)
+    def replace(self, pid: int) -> None:
+        """Kill a node's process and those that it has started; supervisord starts it again."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(pid, signal.SIGKILL)
 
     def shut_down(self) -> None:
-        """Stop the nodes and supervisord itself. Raises NoAnswer when it does not run."""
+        """Stop the nodes and supervisord itself, and what was left behind by one that was killed.
+
+        Raises NoAnswer when nothing of it runs.
+        """
         try:
-            self._rpc().supervisor.shutdown()
-        except (OSError, xmlrpc.client.Error):
+            with self._rpc() as rpc:
+                rpc.supervisor.shutdown()
+        except _NO_ANSWER:
+            if self.end_leftovers():
+                return
             others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
             hint = f"; running systems: {others}" if others else ""
             raise errors.NoAnswer(f"no system is running on {self.data}{hint}") from None
         deadline = time.monotonic() + LONGEST_STOP_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)
+        self.end_leftovers()
+
+    def end_leftovers(self) -> int:
+        """End the processes of this data folder that run without `semmap up`; how many there were."""
+        return orphans.end_all(self._conf_path, self._settings_path)
 
     def last_words(self, node: str) -> str:
         """The last line that a node wrote to its log."""
@@ -131,8 +159,13 @@ class Supervisor:
         """The file that a node writes to."""
         return self.logs / f"{node}.log"
 
+    def _temporary(self, suffix: str) -> Path:
+        """A socket in the temporary folder, because paths of sockets must be short."""
+        digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
+        return Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
+
     def _rpc(self) -> Any:
-        return _rpc(self.socket)
+        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=_Transport(self.socket))
 
     def _conf(self, settings: Settings) -> str:
         conf = configparser.RawConfigParser()
@@ -170,6 +203,20 @@ class Supervisor:
         return text.getvalue()
 
 
-def _rpc(socket: Path) -> Any:
-    transport = SupervisorTransport(serverurl=f"unix://{socket}")
-    return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
+class _Transport(SupervisorTransport):  # type: ignore[misc]
+    """Over the unix socket, without waiting longer than a supervisord takes that is well."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(serverurl=f"unix://{path}")
+        self._get_connection = lambda: _Connection(path)
+
+
+class _Connection(HTTPConnection):
+    def __init__(self, path: Path) -> None:
+        super().__init__("localhost", timeout=_ANSWER_S)
+        self._path = path
+
+    def connect(self) -> None:
+        self.sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.sock.settimeout(_ANSWER_S)
+        self.sock.connect(str(self._path))

@@ -13,9 +13,11 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from nodes.supervisor.orphans import end_when_orphaned
 from nodes.supervisor.privacy import UMASK
 from nodes.supervisor.settings import Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
+from ontology.model_shapes import add_own
 from schemas import codec, errors
 from schemas.keys import ROUTER
 
@@ -28,14 +30,20 @@ def run_node(name: str, settings: Settings) -> None:
 
 
 def seed(settings: Settings) -> None:
-    """Create the journal, or report on stdout that it exists; validates the world first."""
+    """Create the journal, or report on stdout that it exists; validates the world and reads models first."""
     from nodes.kb_node.storage.existing_map import existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from nodes.sim_node.models.sources import Models
         from nodes.sim_node.world_file import open_world
 
-        open_world(Path(settings.world), Models(Path(settings.models) if settings.models else None))
+        models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
+        open_world(Path(settings.world), models)
+    if settings.models is not None or _own_shapes(settings).is_file():
+        from nodes.sim_node.models.write_shapes import write_own
+
+        Path(settings.data).mkdir(parents=True, exist_ok=True)
+        write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -58,10 +66,16 @@ def seed(settings: Settings) -> None:
     print(told)
 
 
+def _own_shapes(settings: Settings) -> Path:
+    """Where the shapes of the models in `--models` are, for the nodes that do not read such files."""
+    return Path(settings.data) / "model_shapes.json"
+
+
 def _kb_node(settings: Settings) -> None:
     from nodes.kb_node.config import KbConfig
     from nodes.kb_node.node import run
 
+    add_own(_own_shapes(settings))
     run(KbConfig(data=Path(settings.data), network=settings.network("kb_node")))
 
 
@@ -69,6 +83,7 @@ def _coordinator(settings: Settings) -> None:
     from nodes.coordinator.config import CoordinatorConfig, Thresholds
     from nodes.coordinator.node import run
 
+    add_own(_own_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
     keys = None if settings.secure is None else Path(settings.secure)
     run(CoordinatorConfig(settings.truth, thresholds, settings.network("coordinator"), keys))
@@ -84,7 +99,7 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network))
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, Path(settings.data)))
 
 
 def _perception_node(settings: Settings) -> None:
@@ -126,6 +141,7 @@ _LAUNCHERS: dict[str, Callable[[Settings], None]] = {
 def main(argv: list[str]) -> int:
     """Exit status: 0 after a stop, 1 or 2 for an error that a restart would not mend."""
     name, settings_path = argv
+    end_when_orphaned()
     os.umask(UMASK)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     settings: Settings = codec.decode(Path(settings_path).read_bytes(), Settings)

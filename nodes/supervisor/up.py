@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-import queue
+import fcntl
+import os
 import re
 import shlex
 import signal
 import socket
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from msgspec import structs
 
@@ -19,41 +21,78 @@ from nodes import bus
 from nodes.identity import SUPERVISOR, Identity
 from nodes.supervisor import presence, registry
 from nodes.supervisor.control import LONGEST_STOP_S, Supervisor
+from nodes.supervisor.notices import Notices
 from nodes.supervisor.settings import Settings
 from nodes.supervisor.watchdog import Watchdog
 from schemas import errors, keys
 from schemas.calls import reply_type
-from schemas.commands import Classes
+from schemas.commands import Classes, Status
 from schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
+_ANSWERS_WITHIN_S = 5.0
+"""A supervisord that does not answer for so long hangs."""
 _LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
+_LOOK_S = 0.2
+_INTRODUCED_S = 3.0
+"""Seconds: hearts beat once a second."""
+_RUNS = ("STARTING", "RUNNING")
 
 
 def up(settings: Settings, say: Callable[[str], None]) -> None:
     """Run the system in the foreground until SIGINT or SIGTERM, or until it is told to go `down`.
 
-    Raises the reason when a node cannot start; nothing is left running then.
+    Raises the reason when a node cannot start, and InternalError when supervisord ends by itself. Nothing is
+    left running then. What an `up` that was killed has left behind is ended first.
     """
     supervisor = Supervisor(Path(settings.data))
-    if supervisor.is_running():
-        down = f"semmap down --data {shlex.quote(settings.data)}"
-        raise errors.Refused(f"a system is already running on {settings.data}; stop it with: {down}")
-    _require_free(settings.listen)
-    if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
-        settings = structs.replace(settings, live_view=_live_view())
-    with presence.announced(settings.reachable):
-        say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
-        process = supervisor.start(settings)
-        try:
-            with registry.entered(
-                data=supervisor.data, listen=settings.listen, reachable=settings.reachable, pid=process.pid
-            ):
-                _Foreground(supervisor, settings, process, say).run()
-        finally:
-            _stop(process)
-            say("stopped")
+    with _alone(supervisor):
+        if supervisor.end_leftovers():
+            say(f"{'before':<{_COLUMN}} ended what an earlier semmap up had left running")
+        _require_free(settings.listen)
+        if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
+            settings = structs.replace(settings, live_view=_live_view())
+        with presence.announced(settings.reachable):
+            say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
+            notices = Notices(supervisor.notices)
+            process = supervisor.start(settings)
+            try:
+                with registry.entered(
+                    data=supervisor.data,
+                    listen=settings.listen,
+                    reachable=settings.reachable,
+                    pid=process.pid,
+                ):
+                    _Foreground(supervisor, settings, process, notices, say).run()
+            finally:
+                _stop(process)
+                supervisor.end_leftovers()
+                notices.close()
+                say("stopped")
+
+
+@contextlib.contextmanager
+def _alone(supervisor: Supervisor) -> Iterator[None]:
+    """Hold the lock of the data folder, which the kernel releases however this process ends.
+
+    Raises Refused when another `semmap up` has it, BadFile when there can be none.
+    """
+    try:
+        supervisor.data.mkdir(parents=True, exist_ok=True)
+        held = os.open(supervisor.lock, os.O_RDWR | os.O_CREAT, 0o600)
+    except OSError as error:
+        raise errors.BadFile(f"cannot store data in {supervisor.data}: {error.strerror}") from None
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        down = f"semmap down --data {shlex.quote(str(supervisor.data))}"
+        raise errors.Refused(
+            f"a system is already running on {supervisor.data}; stop it with: {down}"
+        ) from None
+    finally:
+        os.close(held)
 
 
 class _Foreground:
@@ -64,13 +103,15 @@ class _Foreground:
         supervisor: Supervisor,
         settings: Settings,
         process: subprocess.Popen[bytes],
+        notices: Notices,
         say: Callable[[str], None],
     ) -> None:
         self._supervisor = supervisor
         self._settings = settings
         self._process = process
+        self._notices = notices
         self._say = say
-        self._beats: queue.SimpleQueue[Health] = queue.SimpleQueue()
+        self._answered_s = time.monotonic()
         self._pids: dict[str, int] = {}
         self._watchdog = Watchdog()
         self._stopping = False
@@ -80,33 +121,68 @@ class _Foreground:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, self._on_signal)
         greeted = False
-        with contextlib.ExitStack() as stack:
-            session = None
-            while not self._stopping and self._process.poll() is None:
-                self._require_alive()
-                if session is None:
-                    session = self._follow(stack)
-                self._hear()
-                if session is not None and not greeted and set(self._pids) == set(self._settings.nodes):
-                    greeted = True
-                    self._tell_of_models(session)
-                    self._greet()
-                if not greeted and time.monotonic() > self._deadline_s:
-                    late = sorted(set(self._settings.nodes) - set(self._pids))
-                    raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
-                self._restart_what_hangs()
+        while not self._stopping and self._process.poll() is None:
+            self._look()
+            for health in self._notices.wait(_LOOK_S):
+                self._hear(health)
+            if not greeted and set(self._pids) == set(self._settings.nodes):
+                greeted = True
+                self._introduce()
+                self._greet()
+            if not greeted and time.monotonic() > self._deadline_s:
+                late = sorted(set(self._settings.nodes) - set(self._pids))
+                raise errors.NoAnswer(f"not ready after {_START_TIMEOUT_S:g} s: {', '.join(late)}")
+            self._replace_what_hangs()
+        if not self._stopping and self._process.returncode != 0:
+            raise errors.InternalError(
+                f"supervisord {_ending(self._process.returncode)}, and the nodes were stopped with it;"
+                " start again with: semmap up"
+            )
 
     def _on_signal(self, *_: object) -> None:
         self._stopping = True
 
-    def _follow(self, stack: contextlib.ExitStack) -> bus.Session | None:
-        """Join the network as soon as the coordinator listens."""
+    def _hear(self, health: Health) -> None:
+        if not self._watchdog.heard(health.node, health.pid):
+            return
+        if health.state == "starting":  # a large map takes its time, and tells so
+            self._deadline_s = time.monotonic() + _START_TIMEOUT_S
+        if health.state == "ready" and self._pids.get(health.node) != health.pid:
+            again = " again" if health.node in self._pids else ""
+            self._pids[health.node] = health.pid
+            self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
+            for note in health.notes:
+                self._say(f"{'TBox':<{_COLUMN}} {note}")
+
+    def _look(self) -> None:
+        """See which processes there are.
+
+        A node that ended with an error which no restart mends ends the start, with its last words; so does a
+        supervisord that hangs.
+        """
         try:
-            session = stack.enter_context(bus.open_session(self._network()))
+            processes = self._supervisor.processes()
+            self._answered_s = time.monotonic()
         except errors.NoAnswer:
-            return None
-        bus.follow(session, keys.HEALTH, lambda _, health: self._beats.put(health))
-        return session
+            if time.monotonic() - self._answered_s > _ANSWERS_WITHIN_S:
+                raise errors.InternalError(
+                    "supervisord does not answer any more, and was ended with the nodes; start again with:"
+                    " semmap up"
+                ) from None
+            return
+        self._watchdog.run_as(
+            {node: info["pid"] for node, info in processes.items() if info["statename"] in _RUNS}
+        )
+        for node, info in processes.items():
+            self._require_alive(node, info)
+
+    def _require_alive(self, node: str, info: dict[str, Any]) -> None:
+        # Killed by a signal it is "exited", too, for the moment until it is restarted.
+        gave_up = info["statename"] == "EXITED" and int(info["exitstatus"]) >= 0
+        ended = gave_up or info["statename"] == "FATAL"
+        if ended and not self._stopping and self._process.poll() is None:
+            words = self._supervisor.last_words(node)
+            raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
 
     def _network(self) -> bus.Network:
         secure = self._settings.secure
@@ -114,33 +190,24 @@ class _Foreground:
         own_config = self._settings.zenoh_config
         return bus.Network(connect=(self._settings.reachable,), identity=identity, own_config=own_config)
 
-    def _hear(self) -> None:
-        with contextlib.suppress(queue.Empty):
-            health = self._beats.get(timeout=0.2)
-            self._watchdog.heard(health.node, health.pid)
-            if health.state == "starting":  # a large map takes its time, and tells so
-                self._deadline_s = time.monotonic() + _START_TIMEOUT_S
-            if health.state == "ready" and self._pids.get(health.node) != health.pid:
-                again = " again" if health.node in self._pids else ""
-                self._pids[health.node] = health.pid
-                self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
-                for note in health.notes:
-                    self._say(f"{'TBox':<{_COLUMN}} {note}")
+    def _replace_what_hangs(self) -> None:
+        for hang in self._watchdog.hanging():
+            self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
+            self._supervisor.replace(hang.pid)
 
-    def _require_alive(self) -> None:
-        """A node that ended with an error which no restart mends ends the start, with its last words."""
-        for node, info in self._supervisor.processes().items():
-            # Killed by a signal it is "exited", too, for the moment until it is restarted.
-            gave_up = info["statename"] == "EXITED" and int(info["exitstatus"]) >= 0
-            ended = gave_up or info["statename"] == "FATAL"
-            if ended and not self._stopping and self._process.poll() is None:
-                words = self._supervisor.last_words(node)
-                raise errors.Refused(f"{node} exited: {words} (log: {self._supervisor.log_of(node)})")
-
-    def _restart_what_hangs(self) -> None:
-        for node, reason in self._watchdog.hanging():
-            self._say(f"{node:<{_COLUMN}} {reason}: restarting it")
-            self._supervisor.restart(node)
+    def _introduce(self) -> None:
+        """Let the coordinator have heard of every node before anybody is told that the system is ready."""
+        with (
+            contextlib.suppress(errors.SemmapError, OSError),
+            bus.open_session(self._network()) as session,
+        ):
+            deadline_s = time.monotonic() + _INTRODUCED_S
+            while time.monotonic() < deadline_s:
+                status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
+                if {node.node for node in status.nodes if node.state == "ready"} >= self._pids.keys():
+                    break
+                time.sleep(0.05)
+            self._tell_of_models(session)
 
     def _tell_of_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""
@@ -184,6 +251,11 @@ def _require_free(endpoint: str) -> None:
             raise errors.Refused(
                 f"cannot listen on {endpoint}: {error.strerror}; choose another with --listen"
             ) from None
+
+
+def _ending(status: int) -> str:
+    """How a process ended, as a predicate."""
+    return f"was killed (signal {-status})" if status < 0 else f"ended with status {status}"
 
 
 def _live_view() -> str:

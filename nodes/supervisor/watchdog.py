@@ -3,18 +3,34 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 
-SILENT_S: Final = 30.0
+SILENT_S: Final = 4.0
 """A node that has not been heard of for so long hangs, unless it is at work."""
+UNHEARD_S: Final = 30.0
+"""The same for a process that has not been heard of yet: it may wait for others to start."""
 ENDLESS_S: Final = 900.0
 """Nothing that a node does without a word takes this long."""
-_AT_WORK: Final = 0.05
+_LOOK_AFTER_S: Final = 1.5
+"""A heart beats once a second. Who is silent for longer is looked at from then on."""
+_LOOKED_AT_S: Final = 2.0
+"""For so long at least, to tell whether it works."""
+_HELD_UP_S: Final = 2.0
+"""Whoever watches was held up himself if he looks so long after he looked last: the silence may be his."""
+_AT_WORK: Final = 0.03
 """The share of a core that a process at work uses at least, however busy the machine is."""
+
+
+class Hang(NamedTuple):
+    """A node whose process is to be replaced, and why."""
+
+    node: str
+    pid: int
+    reason: str
 
 
 @dataclass
@@ -23,52 +39,82 @@ class _Watched:
 
     pid: int
     heard_s: float
+    has_beaten: bool = False
     looked: tuple[float, float] | None = None
-    """While it is silent: when it was looked at, and the CPU time that it had used by then."""
+    """While it is silent: when it was first looked at, and the CPU time that it had used by then."""
 
 
-def cpu_seconds(pid: int) -> float:
-    """CPU time that a process has used; 0 for one that is gone."""
+def work_seconds(pid: int) -> float:
+    """CPU time that a process has used; without end while it waits for a disk, 0 for one that is gone."""
     try:
-        times = psutil.Process(pid).cpu_times()
+        process = psutil.Process(pid)
+        if process.status() == psutil.STATUS_DISK_SLEEP:
+            return float("inf")
+        times = process.cpu_times()
     except psutil.Error:
         return 0.0
     return float(times.user + times.system)
 
 
 class Watchdog:
-    """Heartbeats go in; nodes that hang come out. Long work may stop the heart, and is no hang."""
+    """Processes and their heartbeats go in; those that hang come out. Long work is no hang."""
 
     def __init__(
         self,
         *,
         clock: Callable[[], float] = time.monotonic,
-        cpu_of: Callable[[int], float] = cpu_seconds,
+        work_of: Callable[[int], float] = work_seconds,
     ) -> None:
         self._clock = clock
-        self._cpu_of = cpu_of
+        self._work_of = work_of
         self._watched: dict[str, _Watched] = {}
+        self._looked_s = clock()
 
-    def heard(self, node: str, pid: int) -> None:
-        """A heartbeat came."""
+    def run_as(self, pids: Mapping[str, int]) -> None:
+        """These are the processes of the nodes that run now, as supervisord says."""
         now_s = self._clock()
-        self._watched[node] = _Watched(pid, now_s)
+        for node in self._watched.keys() - pids.keys():
+            del self._watched[node]
+        for node, pid in pids.items():
+            if node not in self._watched or self._watched[node].pid != pid:
+                self._watched[node] = _Watched(pid, now_s)
 
-    def hanging(self) -> Iterator[tuple[str, str]]:
-        """Each node that hangs, with the reason; then it is given as much time again."""
+    def heard(self, node: str, pid: int) -> bool:
+        """A heartbeat came. False, and it says nothing, if that is not the node's process."""
+        watched = self._watched.get(node)
+        if watched is None or watched.pid != pid:
+            return False
+        watched.heard_s, watched.has_beaten, watched.looked = self._clock(), True, None
+        return True
+
+    def hanging(self) -> Iterator[Hang]:
+        """Each node that hangs; then it is given as much time again. To be called several times a second."""
         now_s = self._clock()
-        for node, watched in list(self._watched.items()):
+        held_up_s, self._looked_s = now_s - self._looked_s, now_s
+        for node, watched in self._watched.items():
+            if held_up_s > _HELD_UP_S:
+                watched.heard_s, watched.looked = now_s, None
+                continue
             silent_s = now_s - watched.heard_s
-            if silent_s <= SILENT_S / 2:
+            if silent_s <= _LOOK_AFTER_S:
                 continue
             if watched.looked is None:
-                watched.looked = now_s, self._cpu_of(watched.pid)
+                watched.looked = now_s, self._work_of(watched.pid)
                 continue
-            since_s, used_before_s = watched.looked
-            if silent_s <= SILENT_S or now_s - since_s < SILENT_S / 2:
+            since_s, worked_before_s = watched.looked
+            patience_s = SILENT_S if watched.has_beaten else UNHEARD_S
+            if silent_s <= patience_s or now_s - since_s < _LOOKED_AT_S:
                 continue
-            watched.looked = now_s, self._cpu_of(watched.pid)
-            is_at_work = watched.looked[1] - used_before_s >= _AT_WORK * (now_s - since_s)
+            worked_s = self._work_of(watched.pid)
+            is_at_work = max(worked_s, worked_before_s) == float("inf") or (
+                worked_s - worked_before_s >= _AT_WORK * (now_s - since_s)
+            )
             if not is_at_work or silent_s > ENDLESS_S:
-                self._watched[node] = _Watched(watched.pid, now_s)
-                yield node, f"silent for {silent_s:.0f} s{', though at work' if is_at_work else ''}"
+                watched.heard_s, watched.looked = now_s, None
+                yield Hang(
+                    node,
+                    watched.pid,
+                    f"silent for {silent_s:.0f} s{', though at work' if is_at_work else ''}",
+                )
+            elif now_s - since_s > SILENT_S:  # what it did long ago does not count
+                watched.looked = now_s, worked_s

@@ -1,8 +1,10 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
 from benchmarks.relations.__main__ import as_json
+from benchmarks.relations.flicker import gone
 from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
+from benchmarks.relations.watched import at_rest
 from benchmarks.table import Row
 from nodes.kb_node.relations.place_facts import Facts
 
@@ -31,6 +33,12 @@ def test_the_flat_is_as_it_was_described():
     assert all(name.startswith("door") for name, _, _ in found.extra)
 
 
+def test_things_at_rest_under_noisy_eyes_keep_their_relations():
+    went, hold = gone(seconds=30.0)
+    assert went == 0
+    assert hold > 35
+
+
 def test_the_rooms_are_of_tables_with_cups_on_them():
     facts = Facts()
     facts.update(there := rooms(100))
@@ -42,3 +50,9 @@ def test_the_rooms_are_of_tables_with_cups_on_them():
 def test_a_row_says_which_way_is_better():
     assert as_json(Row("F1", 0.9, "", 0.8, 0.9, more=True))["better"] == "higher"
     assert as_json(Row("move", 0.9, "ms", 1.0, 0.5))["better"] == "lower"
+
+
+def test_things_at_rest_are_watched():
+    """One second of cameras and perception: enough to know what stands on the table."""
+    found = at_rest(0.2, things=6)
+    assert (found.things, found.on_the_table, found.changes) == (6, 6, 0)

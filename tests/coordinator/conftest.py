@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.undo import undo
 from nodes.runtime.class_names import ClassNames
+from nodes.runtime.futures import settle
 from schemas import errors
 from schemas.bridge import Outcome
 from schemas.commits import Effects
@@ -69,6 +71,17 @@ def door(semantic_map):
     door.map.classes = ClassNames(semantic_map.class_table())
     door.map.begin(semantic_map.snapshot())
     return door
+
+
+def at_once(door):
+    """`change(change)` of a door that does it at once."""
+
+    def change(change):
+        future = Future()
+        settle(future, lambda: door.change(change))
+        return future
+
+    return change
 
 
 def _effects(commit):

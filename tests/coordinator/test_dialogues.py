@@ -164,3 +164,29 @@ def test_one_talk_alone_is_as_in_step_with_none(name):
     seen, expected = KnowledgeBase(), KnowledgeBase()
     (result,), (same,) = hold(alone(change(name)), seen), hold(in_step([change(name)]), expected)
     assert (type(result), str(result), seen.asked) == (type(same), str(same), expected.asked)
+
+
+def faulty_ask_later(message):
+    """Cannot even send."""
+    raise MemoryError("no memory to send")
+
+
+def test_what_cannot_be_asked_ends_the_talk_with_the_reason():
+    assert isinstance(hold_later(change("a"), faulty_ask_later).exception(), MemoryError)
+
+
+def test_an_answer_that_cannot_be_read_ends_the_talk_with_the_reason():
+    future = Future()
+    held = hold_later(in_step([change("a"), change("b")]), lambda _: future)
+    future.set_exception(MemoryError("no memory to read"))
+    assert isinstance(held.exception(timeout=0), MemoryError)
+
+
+def test_an_unexpected_exception_in_one_talk_leaves_the_others_alone(ask):
+    def broken():
+        yield MadeBy(ids=("x",))
+        raise MemoryError("no memory")
+
+    unexpected, expected = hold(in_step([broken(), change("a")]), ask)
+    assert isinstance(unexpected, MemoryError)
+    assert expected == "a"

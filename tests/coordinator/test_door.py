@@ -9,6 +9,7 @@ from msgspec import structs
 
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
+from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import Turns
 from nodes.runtime.futures import settle
 from ontology import vocabulary as v
@@ -182,10 +183,15 @@ def test_loading_a_name_twice_is_refused(door):
     assert set(door.map.entities) == {"a"}
 
 
+def follow(door, name, pose):
+    """The map takes over where a body came to rest."""
+    return door.change(Settled.of(door.map.entities, {name: pose}))
+
+
 def test_a_body_that_came_to_rest_changes_only_the_pose(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0), ref="seat")
     pose = Pose(position_m=(1.5, 1.0, 0.2), orientation_wxyz=orientation_from_yaw(0.3))
-    door.follow({"chair1": pose})
+    follow(door, "chair1", pose)
     chair = door.map.entity("chair1")
     assert (chair.pose, chair.preferred_reference) == (pose, "seat")
     assert (chair.pose_provenance.source, chair.shape_provenance.source) == ("scene", "operator")
@@ -211,7 +217,7 @@ def test_another_knowledge_base_may_know_less(door, semantic_map):
 
 def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
-    door.follow({"chair1": Pose(position_m=(1.5, 1.0, 0.0))})
+    follow(door, "chair1", Pose(position_m=(1.5, 1.0, 0.0)))
     add(door, name="chair2")
     assert door.change(c.Undo()).text == "undid commit 3"
     reply = door.change(c.Undo())
@@ -225,10 +231,10 @@ def test_bare_undo_takes_back_what_was_asked_for_with_its_settling(door):
 def test_a_hand_s_move_is_asked_for_and_can_be_undone(door):
     add(door, name="chair1", at=(1.0, 1.0, 0.0))
     door.hands.let_go(c.Move(name="chair1", at=(3.0, 1.0, 0.0), agent="ann"))
-    door.follow({"chair1": Pose(position_m=(3.0, 1.0, 0.0))})
+    follow(door, "chair1", Pose(position_m=(3.0, 1.0, 0.0)))
     posed = door.map.entity("chair1").pose_provenance
     assert (posed.source, posed.agent, posed.reason) == ("scene", "ann", "chair1 was moved by hand")
-    door.follow({"chair1": Pose(position_m=(3.5, 1.0, 0.0))})
+    follow(door, "chair1", Pose(position_m=(3.5, 1.0, 0.0)))
     assert door.map.entity("chair1").pose_provenance.reason == "chair1 came to rest"
     door.change(c.Undo())
     assert door.map.entity("chair1").pose.position_m == (1.0, 1.0, 0.0)
@@ -242,8 +248,8 @@ def test_a_hand_s_move_is_its_client_s_when_the_knowledge_base_was_away_at_first
     with monkeypatch.context() as away:
         away.setattr(door, "_ask", lambda call: raise_(errors.NoAnswer("it is being restarted")))
         with pytest.raises(errors.NoAnswer):
-            door.follow({"chair1": rests})
-    door.follow({"chair1": rests})
+            follow(door, "chair1", rests)
+    follow(door, "chair1", rests)
     assert door.map.entity("chair1").pose_provenance.agent == "ann"
     assert door.change(c.Undo()).text == "undid commit 2"
 

@@ -123,3 +123,26 @@ def test_an_error_is_the_result_of_its_change_and_a_fault_that_of_its_group(kb, 
     turns.go_on()
     kb.groups[1][1].set_exception(ZeroDivisionError())
     assert isinstance(third.exception(), ZeroDivisionError)
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_an_unexpected_exception_is_told_and_frees_the_turn(at_once):
+    futures = []
+
+    def together(changes):
+        if at_once and not futures:
+            futures.append(None)
+            raise MemoryError("no memory")
+        futures.append(Future())
+        return futures[-1]
+
+    turns = Turns(together)
+    first = move(turns, "a")
+    turns.go_on()
+    if not at_once:
+        futures[0].set_exception(MemoryError("no memory"))
+    assert isinstance(first.exception(timeout=0), MemoryError)
+    second = move(turns, "a")
+    turns.go_on()
+    futures[1].set_result([Changed(commit=1, text="a")])
+    assert second.result(timeout=0).commit == 1

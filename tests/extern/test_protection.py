@@ -138,3 +138,13 @@ def test_a_node_may_join_a_router_elsewhere(keys, tmp_path, monkeypatch):
     network = settings.network(name)
     assert (network.connect, network.listen) == (("tls/robot1.local:7447",), ())
     assert network.identity.name == "recorder"
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["udp/0.0.0.0:7447", "unixsock-stream//tmp/x", "tls/localhost:1#enable_mtls=false"]
+)
+def test_certificates_are_shown_over_tls_only(starting, keys, capsys, endpoint):
+    assert execute(["up", "--secure", str(keys), "--listen", endpoint]) == 2
+    assert "at endpoints of TLS only" in capsys.readouterr().err
+    assert execute(["list", "--identity", str(keys / "recorder"), "--connect", endpoint]) == 2
+    assert "at endpoints of TLS only" in capsys.readouterr().err

@@ -61,6 +61,13 @@ def test_a_folder_of_keys_is_not_made_anew(folder):
     assert (folder / "ca.key").read_bytes() == before
 
 
+@pytest.mark.parametrize("host", ["", "a b", "robot_1", "tls/robot1", "röbot"])
+def test_what_is_no_host_leaves_no_keys_behind(tmp_path, host):
+    with pytest.raises(errors.BadRequest, match="neither a host name nor an address"):
+        authority.init(tmp_path / "K", (host,))
+    assert not (tmp_path / "K").exists()
+
+
 @pytest.mark.parametrize("name", ["", "a/b", "a*", "@bob", "..", "-x", "a b", "x" * 65, "Zoë", "ca"])
 def test_what_is_no_name_gets_no_certificate(folder, name):
     before = sorted(folder.iterdir())

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import subprocess
+import sys
 from datetime import UTC, datetime
 
 import pytest
@@ -75,3 +77,15 @@ def test_a_live_register_sees_what_is_added_and_revoked(folder):
     (folder / "identities.json").write_text("{")
     assert live.now is before  # what cannot be read changes nothing
     assert live.now.members["bob"].expires > datetime.now(UTC)
+
+
+def test_to_show_a_certificate_and_to_run_a_system_takes_no_library(folder):
+    program = (
+        "import sys; sys.modules['cryptography'] = None\n"
+        "import nodes.extern.cli.verbs.lifecycle, nodes.extern.client\n"
+        "import nodes.coordinator.node, nodes.router.node\n"
+        "from nodes.identity import Identity\n"
+        f"print(Identity.read({str(folder / 'vera')!r}).role)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.strip()) == (0, "viewer"), done.stderr

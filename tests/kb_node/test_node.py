@@ -26,7 +26,7 @@ from schemas.bridge import (
     Transactions,
 )
 from schemas.calls import reply_type
-from schemas.commands import Check, Export, Get, Infer, LastSeen, Sparql
+from schemas.commands import Check, Export, Get, Infer, LastSeen, Relations, Sparql
 from schemas.commits import Effects, NewEntity
 from schemas.entities import Entity, Pose
 from tests.conftest import free_endpoint
@@ -324,3 +324,17 @@ def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(tmp_path):
     names = {entity.name for entity in snapshot.entities} - {"last"}
     assert names == {f"c{life}-{i}" for life in range(2) for i in range(20)}
     assert snapshot.seq - 1 - len(acknowledged) in (0, 1)
+
+
+def test_things_are_told_of_by_what_they_are_called(session):
+    seat = chair("seat9", (80.0, 0.0, 0.0), preferred="the old seat")
+    ask(session, "commit", transaction("seat", [*seat, *chair("seat10", (80.5, 0.0, 0.0))]))
+    by_name = ask(session, "relations", Relations(name="seat9", other="seat10"))
+    assert by_name
+    assert ask(session, "relations", Relations(name="The old seat", other="seat10")) == by_name
+    then = Relations(
+        name="the old seat", other="seat10", as_of=str(ask(session, "snapshot", SnapshotQuery()).seq)
+    )
+    assert ask(session, "relations", then) == by_name
+    with pytest.raises(errors.BadRequest, match=r"'Chair' may mean .* name one of them"):
+        ask(session, "relations", Relations(name="Chair"))

@@ -33,7 +33,7 @@ def test_a_commit_says_what_it_changed(semantic_map):
         0.5,
     )
     assert set(commit.inserted) == set(chair(preferred="stool"))
-    assert semantic_map.snapshot() == Snapshot(seq=1, entities=(entity,))
+    assert semantic_map.snapshot() == Snapshot(seq=1, entities=(entity,), digest=commit.digest)
 
 
 def test_what_is_taken_back_is_as_if_it_never_was(semantic_map):
@@ -45,7 +45,7 @@ def test_what_is_taken_back_is_as_if_it_never_was(semantic_map):
         ("chair1", ("Chair", "Seat", "Object", "Physical_Thing"))
     ]
     assert commit.changed == ()
-    assert state(semantic_map)[1:] == (before[1], structs.replace(before[2], seq=3))
+    assert state(semantic_map)[1:] == (before[1], structs.replace(before[2], seq=3, digest=commit.digest))
 
 
 def test_what_changes_nothing_is_no_commit(semantic_map):

@@ -23,6 +23,7 @@ def test_a_page_holds_everything():
             confidence=0.5,
             inserted=((v.entity_iri("beer1"), v.LEXICAL_REFERENCE, '"a beer"'),),
             retracted=(relation("cup1", "isOn", "table1"),),
+            notes=("on table1 was cup1",),
         )
     )
     for words in (
@@ -31,6 +32,7 @@ def test_a_page_holds_everything():
         "tidy up",
         "**beer1**, a Beer at (1.00, 2.00, 0.75)",
         "**cup1** left the map",
+        "> on table1 was cup1",
         "+ beer1 lexicalReference a beer",
         "- cup1 isOn table1",
         "`id-7`",

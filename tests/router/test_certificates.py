@@ -10,6 +10,7 @@ import time
 from datetime import UTC, datetime, timedelta
 
 import pytest
+import zenoh
 from msgspec import structs
 
 from nodes import bus
@@ -127,3 +128,15 @@ def test_a_link_ends_when_the_certificate_expires(changed, folder, endpoint, ser
         assert datetime.now(UTC) > soon - timedelta(seconds=1)
         time.sleep(1)
         assert asked(session, "viewer") == []
+
+
+@pytest.mark.parametrize("victim", ["operator", "coordinator"])
+def test_another_session_s_id_gains_nothing(folder, endpoint, served, sessions, victim):
+    """Rules go by certificates; and an id that is in use opens no second connection."""
+    config = bus.Network(
+        connect=(endpoint,), identity=Identity.read(folder / "viewer"), patience_s=0.5
+    ).as_config()
+    config.insert_json5("id", f'"{sessions[victim].zid()}"')
+    with pytest.raises(zenoh.ZError), zenoh.open(config):
+        pass
+    assert asked(sessions["operator"], "operator") == ["served"]

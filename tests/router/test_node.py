@@ -7,11 +7,14 @@ import shutil
 import signal
 import subprocess
 import sys
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
 from nodes import bus
 from nodes.identity import Identity, authority
+from nodes.identity.register import Member, Register
+from nodes.router.node import in_words
 from nodes.supervisor.settings import Settings
 from schemas import codec, keys
 from schemas.commits import Effects
@@ -103,3 +106,18 @@ def test_it_beats_like_a_node(joined):
     beats: list[Health] = []
     bus.follow(joined("viewer"), keys.HEALTH, lambda _, health: beats.append(health))
     until(lambda: any(b.node == keys.ROUTER and b.state == "ready" for b in beats), "a beat")
+
+
+def test_whose_certificate_expires_soon_is_told():
+    now = datetime(2026, 11, 22, tzinfo=UTC)
+
+    def said(*days):
+        members = {
+            f"m{d}": Member(name=f"m{d}", role="viewer", serial="1", expires=now + timedelta(days=d))
+            for d in days
+        }
+        return in_words(Register(hosts=(), members=members), now)
+
+    assert said(365, 31) == "2 certificates"
+    assert said(365, 29, 10) == "3 certificates; that of m10 expires on 2026-12-02"
+    assert said(365, -1) == "2 certificates, 1 of them expired"

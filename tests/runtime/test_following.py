@@ -1,5 +1,6 @@
 """A follower before a knowledge base that is played here, over real Zenoh."""
 
+import msgspec
 import pytest
 
 from nodes import bus
@@ -36,9 +37,15 @@ class KnowledgeBase:
         for made in commits:
             self._commits.put(codec.encode(made))
 
-    def beat(self, started_ns, commit=None):
+    def beat(self, started_ns, commit=None, digest=""):
         health = Health(
-            node="kb_node", pid=1, started_ns=started_ns, stamp_ns=1, state="ready", commit=commit
+            node="kb_node",
+            pid=1,
+            started_ns=started_ns,
+            stamp_ns=1,
+            state="ready",
+            commit=commit,
+            digest=digest,
         )
         self._health.put(codec.encode(health))
 
@@ -98,7 +105,8 @@ def test_a_snapshot_that_lacks_what_was_heard_is_asked_for_again(both):
     kb.publish(commit(3, entity("cup3")))
     until(lambda: kb.asked > 2, "it asks again")
     kb.snapshot = Snapshot(seq=3, entities=(entity("cup3"),))
-    until(lambda: follower.map.seq == 3, "the snapshot with it came")
+    kb.beat(7)
+    until(lambda: (kb.beat(7, 3), follower.map.seq == 3)[1], "the snapshot with it came")
     assert follower.map.is_current
 
 
@@ -121,6 +129,28 @@ def test_another_tbox_means_other_classes(both):
     kb.publish(commit(2, tbox=True))
     until(lambda: len(follower.begun) == 2, "classes and snapshot were fetched")
     assert follower.snapshots[-1] == (2, 2)
+
+
+def test_a_forged_commit_is_found_out_by_the_next_heartbeat(both):
+    kb, follower = both
+    kb.snapshot = Snapshot(seq=1, entities=(entity("cup1"),), digest="one")
+    kb.beat(7, 1, "one")
+    kb.publish(msgspec.structs.replace(commit(2, removed=("cup1",)), digest="forged"))
+    until(lambda: follower.map.seq == 2, "it is believed at first")
+    until(lambda: (kb.beat(7, 1, "one"), follower.map.seq == 1)[1], "it is believed no longer")
+    assert set(follower.map.entities) == {"cup1"}
+
+
+def test_a_forged_commit_with_the_next_number_hides_none(both):
+    kb, follower = both
+    kb.snapshot = Snapshot(seq=2, entities=(entity("cup1"), entity("cup2")), digest="two")
+    kb.beat(7, 1, "one")
+    kb.publish(
+        msgspec.structs.replace(commit(2, removed=("cup1",)), digest="forged"),
+        msgspec.structs.replace(commit(2, entity("cup2")), digest="two"),
+    )
+    until(lambda: set(follower.map.entities) == {"cup1", "cup2"}, "what is true is known")
+    assert follower.map.is_confirmed
 
 
 def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):

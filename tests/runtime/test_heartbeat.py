@@ -52,7 +52,7 @@ def test_that_a_node_is_ready_is_told_at_once(heard):
     one.ready("so many entities")
     assert (count(beats, 2).state, beats[-1].detail) == ("ready", "so many entities")
     (token,) = until(lambda: list(client.liveliness().get(keys.live_key("*"))), "the token")
-    assert str(token.ok.key_expr) == keys.live_key("test_node", str(os.getpid()))
+    assert str(token.ok.key_expr) == keys.live_key("test_node", str(one._session.info.zid()))
 
 
 def test_an_error_is_told_with_the_next_beat_and_for_a_while(heard, monkeypatch):

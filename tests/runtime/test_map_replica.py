@@ -128,3 +128,56 @@ def test_entities_of_a_page_share_what_they_have_in_common():
     assert (a, b) == before.entities
     assert a.types is b.types
     assert a.provenance is b.provenance is b.pose_provenance
+
+
+def signed(seq, digest, *changed, removed=()):
+    return msgspec.structs.replace(commit(seq, *changed, removed=removed), digest=digest)
+
+
+def known():
+    view = MapReplica()
+    view.begin(Snapshot(seq=1, entities=(entity("cup1"),), digest="one"))
+    return view
+
+
+def test_what_the_knowledge_base_says_itself_is_confirmed():
+    view = known()
+    assert view.is_confirmed
+    view.take(signed(2, "two", entity("cup2")))
+    assert not view.is_confirmed
+    view.confirm(2, "two")
+    assert view.is_confirmed
+
+
+def test_a_commit_that_contradicts_one_that_was_taken_puts_all_in_doubt():
+    view = known()
+    assert view.take(signed(2, "forged", removed=("cup1",)))
+    assert not view.take(signed(2, "two", entity("cup2")))
+    assert not view.is_current
+    view.begin(Snapshot(seq=2, entities=(entity("cup1"), entity("cup2")), digest="two"))
+    assert view.is_confirmed
+    assert set(view.entities) == {"cup1", "cup2"}
+
+
+def test_so_does_what_the_knowledge_base_confirms():
+    view = known()
+    view.take(signed(2, "forged", removed=("cup1",)))
+    view.confirm(2, "two")
+    assert not view.is_current
+
+
+def test_a_repeated_commit_is_no_contradiction():
+    view = known()
+    view.take(signed(2, "two", entity("cup2")))
+    assert view.take(signed(2, "two", entity("cup2")))
+    assert view.take(commit(1))  # one of the past comes without its digest
+    assert view.is_current
+
+
+def test_a_number_that_no_snapshot_ever_reaches_is_forgotten():
+    view = known()
+    view.take(signed(10**9, "forged"))
+    for asked in range(2):
+        assert not view.is_current, asked
+        view.begin(Snapshot(seq=1, entities=(entity("cup1"),), digest="one"))
+    assert view.is_confirmed

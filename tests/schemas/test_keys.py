@@ -23,3 +23,27 @@ def test_liveliness_is_out_of_reach_of_double_stars():
 def test_last_chunk():
     assert keys.last_chunk("robot1/semmap/cmd/add") == "add"
     assert keys.last_chunk("add") == "add"
+
+
+def test_the_key_of_a_command_says_who_asks():
+    key = f"{keys.commands_as('bob')}/add"
+    assert key == "semmap/as/bob/cmd/add"
+    assert keys.asked_as(key) == "bob"
+    assert keys.last_chunk(key) == "add"
+    assert keys.asked_as(f"{keys.commands_as()}/add") == "*"
+    for another in (
+        f"{keys.CMD}/add",
+        f"{keys.BRIDGE}/commit",
+        "semmap",
+        "semmap/as",
+        "x/as/bob/cmd/add",
+        "",
+    ):
+        assert keys.asked_as(another) == ""
+
+
+def test_who_serves_a_command_serves_it_whoever_asks():
+    for verb in ("add", "sparql"):
+        assert keys.servers(keys.commands_as("bob"), verb) == keys.servers(keys.CMD, verb)
+    assert keys.servers(keys.CMD, "sparql") == ("kb_node", "coordinator")
+    assert keys.served(keys.BRIDGE) == keys.BRIDGE

@@ -3,22 +3,28 @@ import time
 
 import pytest
 
-from nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, Watchdog, cpu_seconds
+from nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, UNHEARD_S, Watchdog, work_seconds
 
 
 class World:
-    """A clock, and a process that uses a share of a core."""
+    """A clock, and processes that use a share of a core."""
 
     def __init__(self, share):
         self.now_s = 1000.0
         self.share = share
-        self.watchdog = Watchdog(clock=lambda: self.now_s, cpu_of=lambda _: self.now_s * self.share)
+        self.worked_s = 0.0
+        self.watchdog = Watchdog(clock=lambda: self.now_s, work_of=lambda _: self.worked_s)
+        self.watchdog.run_as({"kb_node": 1})
 
-    def pass_time(self, seconds):
+    def beat(self, pid=1):
+        return self.watchdog.heard("kb_node", pid)
+
+    def pass_time(self, seconds, step_s=0.25):
         """Those who hang meanwhile."""
         found = []
-        for _ in range(int(seconds)):
-            self.now_s += 1.0
+        for _ in range(int(seconds / step_s)):
+            self.now_s += step_s
+            self.worked_s += self.share * step_s
             found += self.watchdog.hanging()
         return found
 
@@ -26,38 +32,91 @@ class World:
 def test_who_is_heard_of_does_not_hang():
     world = World(0.0)
     for _ in range(100):
-        world.watchdog.heard("kb_node", 1)
+        assert world.beat()
         assert world.pass_time(1) == []
 
 
-def test_who_is_silent_and_idle_hangs_and_is_given_time_again():
+def test_who_is_silent_and_idle_hangs_within_five_seconds_and_is_given_time_again():
     world = World(0.001)
-    world.watchdog.heard("kb_node", 1)
+    world.beat()
     assert world.pass_time(SILENT_S) == []
-    assert world.pass_time(2) == [("kb_node", "silent for 31 s")]
-    assert world.pass_time(SILENT_S - 2) == []
+    ((node, pid, reason),) = world.pass_time(1)
+    assert (node, pid, reason) == ("kb_node", 1, "silent for 4 s")
+    assert world.pass_time(SILENT_S - 1) == []
+
+
+def test_a_process_that_was_not_heard_of_yet_has_time_to_start():
+    world = World(0.0)
+    assert world.pass_time(UNHEARD_S) == []
+    assert [hang.pid for hang in world.pass_time(1)] == [1]
+
+
+def test_another_process_has_time_to_start_again():
+    world = World(0.0)
+    world.beat()
+    world.pass_time(SILENT_S - 1)
+    world.watchdog.run_as({"kb_node": 2})
+    assert world.pass_time(UNHEARD_S) == []
+    assert [hang.pid for hang in world.pass_time(1)] == [2]
+
+
+@pytest.mark.parametrize("pid", [2, 0, -1])
+def test_beats_of_another_process_than_supervisords_say_nothing(pid):
+    world = World(0.0)
+    world.beat()
+    for _ in range(4):
+        assert not world.beat(pid)
+        assert world.pass_time(1) == []
+    assert not world.beat(pid)
+    assert [hang.pid for hang in world.pass_time(1)] == [1]
+
+
+def test_a_node_that_there_is_not_says_nothing():
+    world = World(0.0)
+    assert not world.watchdog.heard("x", 1)
+    assert world.pass_time(2) == []
+
+
+def test_a_node_that_does_not_run_does_not_hang():
+    world = World(0.0)
+    world.beat()
+    world.watchdog.run_as({})
+    assert world.pass_time(100) == []
 
 
 def test_who_is_silent_over_work_does_not_hang():
     world = World(0.1)  # of a core that others want, too
-    world.watchdog.heard("kb_node", 1)
+    world.beat()
     assert world.pass_time(ENDLESS_S - SILENT_S) == []
+
+
+def test_who_waits_for_a_disk_does_not_hang():
+    world = World(0.0)
+    world.beat()
+    world.worked_s = float("inf")
+    assert world.pass_time(100) == []
 
 
 def test_work_that_ends_in_idleness_is_a_hang():
     world = World(0.5)
-    world.watchdog.heard("kb_node", 1)
+    world.beat()
     assert world.pass_time(100) == []
-    used_s, world.share = world.now_s * 0.5, 0.0
-    world.watchdog._cpu_of = lambda _: used_s
-    assert [node for node, _ in world.pass_time(40)] == ["kb_node"]
+    world.share = 0.0
+    assert [hang.node for hang in world.pass_time(2 * SILENT_S)] == ["kb_node"]
 
 
 def test_no_work_is_endless():
     world = World(1.0)
-    world.watchdog.heard("kb_node", 1)
-    ((node, reason),) = world.pass_time(ENDLESS_S + SILENT_S)
-    assert (node, reason.endswith("though at work")) == ("kb_node", True)
+    world.beat()
+    ((_, _, reason),) = world.pass_time(ENDLESS_S + SILENT_S)
+    assert reason.endswith("though at work")
+
+
+def test_whoever_watches_may_have_been_held_up_himself():
+    world = World(0.0)
+    world.beat()
+    world.now_s += 100.0
+    assert world.pass_time(SILENT_S) == []
 
 
 def spin():
@@ -66,17 +125,17 @@ def spin():
 
 
 @pytest.mark.parametrize("work", [spin, time.sleep])
-def test_the_cpu_time_of_a_process(work):
+def test_the_work_of_a_process(work):
     process = multiprocessing.get_context("fork").Process(
         target=work, args=() if work is spin else (60,), daemon=True
     )
     process.start()
     try:
-        before = cpu_seconds(process.pid)
+        before = work_seconds(process.pid)
         time.sleep(1.0)
-        used = cpu_seconds(process.pid) - before
+        used = work_seconds(process.pid) - before
         assert used > 0.05 if work is spin else used < 0.05
     finally:
         process.kill()
         process.join()
-    assert cpu_seconds(process.pid) == 0.0
+    assert work_seconds(process.pid) == 0.0

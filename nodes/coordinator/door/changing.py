@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from nodes.coordinator import transactions
 from nodes.coordinator.authority import require_authority
 from nodes.coordinator.dialogues import Talk, ask
-from nodes.coordinator.door.committing import changed, commit, new_id, once
+from nodes.coordinator.door.committing import changed, commit, new_id, once, taken_anew
 from nodes.coordinator.door.known_map import KnownMap
-from nodes.coordinator.naming import free_position
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
+from nodes.coordinator.scene.settled import Settled
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
 from schemas.commands import Add, Clear, Command, Properties, Remove, Set, Unset, Update
 from schemas.commits import Edit, Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose, free_name
+from schemas.entities import ClassInfo, Entity, Pose
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
@@ -27,10 +25,20 @@ UNCHANGED = "unchanged: already up to date"
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
     """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
-    name = command.name or free_name(found.name, view.entities)
+    try:
+        return (yield from _add(view, command, found))
+    except errors.NameTaken:
+        if command.name is not None or view.is_confirmed:
+            raise
+    yield from taken_anew(view)  # it was not as it seemed: somebody published what was never committed
+    return (yield from _add(view, command, found))
+
+
+def _add(view: KnownMap, command: Add, found: ClassInfo) -> Talk[Changed]:
+    name = command.name or view.free_name(found.name)
     if name in view.entities:
         raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
-    at = command.at or free_position(view.entities.values(), command.size)
+    at = command.at or view.free_place(command.size)
     pose = pose_of(at, command.yaw, command.orientation)
     ref = command.ref or (_label(found) if command.default else None)
     made = yield from commit(view, transactions.add(command, name, found, pose, ref))
@@ -143,8 +151,11 @@ def clear(view: KnownMap, command: Clear) -> Talk[Changed]:
     return (yield from _take_out(view, command, "clear", list(view.entities.values())))
 
 
-def follow(view: KnownMap, poses: Mapping[str, Pose], hand: Hand) -> Talk[Effects | None]:
-    """The map takes over where bodies came to rest, in one commit."""
+def follow(view: KnownMap, settled: Settled, hand: Hand) -> Talk[Changed]:
+    """The map takes over where bodies came to rest, in one commit: those that nobody has moved meanwhile."""
+    poses = settled.still(view.entities)
+    if not poses:
+        return changed(None, UNCHANGED)
     moved = Transaction(
         id=new_id(),
         source="scene",
@@ -156,7 +167,8 @@ def follow(view: KnownMap, poses: Mapping[str, Pose], hand: Hand) -> Talk[Effect
             for name, pose in poses.items()
         ),
     )
-    return (yield from commit(view, moved))
+    made = yield from commit(view, moved)
+    return changed(made, hand.reason, names=tuple(poses))
 
 
 def _take_out(view: KnownMap, command: Command, reason: str, leaving: list[Entity]) -> Talk[Changed]:

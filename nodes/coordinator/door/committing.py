@@ -72,7 +72,9 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
     """The commit, shown in the view so that the next command sees it; the map anew if it is abridged."""
     if commit is None or commit.trial is not None:
         return commit
-    if not view.take(commit) and commit.abridged is not None:
+    known = view.take(commit)
+    view.confirm(commit.seq, commit.digest)
+    if not known and commit.abridged is not None:
         yield from taken_anew(view)
     return commit
 

@@ -9,10 +9,9 @@ from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
 from nodes.coordinator.door import changing, loading, undoing
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hands
+from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import Change
-from schemas import errors
 from schemas.commands import Add, Clear, Command, Load, Remove, Set, Undo, Unset, Update
-from schemas.entities import Pose
 from schemas.replies import Changed
 
 _CHANGING: Mapping[type[Command], Callable[[KnownMap, Any], Talk[Changed]]] = {
@@ -44,16 +43,18 @@ class Door:
         """Change the map as a command says."""
         return hold(self._changing(command), self._ask)
 
-    def together(self, commands: Sequence[Change]) -> Talk[list[Changed | errors.SemmapError]]:
+    def together(self, commands: Sequence[Change]) -> Talk[list[Changed | Exception]]:
         """Changes of different entities, with as few questions as one."""
         if len(commands) == 1:
             return alone(self._changing(commands[0]))
         return in_step([self._changing(command) for command in commands])
 
     def _changing(self, command: Change) -> Talk[Changed]:
+        if isinstance(command, Settled):
+            return self._settled(command)
         return _CHANGING[type(command)](self.map, command)
 
-    def follow(self, poses: Mapping[str, Pose]) -> None:
+    def _settled(self, settled: Settled) -> Talk[Changed]:
         """The map takes over where bodies came to rest: one, or those that a hand carried together."""
-        with self.hands.that_moved(*poses) as hand:
-            hold(changing.follow(self.map, poses, hand), self._ask)
+        with self.hands.that_moved(*settled.poses) as hand:
+            return (yield from changing.follow(self.map, settled, hand))

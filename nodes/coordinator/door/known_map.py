@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 from operator import attrgetter
 
+from nodes.coordinator.free_names import FreeNames
+from nodes.coordinator.free_places import FreePlaces
 from nodes.runtime import map_replica
 from nodes.runtime.class_names import ClassNames
 from schemas import errors
 from schemas.commits import Effects, Snapshot
-from schemas.entities import Entity
+from schemas.entities import Entity, Size, Vector
 
 
 class KnownMap(map_replica.MapReplica[Effects]):
@@ -21,6 +23,20 @@ class KnownMap(map_replica.MapReplica[Effects]):
         self.touched: set[str] = set()
         """The names of the entities that commits touched, for whoever looks after them to take."""
         self._places: dict[str, Entity] | None = None
+        self._names = FreeNames()
+        self._floor: FreePlaces | None = None
+        """Once somebody asked for a free place."""
+
+    def free_name(self, class_name: str) -> str:
+        """The first name that is free for an entity of a class."""
+        return self._names.name(class_name, self.entities)
+
+    def free_place(self, size_m: Size | None) -> Vector:
+        """The place nearest to a default position where a thing of `size_m` touches nothing."""
+        if self._floor is None:
+            self._floor = FreePlaces()
+            self._floor.touch(self.entities)
+        return self._floor.find(self.entities, size_m)
 
     @property
     def places(self) -> Collection[Entity]:
@@ -44,12 +60,16 @@ class KnownMap(map_replica.MapReplica[Effects]):
     def begin(self, snapshot: Snapshot) -> bool:
         """See `MapReplica.begin`."""
         self._places = None
+        self._names, self._floor = FreeNames(), None
         return super().begin(snapshot)
 
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""
         super()._apply(commit)
         self.touched.update(commit.names)
+        self._names.freed(gone.name for gone in commit.removed)
+        if self._floor is not None:
+            self._floor.touch(commit.names)
         if self._places is not None:
             for name in commit.names:
                 entity = self.entities.get(name)

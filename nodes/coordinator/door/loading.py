@@ -14,12 +14,13 @@ from nodes.coordinator.door.committing import changed, commit, once, taken, take
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
+from nodes.coordinator.free_names import FreeNames
 from nodes.runtime.class_names import AmbiguousClass, ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
 from schemas.commits import Effects, NewEntity, Transaction
-from schemas.entities import ClassInfo, free_name
+from schemas.entities import ClassInfo
 from schemas.replies import Changed
 from schemas.scene_files import Described
 
@@ -56,10 +57,11 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
 def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:
     known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
     taken_names = set() if command.replace else set(view.entities)
+    free = FreeNames()
     new: list[NewEntity] = []
     names: dict[str, None] = {}
     for item, found in known:
-        name = item.name or free_name(found.name, taken_names)
+        name = item.name or free.name(found.name, taken_names)
         if name in names:
             raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
         if name in taken_names:

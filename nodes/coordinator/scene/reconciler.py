@@ -17,11 +17,13 @@ from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.door import Door
 from nodes.coordinator.scene.reconcile import Actions, latest, order, reconcile
 from nodes.coordinator.scene.scene_view import SceneView
+from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.scene.spawn_batches import batches
 from schemas import errors, wording
 from schemas.calls import Call
 from schemas.commands import Add
 from schemas.entities import BodyState, Entity, rounded
+from schemas.replies import Changed
 from schemas.scenes import (
     BodiesMoved,
     Body,
@@ -48,6 +50,13 @@ class AskSim(Protocol):
         ...
 
 
+class ChangeMap(Protocol):
+    """`change(change)` changes the map in its turn, without waiting."""
+
+    def __call__(self, change: Add | Settled, /) -> Future[Changed]:  # noqa: D102
+        ...
+
+
 class Step(NamedTuple, Generic[T]):
     """What is asked of the simulator, and what is done with the answer."""
 
@@ -59,11 +68,17 @@ class Keeping:
     """Keeps the scene and the door's map the same. Owned by the coordinator's thread."""
 
     def __init__(
-        self, config: CoordinatorConfig, door: Door, ask: AskSim, report: Callable[[str], None]
+        self,
+        config: CoordinatorConfig,
+        door: Door,
+        change: ChangeMap,
+        ask: AskSim,
+        report: Callable[[str], None],
     ) -> None:
-        """`ask(call)` asks the simulator, without waiting."""
+        """`change` changes the map, and `ask` asks the simulator; neither waits."""
         self._config = config
         self._door = door
+        self._change = change
         self._ask = ask
         self._report = report
         self.scene = SceneView()
@@ -72,6 +87,8 @@ class Keeping:
         self._steps: deque[Step[Any]] = deque()
         self._busy = False
         self._later: set[str] = set()  # what changed while orders were under way
+        self._following: set[str] = set()  # bodies that the map is about to follow, or to take in
+        self._put_back: dict[str, Placement] = {}  # bodies that the map did not follow
 
     def on_poses(self, poses: Poses) -> None:
         """New poses from the simulator."""
@@ -94,10 +111,12 @@ class Keeping:
         if self._busy or not self.scene.known:
             return
         actions = self.wanted(names)
-        refused = [back for group in self._to_follow(actions.follow) for back in self._follow(group)]
+        for group in self._to_follow(actions.follow):
+            self._follow(group)
         for body in actions.adopt:
             self._adopt(body)
-        steps = self._orders(actions, refused)
+        refused, self._put_back = self._put_back, {}
+        steps = self._orders(actions, [*refused.values()])
         if steps:
             self._start(steps)
 
@@ -121,7 +140,11 @@ class Keeping:
             return None
         wanted = self.wanted()
         foreign = [body for body in wanted.adopt if body.name not in self._foreign]
-        return not self._busy and not (any(wanted[:4]) or foreign or wanted.missing)
+        return (
+            self._door.map.is_confirmed
+            and not self._busy
+            and not (any(wanted[:4]) or foreign or wanted.missing)
+        )
 
     def place_all(self) -> Future[Any]:
         """Put every body back where the map says it stands; those that could not be made are tried again.
@@ -201,13 +224,13 @@ class Keeping:
         call, handle = self._steps.popleft()
 
         def on_done(future: Future[Any]) -> None:
-            error = future.exception()
-            if error is None:
+            try:
                 handle(future.result())
-                self._next()
-            else:
+            except Exception as error:  # whatever it is, it is tried again at the next look
                 self._busy = False
                 self._report(f"the simulator failed to {call.VERB}: {error}")
+            else:
+                self._next()
 
         self._ask(call).add_done_callback(on_done)
 
@@ -235,7 +258,7 @@ class Keeping:
         """Each by itself, or together with what a hand carried along with it, once all of that rests."""
         done: set[str] = set()
         for placement in placements:
-            if placement.name in done:
+            if placement.name in done or placement.name in self._following:
                 continue
             party = self._door.hands.party_of(placement.name)
             done |= party
@@ -245,48 +268,73 @@ class Keeping:
             elif all(body.resting for body in there):
                 yield self.wanted(party).follow
 
-    def _follow(self, placements: Sequence[Placement]) -> Iterator[Placement]:
+    def _follow(self, placements: Sequence[Placement]) -> None:
         """Let the map follow bodies; if the map refuses, they have to go back."""
         poses = {placement.name: rounded(placement.pose) for placement in placements}
-        try:
-            self._door.follow(poses)
-        except errors.Refused as error:
+        if any(name in self._put_back for name in poses):
+            return
+
+        def failed(error: BaseException) -> None:
+            if not isinstance(error, errors.Refused):
+                self._report(f"the map cannot follow {wording.few(poses)} yet: {error}")
+                return
             told = "its new pose" if len(poses) == 1 else "their new poses"
             were = "was" if len(poses) == 1 else "were"
-            self._report(
-                f"{wording.few(poses)} {were} put back, because the map rejected {told}: {error.text}"
-            )
+            self._report(f"{wording.few(poses)} {were} put back, because the map rejected {told}: {error}")
             for name in poses:
-                entity = self._door.map.entities[name]
-                if entity.pose is not None:
+                entity = self._door.map.entities.get(name)
+                if entity is not None and entity.pose is not None:
                     commit = entity.pose_provenance.commit
-                    yield Placement(name=name, pose=entity.pose, commit=commit)
+                    self._put_back[name] = Placement(name=name, pose=entity.pose, commit=commit)
+
+        self._change_about(poses, Settled.of(self._door.map.entities, poses), failed)
 
     def _adopt(self, body: Body) -> None:
         """Let a body of the scene become an entity."""
-        if body.name in self._foreign or not body.resting:
+        name = body.name
+        if name in self._foreign or name in self._following or not body.resting:
             return
-        try:
-            if body.class_ is None:
-                raise errors.UnknownClass(
+
+        def adopted(error: BaseException) -> None:
+            if isinstance(error, (errors.Refused, errors.BadRequest)):
+                self._foreign[name] = f"a scene body without a map entity: {error}"
+                log.warning("%s did not become an entity: %s", name, error)
+            else:
+                self._report(f"{name} cannot become an entity yet: {error}")
+
+        if body.class_ is None:
+            adopted(
+                errors.UnknownClass(
                     'unknown class; name it like chair_3, or add <text name="semmap:BODY" data="CLASS"/>'
                 )
-            pose = rounded(body.pose)
-            x, y, z = pose.position_m
-            self._door.change(
-                Add(
-                    source="scene",
-                    reason=f"{body.name} stands in the scene",
-                    class_=body.class_,
-                    name=body.name,
-                    at=(x, y, z),
-                    orientation=pose.orientation_wxyz,
-                    size=body.size_m,
-                )
             )
-        except (errors.Refused, errors.BadRequest) as error:
-            self._foreign[body.name] = f"a scene body without a map entity: {error.text}"
-            log.warning("%s did not become an entity: %s", body.name, error.text)
+            return
+        pose = rounded(body.pose)
+        x, y, z = pose.position_m
+        add = Add(
+            source="scene",
+            reason=f"{name} stands in the scene",
+            class_=body.class_,
+            name=name,
+            at=(x, y, z),
+            orientation=pose.orientation_wxyz,
+            size=body.size_m,
+        )
+        self._change_about((name,), add, adopted)
+
+    def _change_about(
+        self, names: Collection[str], change: Add | Settled, failed: Callable[[BaseException], None]
+    ) -> None:
+        """Change the map in its turn; what concerns these bodies is looked at again when that is done."""
+        self._following.update(names)
+
+        def on_done(done: Future[Changed]) -> None:
+            self._following.difference_update(names)
+            self._later.update(names)
+            if (error := done.exception()) is not None:
+                failed(error)
+
+        self._change(change).add_done_callback(on_done)
 
 
 def _only(names: Collection[str], of: Mapping[str, T]) -> dict[str, T]:

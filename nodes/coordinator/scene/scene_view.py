@@ -9,6 +9,9 @@ from msgspec import structs
 from schemas.entities import Pose
 from schemas.scenes import Body, Poses, Scene
 
+_STRANGE_NS = 10_000_000_000
+"""Nanoseconds: poses that are so much later or earlier than the last are strange, and the scene is asked."""
+
 
 class SceneView:
     """The bodies as last heard of. `known` is false until a first snapshot, and after the simulator ends."""
@@ -22,7 +25,7 @@ class SceneView:
 
     def take(self, scene: Scene) -> None:
         """Take over a snapshot, unless it is older than what is known."""
-        if scene.run == self._run and scene.stamp_ns < self._stamp_ns:
+        if scene.run == self._run and -_STRANGE_NS < scene.stamp_ns - self._stamp_ns < 0:
             return
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
@@ -35,9 +38,12 @@ class SceneView:
     def update(self, poses: Poses) -> set[str] | None:
         """Take over new poses: the bodies that are not as they were.
 
-        None when bodies came or went, so that a snapshot is needed.
+        None when a snapshot is needed: bodies came or went, or the poses are of another time. Then the clock
+        was set, or somebody else published them.
         """
         changed: set[str] = set()
+        if poses.run == self._run and abs(poses.stamp_ns - self._stamp_ns) > _STRANGE_NS:
+            return None
         if poses.run == self._run and poses.stamp_ns <= self._stamp_ns:
             return changed
         if (poses.run, poses.version) != (self._run, self._version):

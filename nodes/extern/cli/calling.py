@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from nodes.extern.cli.output.printable import escaped_json, say
 from schemas import errors
 from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE
 
@@ -96,13 +97,14 @@ def print_json(message: Any) -> None:
 
     from schemas import codec
 
-    print(json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False))
+    text = json.dumps(json.loads(codec.encode_json(message)), indent=2, ensure_ascii=False)
+    print(escaped_json(text))
 
 
 def print_lines(lines: Iterable[str]) -> None:
     """A reply in words."""
     for line in lines:
-        print(line)
+        say(line)
 
 
 def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
@@ -126,7 +128,7 @@ def given(fields: dict[str, Any]) -> dict[str, Any]:
 
 def complain(text: str) -> None:
     """What is wrong, in one line on stderr."""
-    print(f"semmap: {' '.join(text.split())}", file=sys.stderr)
+    say(f"semmap: {' '.join(text.split())}", file=sys.stderr)
 
 
 def _plainly(text: str) -> str:

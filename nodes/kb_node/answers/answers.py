@@ -12,6 +12,7 @@ from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.relations import said
 from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.semantic_map import SemanticMap
@@ -59,6 +60,14 @@ def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> It
                 yield fact
 
 
+def withheld(semantic_map: SemanticMap) -> Iterator[str]:
+    """The facts about places that would contradict the map, and how, a sentence each."""
+    for fact, found in sorted(semantic_map.beliefs.withheld.items()):
+        clause = sentences.said(fact, semantic_map.reasoner.words)
+        seen = "asserted" if semantic_map.has(fact) else "measured"
+        yield f"that {clause} ({seen}) would contradict the map, so it is left out: {found.text}"
+
+
 class Picture(NamedTuple):
     """The map at one moment, for work beside it: what is asserted, and what of it to write."""
 
@@ -69,16 +78,20 @@ class Picture(NamedTuple):
 
 
 def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
-    """The map as it is now, to be written: the ABox and, if `inferred`, what follows about those in it."""
+    """The map as it is now, to be written: the ABox or, if `inferred`, what holds about those in it."""
+    semantic_map.believe_places()
     abox = semantic_map.abox()
+    aside = set(semantic_map.reasoner.set_aside())
+    held = [triple for triple in abox if triple not in aside] if aside else abox
     following: list[Triple] = []
     if inferred:
+        abox = held
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
             following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
     written = abox + following
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
-    return Picture([*semantic_map.tbox, *abox], written, semantic_map.seq, used)
+    return Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
 
 
 def export(picture: Picture, syntax: RdfFormat) -> Document:

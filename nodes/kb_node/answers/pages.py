@@ -33,4 +33,4 @@ class Pages:
         more = next(there, None) is not None
         if not more:
             self._names = []
-        return Snapshot(seq=self._map.seq, entities=found, more=more)
+        return Snapshot(seq=self._map.seq, entities=found, more=more, digest=self._map.digest)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import chain, islice
 from typing import NamedTuple
+
+from msgspec import structs
 
 from nodes.kb_node import proofs
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.answers.asked_terms import RELATIONS
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
+from nodes.kb_node.reasoner import explanations as reasons
 from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed
-from nodes.kb_node.reasoner.explain.sentences import said
+from nodes.kb_node.reasoner.explain.sentences import as_measured, said
 from nodes.kb_node.reasoner.refutation import refute, why_different
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.semantic_map import SemanticMap
@@ -67,17 +70,26 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
-def copy_of(triples: Iterable[Triple], names: Mapping[Term, str]) -> Reasoner:
+def copy_of(held: Held, names: Mapping[Term, str]) -> Reasoner:
     """A reasoner for work beside the map's own; `names` tell its classes apart."""
-    reasoner = Reasoner(triples)
+    reasoner = Reasoner.of(held)
     reasoner.words.tell_apart(names)
     return reasoner
+
+
+def _told(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
+    """An explanation as it goes over the wire; what is computed in it is told as measured."""
+    computed = [fact for fact in found.support if reasoner.is_computed(fact)]
+    message = proofs.message(found)
+    if not computed:
+        return message
+    return structs.replace(message, text=as_measured(message.text, computed, reasoner.words))
 
 
 def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
     """Why it holds by the rules; None if it does not."""
     found = next(filter(None, map(reasoner.explain, asked.triples)), None)
-    return None if found is None else proofs.message(found)
+    return None if found is None else _told(reasoner, found)
 
 
 def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
@@ -94,7 +106,7 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     clause = said(first, reasoner.words)
     if asked.negated:
         if (denied := refute(reasoner, first, anew=anew)) is not None:
-            return proofs.message(denied)
+            return _told(reasoner, denied)
         if not reasoner.holds(first) and not anew:
             raise Undecided("no rule excludes it, and none derives it")
         holds = reasoner.explain(first) or _entailed(reasoner, asked)
@@ -106,9 +118,10 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     if (found := why(reasoner, asked)) is not None:
         return found
     if (different := why_different(reasoner, first, anew=anew)) is not None:
-        return proofs.message(different)
+        return _told(reasoner, different)
     if (excluded := refute(reasoner, first, anew=anew)) is not None:
-        raise errors.Refused(f"it does not hold: {excluded.text}", explanation=proofs.message(excluded))
+        told = _told(reasoner, excluded)
+        raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     if not anew:
         raise Undecided("no rule derives it, and none excludes it")
     if (further := _entailed(reasoner, asked)) is not None:
@@ -120,7 +133,7 @@ def _entailed(reasoner: Reasoner, asked: Asked) -> Explanation | None:
     """Why it follows from what is near, although no rule derives it."""
     near = Reasoner(nearby(reasoner, asked.terms))
     found = why_entailed(near, asked.triples[0], words=reasoner.words)
-    return None if found is None else proofs.message(found)
+    return None if found is None else _told(reasoner, found)
 
 
 def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
@@ -133,9 +146,22 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
     clause = said(triple, reasoner.words)
     if reasoner.holds(triple):
         return Possible(possible=True, text=f"yes: {clause} already")
-    if (excluded := refute(reasoner, triple, anew=anew)) is not None:
-        return Possible(possible=False, text=f"no: {excluded.text}", explanation=proofs.message(excluded))
+    measured: list[Triple] = []
+    try:
+        while (excluded := refute(reasoner, triple, anew=anew)) is not None:
+            computed = [fact for fact in excluded.support if reasoner.is_computed(fact)]
+            if not computed:
+                text = f"no: {excluded.text}"
+                return Possible(possible=False, text=text, explanation=_told(reasoner, excluded))
+            reasoner.believe(gone=computed)  # nothing that is computed refuses a commit
+            measured += computed
+    finally:
+        if measured:
+            reasoner.believe(come=measured)
     text = f"yes: nothing excludes that {clause}"
+    if measured:
+        seen = " and ".join(said(fact, reasoner.words) for fact in measured)
+        text += f", although by their poses {seen}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
     return Possible(possible=True, text=text)

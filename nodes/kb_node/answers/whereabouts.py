@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
-from nodes.kb_node.relations.said import denied
-from nodes.kb_node.relations.selection import selected
+from nodes.kb_node.relations.rules import COMPUTED
+from nodes.kb_node.relations.said import denied, fact_of
+from nodes.kb_node.relations.selection import only_meant, selected
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
@@ -18,7 +19,7 @@ from schemas import errors
 from schemas.bridge import Entities
 from schemas.commands import Explain, Get, Relations
 from schemas.entities import Entity
-from schemas.explanations import Explanation
+from schemas.explanations import Explanation, Triple
 from schemas.relations import Described, Relation
 
 
@@ -44,30 +45,55 @@ class Now:
         wrong = denied(space, answers.said_of_place(self._map, entity))
         return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
 
+    def denied(self) -> tuple[Relation, ...]:
+        """What was said of where things are and is not so."""
+        space = self._map.places.space()
+        return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
+
     def relations(self, query: Relations) -> tuple[Relation, ...]:
-        """Where a thing is relative to others. Raises UnknownName."""
-        self._map.entity(query.name)
-        return tuple(relations(self._map.places.space(), query))
+        """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
+        named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
+        return tuple(relations(self._map.places.space(), named))
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
-        """What was measured of where a thing is, and what follows besides; None for any other question.
+        """Why something holds, with what was measured where that is a reason; None if that is not known yet.
 
-        Raises Refused when the measurement denies it.
+        Raises Refused when a measurement denies it.
         """
-        if query.negated or query.predicate not in SPOKEN:
+        if query.negated:
             return None
-        seen = explained(self._map.places.space(), query.name, query.predicate, query.value)
-        if not seen:
-            return None
-        explanation = questions.why(self._map.reasoner, asked)
-        if explanation is not None:
+        space = self._map.places.space()
+        seen = None
+        if query.predicate in SPOKEN:
+            seen = explained(space, query.name, query.predicate, query.value)
+        found = questions.why(self._map.reasoner, asked)
+        if found is None:
+            if seen is not None and not seen.holds:
+                raise errors.Refused(seen.text)
+            return None if seen is None else self._measured(seen)
+        if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
+            return structs.replace(found, text=self._told(found.conclusion))
+        if seen is not None:
             link = "; and" if seen.holds else "; but as it stands"
-            return structs.replace(explanation, text=f"{explanation.text.rstrip('.')}{link} {seen.text}")
-        if not seen.holds:
-            raise errors.Refused(seen.text)
+            return structs.replace(found, text=f"{found.text.rstrip('.')}{link} {seen.text}")
+        told = [self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact)]
+        if not told:
+            return found
+        return structs.replace(found, text=f"{found.text.rstrip('.')}; measured: {'; '.join(told)}")
+
+    def _measured(self, seen: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))
-        conclusion = (subject, v.dm(seen.relation), object_)
-        return Explanation(conclusion=conclusion, support=(), steps=(), text=seen.text)
+        return Explanation(
+            conclusion=(subject, v.dm(seen.relation), object_), support=(), steps=(), text=seen.text
+        )
+
+    def _told(self, fact: Triple) -> str:
+        """What was measured of a computed fact, and since which commit things are where they are."""
+        name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
+        seen = explained(self._map.places.space(), name, COMPUTED[fact[1]], other)
+        ends = self._map.entity(name), self._map.entity(other)
+        since = max(p.commit for end in ends for p in (end.pose_provenance, end.shape_provenance))
+        return v.spoken(fact) if seen is None else f"{seen.text} (commit {since})"
 
 
 class Then:
@@ -98,8 +124,22 @@ class Then:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
         assert query.as_of is not None
-        self._past.entity(query.name, query.as_of)
-        return tuple(relations(self._space(self._past.entities(query.as_of, None, ())), query))
+        everyone = self._past.entities(query.as_of, None, ())
+        there = {entity.name: entity for entity in everyone}
+        named = _named(query, there.get, lambda: everyone)
+        return tuple(relations(self._space(everyone), named))
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
+
+
+def _named(
+    query: Relations, find: Callable[[str], Entity | None], everyone: Callable[[], Sequence[Entity]]
+) -> Relations:
+    """The query with the names of those whom its words mean: a name, else a reference, else a class."""
+    names = {
+        field: only_meant(everyone(), word)
+        for field in ("name", "other", "viewer")
+        if (word := getattr(query, field)) is not None and find(word) is None
+    }
+    return structs.replace(query, **names) if names else query

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from operator import is_
 
 from nodes.kb_node.documents import abox_document, rdf
 from nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
@@ -33,6 +34,12 @@ def of_document(
         insert=_outside(sorted_out.triples, semantic_map.tbox),
     )
     return transaction, sorted_out
+
+
+def is_all(triples: Sequence[Triple], transaction: Transaction) -> bool:
+    """Is a transaction nothing but what a document says, word by word?"""
+    insert = transaction.insert
+    return not transaction.retract and len(insert) == len(triples) and all(map(is_, insert, triples))
 
 
 def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]:

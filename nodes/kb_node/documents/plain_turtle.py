@@ -85,22 +85,24 @@ class _Reader:
         self._subjects = _Words(self._subject)
         self._predicates = _Words(self._predicate)
         self._tails = _Words(self._tail)
-        self._triples: list[Triple] = []
+        self._terms: list[Term] = []
+        """Subject, predicate, object, subject, ...; the triples made of them at last lie together."""
         self._expects = _SUBJECT
         self._said: tuple[Term, Term] = ("", "")
 
     def read(self, content: bytes, progress: Callable[[int], None]) -> list[Triple]:
         for piece in _pieces(content):
             self._read_lines(piece.decode().replace("\r\n", "\n").split("\n"))
-            progress(len(self._triples))
+            progress(len(self._terms) // 3)
         if self._expects != _SUBJECT:
             raise _NotPlain
-        return self._triples
+        each = iter(self._terms)
+        return list(zip(each, each, each, strict=True))
 
     def _read_lines(self, lines: list[str]) -> None:
         """A line that is a triple, or its end, at once; any other word by word."""
         subjects, predicates, tails = self._subjects, self._predicates, self._tails
-        add, expects, (subject, predicate) = self._triples.append, self._expects, self._said
+        add, expects, (subject, predicate) = self._terms.extend, self._expects, self._said
         for line in lines:
             try:
                 if expects == _SUBJECT:
@@ -141,7 +143,7 @@ class _Reader:
             elif self._expects == _PREDICATE:
                 self._said, self._expects = (subject, self._predicates[word]), _OBJECT
             elif self._expects == _OBJECT:
-                self._triples.append((subject, predicate, self._term(word)))
+                self._terms += (subject, predicate, self._term(word))
                 self._expects = _SEPARATOR
             elif word in _AFTER:
                 self._expects = _AFTER[word]

@@ -78,8 +78,8 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     pose: tuple[PoseWords, ...] = ()
     size: tuple[SizeWords, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
-    relations: dict[str, Term] = {}
-    """Relation of the household's vocabulary (`isOn`) to this one's property for it."""
+    relations: dict[Literal["isOn", "isInside", "isLocatedIn"], Term] = {}
+    """Relation that can be measured to the property by which the vocabulary states it."""
 
     @property
     def edges(self) -> frozenset[Term]:

@@ -88,6 +88,7 @@ class ClassTable:
         )
         self.limits = thresholds.of_tbox(lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None)))
         """When the spatial relations hold."""
+        self._spoken: dict[frozenset[Term], tuple[str, ...]] = {}
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     @cached_property
@@ -129,6 +130,13 @@ class ClassTable:
         except KeyError:
             found = self._kinds[types, asserted] = self._kind(types, asserted)
             return found
+
+    def spoken_types(self, types: frozenset[Term]) -> tuple[str, ...]:
+        """The names of an individual's classes, the most special ones first."""
+        known = self._spoken.get(types)
+        if known is None:
+            known = self._spoken[types] = tuple(self.names[t] for t in self.special_first(types))
+        return known
 
     def _kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
         named = self.special_first(types)

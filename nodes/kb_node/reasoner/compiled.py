@@ -12,6 +12,7 @@ from nodes.kb_node.reasoner.abox.columns import Columns
 from nodes.kb_node.reasoner.abox.retraction import Retraction
 from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.abox.snapshot import columns_of, fill
+from nodes.kb_node.reasoner.abox.store import COMPUTED
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.explain.proof import Prover
 from nodes.kb_node.reasoner.explain.reasons import Clash
@@ -125,7 +126,7 @@ class CompiledEngine:
             if retraction is None:
                 alike = self._paths.insert(insert, lambda some: self._insert(some, added, touched), added)
             else:
-                removed = retraction.delete(delete)
+                removed, _ = retraction.delete(delete)
                 touched.update([s for s, _, _ in removed])
                 self._insert(insert, added, touched)
         except Known as known:
@@ -145,6 +146,40 @@ class CompiledEngine:
             retraction.release()
         self._size += len(added) - len(removed)
         return Change(frozenset(touched), alike)
+
+    def believe(
+        self, gone: Sequence[Triple], come: Sequence[Triple], aside: Sequence[Triple], back: Sequence[Triple]
+    ) -> Change:
+        """Computed facts that are gone and that come; asserted ones set `aside`, and `back` again.
+
+        Of the change `others` are those whose named classes changed. Raises as `apply` does.
+        """
+        abox, insert = self._abox, self._saturation.insert
+        added: list[Triple] = []
+        removed: tuple[list[Triple], list[Triple]] = [], []
+        computed: list[Triple] = []
+        retraction = Retraction(abox, self._saturation) if gone or aside else None
+        try:
+            if retraction is not None:
+                removed = retraction.delete(aside, gone)
+            added.extend(triple for triple in back if insert(triple))
+            computed.extend(triple for triple in come if insert(triple, COMPUTED))
+            self._saturation.run()
+        except (Clash, NotCompilable) as error:
+            explanation = None
+            if isinstance(error, Clash):
+                found = Support(abox, self._told_by).of_clash(error.claims)
+                explanation = self._prover.prove(found, None)
+            self._undo(retraction, removed[0], added, removed[1], computed)
+            if explanation is None:
+                raise
+            raise Refused(explanation) from None
+        touched = frozenset(self._moved())
+        abox.settle()
+        if retraction is not None:
+            retraction.release()
+        self._size += len(added) - len(removed[0])
+        return Change(touched)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
@@ -166,11 +201,21 @@ class CompiledEngine:
         if self._schema.speaks_of(triple[0]) or self._schema.speaks_of(triple[2]):
             raise NotCompilable(f"classes or properties are compared: {' '.join(triple)}")
 
-    def _undo(self, retraction: Retraction | None, removed: list[Triple], added: list[Triple]) -> None:
+    def _undo(
+        self,
+        retraction: Retraction | None,
+        removed: list[Triple],
+        added: list[Triple],
+        removed_computed: Sequence[Triple] = (),
+        added_computed: Sequence[Triple] = (),
+    ) -> None:
         back = Retraction(self._abox, self._saturation)
-        back.delete(added)
+        overlaid = tuple(self._abox.overlaid)
+        back.delete(added, added_computed)
         for triple in removed:
             self._saturation.insert(triple)
+        for triple in (*removed_computed, *overlaid):
+            self._saturation.insert(triple, COMPUTED)
         self._saturation.run()
         self._abox.settle()
         back.release()
@@ -197,6 +242,14 @@ class CompiledEngine:
             for triple in facts.match(s, p, o):
                 if triple in self._schema_triples:
                     yield triple
+
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
+        return self._view.computed(s, p, o)
+
+    def is_computed(self, triple: Triple) -> bool:
+        """Whether a triple is computed, and not asserted."""
+        return self._view.is_computed(triple)
 
     def without_idle_axioms(
         self, delete: Sequence[Triple], insert: Sequence[Triple]
@@ -264,11 +317,15 @@ class CompiledEngine:
         return self._view.instances(cls)
 
     def explain(self, triple: Triple) -> Explanation:
-        """Why a triple follows that holds."""
+        """Why a triple holds."""
         closure = self._schema.closure
         if triple in closure.facts:
             return self._prover.prove(closure.leaves(triple), triple)
-        if next(self._view.asserted(*triple), None) or triple in self._inert.facts:
+        if (
+            next(self._view.asserted(*triple), None)
+            or self._view.is_computed(triple)
+            or triple in self._inert.facts
+        ):
             return self._prover.prove([triple], triple)
         s, p, o = triple
         if not self._view.holds(triple) or (p == SAME_AS and s == o):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
+from itertools import chain
+from typing import NamedTuple
 
 from nodes.kb_node.reasoner.abox.columns import Columns
+from nodes.kb_node.reasoner.aside import Aside
 from nodes.kb_node.reasoner.change import Change
 from nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
 from nodes.kb_node.reasoner.explain.words import Words
@@ -27,6 +30,13 @@ class Inconsistent(Exception):
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
         self.explanation = explanation
+
+
+class Held(NamedTuple):
+    """What holds by itself: what is asserted and not set aside, and what is computed."""
+
+    asserted: list[Triple]
+    computed: list[Triple]
 
 
 class Reasoner:
@@ -51,10 +61,11 @@ class Reasoner:
         """
         self._fast = fast
         self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered, fast)
+        self._aside = Aside()
 
     def __len__(self) -> int:
         """How many triples are asserted, the TBox's included."""
-        return len(self._engine)
+        return len(self._engine) + len(self._aside)
 
     @property
     def is_compiled(self) -> bool:
@@ -106,6 +117,17 @@ class Reasoner:
             Inconsistent: everything is as it was before.
         """
         delete, insert = list(delete), list(insert)
+        if not self._aside:
+            return self._apply(delete, insert)
+        dropped = [triple for triple in delete if triple in self._aside]
+        change = self._apply(
+            [triple for triple in delete if triple not in self._aside],
+            [triple for triple in insert if triple not in self._aside or triple in dropped],
+        )
+        self._aside.remove(dropped)
+        return Change(change.others | {s for s, _, _ in dropped}, change.alike)
+
+    def _apply(self, delete: list[Triple], insert: list[Triple]) -> Change:
         engine = self._engine
         if isinstance(engine, CompiledEngine):
             try:
@@ -115,16 +137,60 @@ class Reasoner:
             except NotCompilable:  # undone
                 gone, new = engine.without_idle_axioms(delete, insert)
                 if len(gone) + len(new) < len(delete) + len(insert):
-                    return self.apply(delete=gone, insert=new)
-        return self._apply_anew(delete, insert)
+                    return self._apply(gone, new)
+        return self._apply_anew(delete, insert, (), ())
 
-    def _apply_anew(self, delete: list[Triple], insert: list[Triple]) -> Change:
-        before = dict.fromkeys(self.asserted())
+    def believe(
+        self,
+        *,
+        gone: Iterable[Triple] = (),
+        come: Iterable[Triple] = (),
+        aside: Iterable[Triple] = (),
+        back: Iterable[Triple] = (),
+    ) -> Change:
+        """Computed facts are gone and others come; asserted triples are set `aside`, or are `back`.
+
+        What is computed holds, and is inferred rather than asserted. What is set aside is asserted and does
+        not hold. Facts that are not there, or there already, change nothing.
+
+        Returns those whose named classes changed.
+
+        Raises:
+            Inconsistent: everything is as it was before.
+        """
+        gone, come, aside, back = list(gone), list(come), list(aside), list(back)
+        back = [triple for triple in back if triple in self._aside]
+        engine = self._engine
+        try:
+            if isinstance(engine, CompiledEngine):
+                change = engine.believe(gone, come, aside, back)
+            else:
+                change = self._apply_anew(aside, back, gone, come)
+        except Refused as refused:
+            raise Inconsistent(refused.explanation) from None
+        except NotCompilable:
+            change = self._apply_anew(aside, back, gone, come)
+        self._aside.remove(back)
+        self._aside.add(aside)
+        return change
+
+    def _apply_anew(
+        self,
+        delete: Sequence[Triple],
+        insert: Sequence[Triple],
+        gone: Iterable[Triple],
+        come: Iterable[Triple],
+    ) -> Change:
+        before = dict.fromkeys(self._engine.asserted(None, None, None))
         after = before.copy()
         for triple in delete:
             after.pop(triple, None)
         after.update(dict.fromkeys(insert))
-        engine = _engine_for(after, scattered=True, fast=self._fast)
+        computed = dict.fromkeys(self.computed())
+        for triple in gone:
+            computed.pop(triple, None)
+        computed.update(dict.fromkeys(come))
+        engine = _engine_for(after, scattered=True, fast=self._fast, computed=computed)
         old, self._engine = self._engine, engine
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
@@ -141,7 +207,11 @@ class Reasoner:
             Inconsistent: they contradict the rest.
             NotCompilable: everything would have to be worked out anew, and that was not wanted.
         """
-        new = [triple for triple in dict.fromkeys(triples) if next(self.asserted(*triple), None) is None]
+        new = [
+            triple
+            for triple in dict.fromkeys(triples)
+            if next(self.asserted(*triple), None) is None and not self.is_computed(triple)
+        ]
         engine = self._engine
         if isinstance(engine, CompiledEngine):
             try:
@@ -159,7 +229,8 @@ class Reasoner:
                 return
         elif not anew:
             raise NotCompilable("the engine works everything out anew")
-        self._engine = _engine_for([*self.asserted(), *new], fast=self._fast)
+        said = engine.asserted(None, None, None)
+        self._engine = _engine_for([*said, *new], fast=self._fast, computed=list(self.computed()))
         try:
             yield
         finally:
@@ -168,8 +239,38 @@ class Reasoner:
     def asserted(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """The asserted triples of a pattern."""
-        return self._engine.asserted(s, p, o)
+        """The asserted triples of a pattern, those that are set aside included."""
+        found = self._engine.asserted(s, p, o)
+        return chain(found, self._aside.match(s, p, o)) if self._aside else found
+
+    def computed(
+        self, s: Term | None = None, p: Term | None = None, o: Term | None = None
+    ) -> Iterator[Triple]:
+        """The computed triples of a pattern that are not asserted besides."""
+        return self._engine.computed(s, p, o)
+
+    def given(self, s: Term | None = None, p: Term | None = None, o: Term | None = None) -> Iterator[Triple]:
+        """What holds by itself: the asserted triples of a pattern, not set aside, and the computed."""
+        return chain(self._engine.asserted(s, p, o), self._engine.computed(s, p, o))
+
+    def is_computed(self, triple: Triple) -> bool:
+        """Whether a triple is computed, and not asserted."""
+        return self._engine.is_computed(triple)
+
+    def set_aside(self) -> Iterator[Triple]:
+        """What is asserted and does not hold."""
+        return iter(self._aside)
+
+    def held(self) -> Held:
+        """All that is `given`, for a reasoner elsewhere: `Reasoner.of`."""
+        return Held(list(self._engine.asserted(None, None, None)), list(self.computed()))
+
+    @classmethod
+    def of(cls, held: Held) -> Reasoner:
+        """One in which the same holds; nothing is set aside there. Raises Inconsistent."""
+        reasoner = cls(held.asserted)
+        reasoner.believe(come=held.computed)
+        return reasoner
 
     def by_subject(self) -> Iterator[list[Triple]]:
         """The asserted triples in groups of one subject, for whoever has no time to read all of them at once.
@@ -178,20 +279,26 @@ class Reasoner:
         that is asserted at no time is not.
         """
         engine = self._engine
-        return engine.by_subject() if isinstance(engine, CompiledEngine) else iter([list(self.asserted())])
+        if not isinstance(engine, CompiledEngine):
+            return iter([list(self.asserted())])
+        return chain(engine.by_subject(), map(list, (self._aside,)))
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject, predicate to objects. Costs as much as there is."""
-        return self._engine.about(subject)
+        found = self._engine.about(subject)
+        if self._aside:
+            for _, predicate, object_ in self._aside.match(subject, None, None):
+                found.setdefault(predicate, []).append(object_)
+        return found
 
     def mentioned(self, terms: Set[Term]) -> set[Term]:
         """Those that a triple may have as its subject or object: what is not mentioned is new."""
-        return self._engine.mentioned(terms)
+        return self._engine.mentioned(terms) | self._aside.mentioned(terms)
 
     def inferred(
         self, s: Term | None = None, p: Term | None = None, o: Term | None = None
     ) -> Iterator[Triple]:
-        """The triples about individuals that follow and were not asserted, of a pattern.
+        """The triples about individuals that are computed or follow and were not asserted, of a pattern.
 
         Left out are classes without a name, and that everything is the same as itself; `holds` knows both.
         A value is given once, in its canonical spelling (`datatypes.canonical`), unless it was asserted in
@@ -201,7 +308,7 @@ class Reasoner:
         return self._engine.inferred(s, p, o)
 
     def holds(self, triple: Triple) -> bool:
-        """Whether a triple is asserted or follows."""
+        """Whether a triple is asserted or computed, or follows; not if it is set aside."""
         return self._engine.holds(triple)
 
     def types(self, individual: Term) -> frozenset[Term]:
@@ -230,16 +337,23 @@ class Reasoner:
 
 
 def _engine_for(
-    triples: Iterable[Triple], closed: Facts | None = None, scattered: bool = False, fast: bool = True
+    triples: Iterable[Triple],
+    closed: Facts | None = None,
+    scattered: bool = False,
+    fast: bool = True,
+    computed: Iterable[Triple] = (),
 ) -> CompiledEngine | GeneralEngine:
     """The fast engine if it knows all that the triples use, else the general one. Raises Inconsistent."""
-    triples = list(dict.fromkeys(triples))
+    triples, computed = list(dict.fromkeys(triples)), list(computed)
     try:
-        return CompiledEngine(triples, closed, scattered=scattered, fast=fast)
+        compiled = CompiledEngine(triples, closed, scattered=scattered, fast=fast)
+        if computed:
+            compiled.believe((), computed, (), ())
+        return compiled
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None
     except NotCompilable as reason:
-        engine = GeneralEngine(triples, str(reason))
+        engine = GeneralEngine(triples, str(reason), computed)
     contradiction = engine.contradiction()
     if contradiction is not None:
         raise Inconsistent(contradiction)

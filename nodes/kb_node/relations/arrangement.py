@@ -110,4 +110,4 @@ def _is_borne(space: Space, solid: Solid) -> bool:
     container, supports, place = space.whereabouts(solid)
     if container is not None or supports:
         return True
-    return place is not None and solid.bottom - place[0].bottom <= space.limits.gap_m
+    return place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m

@@ -14,7 +14,7 @@ def fitted(model: str, size: Size) -> ModelShape:
     own = shapes().get(model) if model else None
     if own is None:
         return box(size)
-    if _is_turned(own.size_m, size):
+    if own.turns and _is_turned(own.size_m, size):
         own = _quarter_turned(own)
     if own.size_m == size:
         return own

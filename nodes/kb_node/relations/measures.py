@@ -6,14 +6,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from nodes.kb_node.relations.convex import contact, over_flat_top
-from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance
+from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance, hull
 from nodes.kb_node.relations.solids import LOWEST_M, Bounds, Solid
 from nodes.kb_node.relations.thresholds import Thresholds
 from ontology.model_shapes import Interior
 
+_ROUNDING = 1e-9
+"""0.80 - 0.75 is more than 0.05 in floats."""
 _SIDEWAYS = math.sin(math.radians(10.0))
 """A normal nearer to the horizontal than this is that of two who stand side by side."""
 _FLAT = math.cos(math.radians(2.0))
@@ -42,10 +45,11 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     """
     if upper is lower or not overlap(upper.bounds, lower.bounds):
         return None
-    if upper.bottom - lower.top > limits.gap_m:
+    reach = limits.gap_m + _ROUNDING
+    if upper.bottom - lower.top > reach:
         return None
     # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
-    most = min(limits.gap_m, upper.bottom - lower.bottom + limits.contact_m)
+    most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
     if most < 0.0 and upper.is_level and lower.is_level:
         return None
     most = max(most, limits.contact_m)
@@ -56,7 +60,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         for other in lower.parts:
             (low_x, low_y, low_z), (high_x, high_y, high_z) = other.low, other.high
             least = z0 - high_z
-            if least > most or z1 <= low_z or (is_level and least < -limits.gap_m):
+            if least > most or z1 <= low_z or (is_level and least < -reach):
                 continue
             if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
                 pairs.append((least, part, other))
@@ -69,7 +73,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         gap, upright = least, 1.0
         if not over_flat_top(part, other):
             gap, (_, _, upright) = contact(part, other, most)
-            if not -limits.gap_m <= gap <= most:
+            if not -reach <= gap <= most:
                 continue
             if upright < limits.upright:
                 if upright > _SIDEWAYS and abs(gap) <= limits.contact_m:
@@ -99,6 +103,22 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
             return 1.0
     whole = area(base)
     return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
+
+
+def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
+    """Whether the middle of a base is over what bears it at a height, or between that."""
+    base = upper.base
+    region = hull(
+        [
+            corner
+            for other in lower
+            for part in other.parts
+            if part.has_flat_top and abs(part.high[2] - height) <= LOWEST_M
+            for corner in clipped(base, part.shadow)
+        ]
+    )
+    x0, y0, x1, y1 = (limit(along) for limit in (min, max) for along in zip(*base, strict=True))
+    return len(region) > 2 and contains(region, ((x0 + x1) / 2, (y0 + y1) / 2))
 
 
 def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
@@ -206,7 +226,8 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     ceilings = [support.height for support in upper.supports if support.height >= least]
     if upper.bottom >= least:
         ceilings.append(upper.bottom)
-    share = area(clipped(lower.outline, upper.outline)) / max(area(lower.outline), 1e-9)
+    smaller = max(min(lower.footprint, upper.footprint), 1e-9)
+    share = area(clipped(lower.outline, upper.outline)) / smaller
     if share == 0.0 or not ceilings:
         return None
     height = min(ceilings)

@@ -7,8 +7,10 @@ past moment give the same.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from typing import NamedTuple
 
+from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.rules import RULES, About, Rule
 from nodes.kb_node.relations.solids import Solid
@@ -19,6 +21,8 @@ from schemas.relations import RelationName
 
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
+_STEP = 500
+"""Entities."""
 _BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
 """Along these `upward` goes."""
 
@@ -36,11 +40,17 @@ class Facts:
     def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
         self._kept = [_Kept(rule) for rule in rules]
+        self._in_turn: Iterator[Solid] = iter(())
 
     def __iter__(self) -> Iterator[Fact]:
         """All that hold."""
         for kept in self._kept:
             yield from kept.all()
+
+    def holds(self, fact: Fact) -> bool:
+        """Whether one of them does."""
+        name, relation, other = fact
+        return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
 
     def upward(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
@@ -55,6 +65,28 @@ class Facts:
                         found.add(above)
                         waiting.append(above)
         return found
+
+    def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
+        """Begin with these, in steps of some tens of milliseconds."""
+        for some in parts(entities, _STEP, _nothing):
+            for entity in some:
+                self.space.put(entity)
+            yield
+        for kept in self._kept:
+            for names in parts(tuple(self.space.solids), _STEP, _nothing):
+                kept.work_out(self.space, names, set(), set())
+                yield
+        for solid in self.space.solids.values():
+            solid.forget()
+
+    def _forget(self, count: int) -> None:
+        """Let the next solids, in turn, forget what can be worked out again."""
+        forgot = 0
+        for solid in islice(self._in_turn, count):
+            solid.forget()
+            forgot += 1
+        if forgot < count:
+            self._in_turn = iter(tuple(self.space.solids.values()))
 
     def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
@@ -74,7 +106,12 @@ class Facts:
         come: set[Fact] = set()
         for kept in self._kept:
             kept.update(space, moved, left, fresh, gone, come)
+        self._forget(8 * len(moved))
         return Changed(gone, come)
+
+
+def _nothing() -> None:
+    pass
 
 
 class _Kept:
@@ -106,21 +143,24 @@ class _Kept:
         for name in moved:
             concerned.update(dict.fromkeys(self.about.get(name, ())))
             concerned[name] = None
-        for solid in fresh:
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
-        for solid in left if self.rule.when_gone else ():
-            concerned.update(dict.fromkeys(self._whom_it_concerns(space, solid)))
-        for name in concerned:
+        if not concerned.keys() >= space.solids.keys():
+            for solid in (*fresh, *left) if self.rule.when_gone else fresh:
+                self._add_whom_it_concerns(space, solid, concerned)
+        self.work_out(space, concerned, gone, come)
+
+    def work_out(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
+        """Work out the facts of some, and add what is otherwise to `gone` and `come`."""
+        for name in names:
             before = self.of.get(name, ())
             now = self._work_out(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
 
-    def _whom_it_concerns(self, space: Space, solid: Solid) -> Iterator[str]:
+    def _add_whom_it_concerns(self, space: Space, solid: Solid, found: dict[str, None]) -> None:
         concerns = self.rule.concerns
         for other in space.around(solid, self.rule.margin_m(space.limits)):
-            if not other.is_place and concerns(space, solid, other):
-                yield other.name
+            if other.name not in found and not other.is_place and concerns(space, solid, other):
+                found[other.name] = None
 
     def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)

@@ -21,6 +21,10 @@ About = tuple[RelationName, str]
 """What a fact says of its subject: ("isOn", "table1")."""
 
 
+_ROUNDING = 1e-6
+"""What is asked for here may be asked for in vain."""
+
+
 class Rule(NamedTuple):
     """How some relations are worked out, and when they have to be worked out again."""
 
@@ -58,7 +62,7 @@ def _attachments(space: Space, solid: Solid) -> Iterator[About]:
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
     """Whether the other may hang on the solid, or not do so any more because that bears it."""
-    return other.bottom > solid.bottom and other.bottom <= solid.top + space.limits.gap_m
+    return solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m
 
 
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
@@ -66,11 +70,12 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
     if solid.is_place:
         return True
     limits = space.limits
-    if other.bottom > solid.top + limits.gap_m or other.top < solid.bottom - limits.gap_m:
+    gap = limits.gap_m + _ROUNDING
+    if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
         return False
     if not (other.is_level and solid.is_level) or (solid.hollows and other.volume < solid.volume):
         return True
-    return other.bottom >= max(solid.bottom - limits.contact_m, solid.lowest_top - limits.gap_m)
+    return other.bottom >= max(solid.bottom - limits.contact_m, solid.lowest_top - gap)
 
 
 RULES: Final[tuple[Rule, ...]] = (

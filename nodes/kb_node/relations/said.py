@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from nodes.kb_node.entities.alignments import shipped
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.solids import Solid
@@ -21,8 +22,12 @@ PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("holds"): ("isInside", True),
     v.dm("isLocatedIn"): ("isLocatedIn", False),
     v.dm("contains"): ("isLocatedIn", True),
+    **{p: (name, False) for known in shipped() for name, p in known.relations.items()},
 }
-"""The properties that say where a thing is, as relations; of the inverse ones the object is the thing."""
+"""The properties that say where a thing is, as relations; of the inverse ones the object is the thing.
+
+They are the household's and those of the vocabularies that there is an alignment with.
+"""
 
 
 def fact_of(triple: Triple) -> Fact | None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
-from schemas import errors
+from schemas import errors, wording
 from schemas.entities import Entity
 from schemas.relations import Where
 
@@ -80,6 +80,14 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
             return frozenset(names)
     known = {e.name for e in everyone} | {e.preferred_reference or "" for e in everyone}
     raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
+
+
+def only_meant(everyone: Sequence[Entity], word: str) -> str:
+    """The one entity that a word means. Raises UnknownName, BadRequest where it may be several."""
+    names = sorted(meant(everyone, word))
+    if len(names) > 1:
+        raise errors.BadRequest(f"'{word}' may mean {wording.few(names, 6)}; name one of them")
+    return names[0]
 
 
 def _is_on(space: Space, solid: Solid, carriers: Set[str]) -> bool:

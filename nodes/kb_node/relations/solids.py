@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from nodes.kb_node.relations.convex import Convex, convex
 from nodes.kb_node.relations.fitting import fitted
@@ -36,6 +36,9 @@ class Support:
     height: float
     outline: tuple[Point, ...]
     fill: float
+
+
+_WORKED_OUT = ("corners", "outline", "base", "centre", "supports", "parts", "samples", "footprint")
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +178,11 @@ class Solid:
             for part in self.shape.parts
         )
 
+    def forget(self) -> None:
+        """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
+        for name in _WORKED_OUT:
+            self.__dict__.pop(name, None)
+
     def to_map(self, point: Vector) -> Vector:
         """A point of its own frame in the map's."""
         x, y, z = point
@@ -225,6 +233,7 @@ def solid_of(entity: Entity | Placed) -> Solid | None:
     )
 
 
+@lru_cache(maxsize=4096)
 def _rotation(wxyz: tuple[float, float, float, float]) -> Matrix:
     w, x, y, z = wxyz
     return (

@@ -98,7 +98,7 @@ class Space:
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
-        least = solid.bottom - limits.gap_m
+        least = solid.bottom - limits.gap_m - 1e-6
         for other in self.around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
@@ -149,7 +149,9 @@ class Space:
             gaps.append(floor_m)
         nearest = min(gaps, key=_nearness)
         level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
-        if sum(made.share for _, made in level) < limits.base_share:
+        if sum(made.share for _, made in level) < limits.base_share and not measures.is_balanced(
+            solid, [other for other, _ in level], solid.bottom - nearest
+        ):
             return ()
         return tuple(sorted(level, key=lambda found: (-found[1].share, found[0].name)))
 

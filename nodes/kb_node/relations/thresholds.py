@@ -23,7 +23,7 @@ class Thresholds(Struct, frozen=True, kw_only=True):
     steepest_deg: float = 30.0
     """Between the vertical and the normal of a contact that carries."""
     base_share: float = 0.25
-    """Of the base that is over the surfaces; a body of even weight that does not fall has about half."""
+    """Of the base that is over the surfaces, if its middle is not; what does not fall has about half."""
     inside_share: float = 0.5
     """Of the volume that is within the hollow."""
     place_share: float = 0.5
@@ -35,7 +35,7 @@ class Thresholds(Struct, frozen=True, kw_only=True):
     near_most_m: float = 1.0
     """But never further apart than this."""
     beneath_share: float = 0.3
-    """Of the lower thing's footprint that is beneath the other."""
+    """Of the smaller footprint that is over or under the other."""
     attached_m: float = 0.02
     """Between what hangs and what it hangs on."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.beliefs import UNCHANGED, Believed
 from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
@@ -24,8 +24,8 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
-    placed: tuple[Placed, ...] = ()
-    """Where the entities are, if what follows is wanted."""
+    believed: Believed = UNCHANGED
+    """What is computed, and what is set aside, if what follows is wanted."""
 
 
 class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
@@ -44,9 +44,8 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
     """Every commit from then on, in order."""
 
     delta: Delta
-    changed: tuple[Placed, ...] = ()
-    """Entities as they are now, if what follows is wanted."""
-    removed: tuple[str, ...] = ()
+    believed: Believed = UNCHANGED
+    """What it changes of what is computed and set aside, if what follows is wanted."""
 
 
 class Asked(Struct, frozen=True, kw_only=True, tag=True):

@@ -19,7 +19,7 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.beliefs import UNCHANGED, Believed
 from nodes.kb_node.sparql.lanes import Lanes
 from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
 from nodes.kb_node.sparql.triples.dataset import Delta
@@ -29,7 +29,6 @@ from schemas import codec, errors
 from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
 from schemas.commits import Commit
-from schemas.entities import Entity
 from schemas.explanations import Triple
 from schemas.replies import Done
 from schemas.sparql import SparqlResult, Watching
@@ -45,16 +44,18 @@ class SparqlService:
         asserted: Callable[[], Iterable[Triple]],
         publish: Callable[[News], None],
         large_map: LargeMap | None = None,
-        entities: Callable[[], Iterable[Entity]] = tuple,
+        believed: Callable[[], Believed] = Believed,
     ) -> None:
-        """`asserted()` is what the map says now, `entities()` who is in it, `publish` gets the news.
+        """`asserted()` is what the map says now, `publish` gets the news.
+
+        `believed()` is what is computed besides, and what of the asserted is set aside.
 
         With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
         other work: after a large commit at once, else when it is asked for the first time. What follows is
         always kept in memory.
         """
         self._asserted = asserted
-        self._entities = entities
+        self._believed = believed
         self._publish = publish
         self._large = large_map
         self._worker: _Worker | None = None
@@ -89,29 +90,38 @@ class SparqlService:
         self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
-    def follow(self, commit: Commit) -> None:
-        """Every commit, in order."""
+    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
+        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes."""
+        if self._large is not None and not self._infers and self._since_filling is None:
+            self._large.foresee(commit_id, turtle, base)
+
+    def forget(self) -> None:
+        """What was foreseen does not come."""
+        if self._large is not None:
+            self._large.forget()
+
+    def foretell(self, commit: Commit) -> Callable[[], None]:
+        """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
+        if self._large is None or self._infers or self._since_filling is not None:
+            return lambda: None
+        return self._large.foretell(commit)
+
+    def follow(self, commit: Commit, believed: Believed = UNCHANGED) -> None:
+        """Every commit, in order, and what it changed of what is computed."""
         self._seq = commit.seq
         is_much = self._large is not None and self._large.is_much(commit)
         if self._since_filling is not None and not commit.tbox:
             self._since_filling.append(delta_of(commit))
         elif is_much and not self._infers:
-            self._fill()
+            self._fill(commit)
         elif self._worker is None:
             return
         elif commit.tbox:
             self._load()
         else:
-            self._worker.send(self._committed(commit))
-
-    def _committed(self, commit: Commit) -> Committed:
-        if not self._infers:
-            return Committed(delta=delta_of(commit))
-        return Committed(
-            delta=delta_of(commit),
-            changed=tuple(map(Placed.of, commit.changed)),
-            removed=tuple(gone.name for gone in commit.removed),
-        )
+            self._worker.send(
+                Committed(delta=delta_of(commit), believed=believed if self._infers else UNCHANGED)
+            )
 
     def _load(self) -> None:
         """Let the process have the map as it is."""
@@ -127,7 +137,7 @@ class SparqlService:
             else:
                 self._take_over(*kept)
 
-    def _fill(self) -> None:
+    def _fill(self, commit: Commit | None = None) -> None:
         assert self._large is not None
         since: list[Delta] = []
         self._since_filling = since
@@ -142,12 +152,12 @@ class SparqlService:
                 log.warning("SPARQL keeps its triples in memory: %s", error)
                 self._load_into_memory(self._worker)
 
-        self._large.fill(self._seq, lambda: self._seq).add_done_callback(on_done)
+        self._large.fill(self._seq, lambda: self._seq, commit).add_done_callback(on_done)
 
     def _load_into_memory(self, worker: _Worker) -> None:
-        placed = tuple(map(Placed.of, self._entities())) if self._infers else ()
+        believed = self._believed() if self._infers else UNCHANGED
         asserted = tuple(self._asserted())
-        worker.send(Load(seq=self._seq, asserted=asserted, infers=self._infers, placed=placed))
+        worker.send(Load(seq=self._seq, asserted=asserted, infers=self._infers, believed=believed))
         self._go_on()
 
     def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:

@@ -98,14 +98,16 @@ class Worker:
     def _load(self, load: Load) -> None:
         """Begin anew; the standing queries go on, with a look at what has changed for them."""
         self._dataset = Dataset(load.seq, load.asserted)
-        self._consequences = Consequences(load.asserted, self._dataset, load.placed) if load.infers else None
+        self._consequences = (
+            Consequences(load.asserted, self._dataset, load.believed) if load.infers else None
+        )
         self._begin_log()
         self.lookout.look_at_all(load.seq)
 
     def _follow(self, committed: Committed) -> None:
         delta = committed.delta
         if self._consequences is not None:
-            delta = self._consequences.after(delta, committed.changed, committed.removed)
+            delta = self._consequences.after(delta, committed.believed)
         self._log.append(delta)
         self._dataset.apply(delta)
         self.lookout.follow(delta)

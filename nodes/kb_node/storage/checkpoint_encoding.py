@@ -62,7 +62,7 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
 
     seq: int
     triples: tuple[Triple, ...] = ()
-    """None where there are columns."""
+    """Where there are columns, only what is asserted and set aside."""
     entities: tuple[Entity, ...] = ()
     read_by: bytes = b""
     """The format of the conclusions that were drawn from the triples: the entities, and the columns."""
@@ -70,7 +70,7 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
 
     def said(self) -> Iterable[Triple]:
         """The triples, wherever they are; in columns some of the TBox are among them."""
-        return self.triples if self.columns is None else self.columns.triples()
+        return self.triples if self.columns is None else chain(self.columns.triples(), self.triples)
 
 
 _bodies = msgpack.Decoder(_Body)

@@ -9,12 +9,15 @@ from __future__ import annotations
 import hashlib
 import logging
 import sqlite3
+import threading
+from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import accumulate
 from pathlib import Path
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from nodes.kb_node.storage import checkpoint_encoding, commit_encoding
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint as Checkpoint
@@ -58,6 +61,8 @@ class Journal:
         self.path = path
         self._file = JournalFile(path)
         self._digest: bytes | None = None  # that of the last commit, once it is known
+        self._stamps = array("q")
+        self._reading_stamps = threading.Lock()
         try:
             with self._file.reading() as db:
                 form = db.execute("SELECT value FROM meta WHERE key='format'").fetchone()
@@ -111,13 +116,15 @@ class Journal:
 
     def append(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
-    ) -> None:
+    ) -> bytes:
         """Make `commit` durable, with the TBox (N-Triples) that holds from now on if it is another.
 
-        `begun` is its body, if that was begun before.
+        `begun` is its body, if that was begun before. Returns the digest of all commits with this one.
 
         Raises NotWritten when the disk does not take it.
         """
+        if commit.digest:  # one from another journal, where it was chained to what was before it there
+            commit = structs.replace(commit, digest="")
         if self._digest is None:
             with self._file.reading() as db:
                 self._digest = _digest_of(db, self.last)
@@ -135,6 +142,7 @@ class Journal:
                 row = (commit.seq, tbox, _chain(b"", tbox))
                 db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
+        return digest
 
     @contextmanager
     def together(self) -> Iterator[None]:
@@ -152,7 +160,7 @@ class Journal:
 
     def commits(self, after: int = 0) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
-        return (codec.decode(body, Commit) for body in self._bodies(after))
+        return (_signed(body, digest) for body, digest in self._bodies(after))
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read every commit and TBox. Raises Damaged at the first damaged commit, Refused for a TBox."""
@@ -174,8 +182,8 @@ class Journal:
 
     def commit(self, seq: int) -> Commit:
         """The commit with that number, which must be there. Raises Damaged."""
-        for body in self._bodies(seq - 1, size=1):
-            return codec.decode(body, Commit)
+        for body, digest in self._bodies(seq - 1, size=1):
+            return _signed(body, digest)
         raise Damaged(self.path, seq)
 
     def commit_of(self, command_id: str) -> Commit | None:
@@ -216,8 +224,21 @@ class Journal:
             return db.execute(query, (until,)).fetchall()
 
     def seq_at(self, stamp_ns: int) -> int:
-        """The last commit up to a time, as far as the clock ran forward; 0 before the first."""
-        return bisect_right(range(1, self.last + 1), stamp_ns, key=self.stamp_of)
+        """The last commit that is stamped up to a time; 0 before the first.
+
+        Where the clock was set back meanwhile a time comes twice, and the second counts.
+        """
+        with self._reading_stamps:
+            stamps = self._stamps_so_far()
+            earliest_since = list(accumulate(reversed(stamps), min))[::-1]
+        return bisect_right(earliest_since, stamp_ns)
+
+    def _stamps_so_far(self) -> array[int]:
+        """Those of all commits: read once, as far as they are not known yet."""
+        stamps = self._stamps
+        while rows := self._page(len(stamps), _PAGE):
+            stamps.extend(codec.decode(body, _Stamp).stamp_ns for _, body, _ in rows)
+        return stamps
 
     def stamp_of(self, seq: int) -> int:
         """When a commit was made [ns since 1970]."""
@@ -250,7 +271,8 @@ class Journal:
                 log.warning("%s: the checkpoint after commit %d is damaged and not used", self.path, seq)
         return Checkpoint(seq=0)
 
-    def _bodies(self, after: int, size: int = _PAGE) -> Iterator[bytes]:
+    def _bodies(self, after: int, size: int = _PAGE) -> Iterator[tuple[bytes, bytes]]:
+        """The sound bodies and their digests."""
         with self._file.reading() as db:
             before = _digest_of(db, after)
         seq = after
@@ -260,7 +282,7 @@ class Journal:
                 if number != seq or not _is_sound(before, body, digest):
                     raise Damaged(self.path, seq)
                 before = digest
-                yield body
+                yield body, digest
 
     def _page(self, after: int, size: int) -> list[tuple[int, bytes, bytes]]:
         """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
@@ -284,6 +306,11 @@ class _Undoing(Struct):
     """The part of a commit that tells what it took back."""
 
     undoes: tuple[int, ...] = ()
+
+
+def _signed(body: bytes, digest: bytes) -> Commit:
+    commit: Commit = codec.decode(body, Commit)
+    return structs.replace(commit, digest=digest.hex())
 
 
 def _is_sound(before: bytes, body: object, digest: object) -> bool:

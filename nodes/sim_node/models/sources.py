@@ -8,8 +8,9 @@ from pathlib import Path
 
 from nodes.sim_node.models.library import Model, ModelError
 from nodes.sim_node.models.library import build as built_in
-from nodes.sim_node.models.model_files import SUFFIXES, read_model
+from nodes.sim_node.models.model_files import MESHES, SUFFIXES, read_model
 from nodes.sim_node.models.parts import Vec3
+from nodes.sim_node.models.readable import require_readable, require_references
 from schemas.errors import did_you_mean
 
 
@@ -17,19 +18,26 @@ from schemas.errors import did_you_mean
 class Models:
     """Models of files in `folder` or at a path, before the library's own.
 
-    `chair.glb` in the folder takes the place of the model `chair`. A model that is itself a path
-    (`/home/me/sofa.obj`) is read from there. Called with a model's name and a size, it answers the model;
+    `chair.glb` in the folder takes the place of the model `chair`. A model may itself be a path
+    (`/home/me/sofa.obj`), within the folder or `data`: what the map names must not make this process read any
+    other file. Called with a model's name and a size, it answers the model;
     raises ModelError for a file that cannot be used.
     """
 
     folder: Path | None = None
+    data: Path | None = None
+    """The data folder of the system."""
 
     def __call__(self, name: str, size_m: Vec3 | None) -> Model:
         """The model `name` at `size_m`, or at its own size."""
         path = self._path(name)
         if path is None:
             return built_in(name, size_m)
+        roots = [root for root in (self.folder, self.data) if root is not None]
+        require_readable(path, roots)
         try:
+            if path.suffix not in MESHES:
+                require_references(path, roots)
             return read_model(path, size_m, path.stat().st_mtime_ns)
         except OSError as error:
             raise ModelError(f"cannot read the model file {path}: {error.strerror}") from None
@@ -39,7 +47,7 @@ class Models:
             if self.folder is None and not Path(name).is_absolute():
                 raise ModelError(
                     f"the model file {name} is looked up in the folder given by `semmap up --models DIR`,"
-                    " but none was given; a TBox may also give an absolute path"
+                    " but none was given"
                 )
             return (self.folder or Path()) / name
         candidates = [self.folder / f"{name}{suffix}" for suffix in SUFFIXES] if self.folder and name else []

@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from nodes.sim_node.models.convex_parts import convex_part
@@ -152,17 +153,18 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
         lid = solid[cells[:, 0], cells[:, 1]].shape[1]
         top = cells[cells[:, 2] == cells[:, 2].max()]
         covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
+        floor, lid_m = _floor_and_lid(cuts, cells, float(low[2] * rise), float(high[2] * rise), rise)
         found.append(
             Interior(
                 low=(
                     float(xs[0] + (low[0] - 0.5) * step),
                     float(ys[0] + (low[1] - 0.5) * step),
-                    float(low[2] * rise),
+                    floor,
                 ),
                 high=(
                     float(xs[0] + (high[0] - 0.5) * step),
                     float(ys[0] + (high[1] - 0.5) * step),
-                    float(high[2] * rise),
+                    lid_m if all(covered) else float(high[2] * rise),
                 ),
                 fill=len(cells) / float(np.prod(high - low)),
                 open=not all(covered),
@@ -171,17 +173,36 @@ def _interiors(cuts: Intervals, xs: Floats, ys: Floats, step: float, height: flo
     return found
 
 
+def _floor_and_lid(
+    cuts: Intervals, cells: NDArray[np.int64], low_m: float, high_m: float, rise: float
+) -> tuple[float, float]:
+    """Where what is below some free cells ends and what is above them begins, not rounded to cells."""
+    columns = np.unique(cells[:, :2], axis=0)
+    ends = np.concatenate([high[columns[:, 0], columns[:, 1]] for _, high in cuts])
+    starts = np.concatenate([low[columns[:, 0], columns[:, 1]] for low, _ in cuts])
+    below = ends[(ends <= low_m + rise) & (ends >= low_m - 2 * rise)]
+    above = starts[(starts >= high_m - rise) & (starts <= high_m + 2 * rise)]
+    return (
+        float(np.median(below)) if below.size else low_m,
+        float(np.median(above)) if above.size else high_m,
+    )
+
+
 def _together(one: list[Interior], other: list[Interior]) -> list[Interior]:
-    """The interiors of both readings; where they meet those of the first."""
-    apart = [
-        room
-        for room in other
-        if not any(
-            all(min(a[k], b[k]) > max(c[k], d[k]) for k in range(3))
-            for a, b, c, d in ((room.high, known.high, room.low, known.low) for known in one)
-        )
-    ]
-    return [*one, *apart]
+    """The interiors of both readings; of those that meet the larger."""
+    kept: list[Interior] = []
+    for room in sorted([*one, *other], key=lambda room: -_volume(room)):
+        if not any(_meet(room, known) for known in kept):
+            kept.append(room)
+    return sorted(kept, key=lambda room: room.low[::-1])
+
+
+def _meet(one: Interior, other: Interior) -> bool:
+    return all(one.low[k] < other.high[k] and other.low[k] < one.high[k] for k in range(3))
+
+
+def _volume(room: Interior) -> float:
+    return float(np.prod(np.subtract(room.high, room.low)))
 
 
 def _cut(part: Part, xs: Floats, ys: Floats) -> tuple[Floats, Floats]:

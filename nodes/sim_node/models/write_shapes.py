@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import msgspec
+from msgspec import structs
 
-from nodes.sim_node.models.library import build
+from nodes.sim_node.models.library import ModelError, build
+from nodes.sim_node.models.model_files import SUFFIXES
 from nodes.sim_node.models.model_table import MODELS
+from nodes.sim_node.models.sources import Models
 from nodes.sim_node.models.spaces import shape_of
 from ontology import MODEL_SHAPES_JSON
 from ontology.model_shapes import ModelShape
@@ -18,6 +22,33 @@ _DIGITS = 4
 def library_shapes() -> dict[str, ModelShape]:
     """Model name to shape at its own size."""
     return {name: shape_of(build(name, None)) for name in ("", *sorted(MODELS))}
+
+
+def own_shapes(folder: Path) -> dict[str, ModelShape]:
+    """Those of the model files in a folder, by the names that a TBox may have for them.
+
+    A file that cannot be used has none: the simulator says why when it meets it.
+    """
+    models = Models(folder)
+    found: dict[str, ModelShape] = {}
+    for path in sorted(folder.iterdir()):
+        if path.suffix not in SUFFIXES:
+            continue
+        try:
+            shape = structs.replace(shape_of(models(path.name, None)), turns=False)
+        except ModelError:
+            continue
+        found[path.name] = shape
+        found.setdefault(path.stem, shape)
+    return found
+
+
+def write_own(folder: Path | None, target: Path) -> None:
+    """Write the shapes of the models in a folder; without a folder there are none."""
+    if folder is None:
+        target.unlink(missing_ok=True)
+    else:
+        target.write_text(as_json(own_shapes(folder)))
 
 
 def as_json(shapes: dict[str, ModelShape]) -> str:

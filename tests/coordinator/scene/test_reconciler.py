@@ -14,6 +14,7 @@ from schemas import commands as c
 from schemas import errors
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
+from tests.coordinator.conftest import at_once
 
 
 def standing(order: BodyOrder) -> Body:
@@ -29,7 +30,9 @@ def standing(order: BodyOrder) -> Body:
 
 def test_where_only_perception_tells_the_map_nothing_is_asked_of_the_simulator(door):
     asked = []
-    keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *words: asked.append(words), asked.append)
+    keeping = Keeping(
+        CoordinatorConfig("perceived"), door, at_once(door), lambda *words: asked.append(words), asked.append
+    )
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.scene.known = True
     keeping.keep()
@@ -53,7 +56,7 @@ def test_a_reset_tries_again_what_could_not_be_made(door):
         future.set_result(answer)
         return future
 
-    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, lambda text: None)
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.scene.known = True
     keeping.keep()
@@ -76,7 +79,7 @@ def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_t
         future.set_result(answer)
         return future
 
-    keeping = Keeping(CoordinatorConfig("map"), door, ask, said.append)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, said.append)
     keeping.scene.known = True
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.keep()
@@ -87,7 +90,7 @@ def test_a_body_that_cannot_be_made_is_a_problem_only_as_long_as_its_entity_is_t
 
 
 def test_a_foreign_body_is_a_problem_only_as_long_as_it_is_there(door):
-    keeping = Keeping(CoordinatorConfig("scene"), door, lambda *_: Future(), print)
+    keeping = Keeping(CoordinatorConfig("scene"), door, at_once(door), lambda *_: Future(), print)
     gizmo = standing(BodyOrder(name="gizmo", class_="Gizmo", pose=Pose(position_m=(0.0, 0.0, 0.0)), commit=0))
     keeping.scene.known = True
     keeping.scene.bodies["gizmo"] = gizmo
@@ -114,7 +117,7 @@ def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
             bodies = tuple(keeping.scene.bodies.values())
             future.set_result(Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=bodies))
 
-    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, lambda text: None)
     keeping.scene.known = True
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.keep({"chair1"})
@@ -127,7 +130,7 @@ def test_what_changes_while_orders_are_under_way_is_done_right_after_them(door):
 
 
 def test_a_reset_without_a_simulator_is_refused(door):
-    keeping = Keeping(CoordinatorConfig("map"), door, lambda *_: Future(), print)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda *_: Future(), print)
     with pytest.raises(errors.NoAnswer, match="no simulator is running"):
         keeping.place_all()
 
@@ -142,7 +145,7 @@ def test_bodies_are_told_of_batch_by_batch(door):
             future.set_result(Spawned(bodies=tuple(map(standing, message.bodies)), failed={}))
         return future
 
-    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, lambda text: None)
     keeping.scene.known = True
     entities = [f'{{"class": "Chair", "at": [{i}, 0, 0]}}' for i in range(2 * BATCH)]
     door.change(c.Load(content=f'{{"entities": [{", ".join(entities)}]}}'.encode(), filename="chairs.json"))
@@ -178,7 +181,7 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
         future.set_result(answer)
         return future
 
-    keeping = Keeping(CoordinatorConfig("map"), door, ask, lambda text: None)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, lambda text: None)
     keeping.scene.known = True
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     keeping.keep()
@@ -196,15 +199,103 @@ def test_a_body_that_cannot_be_moved_where_the_map_says_has_a_reason_for_being_n
 
 
 def test_what_is_seen_against_an_operators_word_is_a_problem_of_the_system(door):
-    keeping = Keeping(CoordinatorConfig("perceived"), door, lambda *_: None, print)
+    keeping = Keeping(CoordinatorConfig("perceived"), door, at_once(door), lambda *_: None, print)
     door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
     assert keeping.problems() == []
     door.change(c.Update(name="chair1", conflict="not seen where it should stand", source="perception"))
     assert keeping.problems() == ["chair1: perception: not seen where it should stand"]
 
 
+def bodies_elsewhere(door, count):
+    """A keeper that sees so many chairs rest elsewhere than the map says; what it changes, what it moves."""
+    changes = []
+
+    def change(change):
+        changes.append((change, Future()))
+        return changes[-1][1]
+
+    def ask(message):
+        future = Future()
+        if message.VERB == "move":
+            moved.extend(message.placements)
+            future.set_result(BodiesMoved(bodies=(), failed={}))
+        return future
+
+    moved = []
+    keeping = Keeping(CoordinatorConfig("map"), door, change, ask, print)
+    keeping.scene.known = True
+    for i in range(count):
+        door.change(c.Add(class_="Chair", name=f"chair{i}", at=(float(i), 1.0, 0.0)))
+        order = BodyOrder(
+            name=f"chair{i}", class_="Chair", pose=Pose(position_m=(float(i), 2.0, 0.0)), commit=i + 1
+        )
+        keeping.scene.bodies[order.name] = standing(order)
+    return keeping, changes, moved
+
+
+def test_the_map_follows_many_bodies_without_waiting_for_each(door):
+    keeping, changes, _ = bodies_elsewhere(door, 40)
+    keeping.keep()
+    keeping.keep()
+    assert [*(name for change, _ in changes for name in change.poses)] == [f"chair{i}" for i in range(40)]
+    assert not keeping.in_agreement()
+    for change, future in changes:
+        future.set_result(door.change(change))
+    assert keeping.in_agreement()
+    assert {e.pose.position_m[1] for e in door.map.entities.values()} == {2.0}
+    assert {e.pose_provenance.source for e in door.map.entities.values()} == {"scene"}
+
+
+def test_a_body_goes_back_when_the_map_does_not_follow(door):
+    keeping, changes, moved = bodies_elsewhere(door, 1)
+    keeping.keep()
+    changes[0][1].set_exception(errors.Refused("it may not stand there"))
+    keeping.keep()
+    assert [(p.name, p.pose.position_m) for p in moved] == [("chair0", (0.0, 1.0, 0.0))]
+
+
+def test_a_body_is_followed_later_when_the_map_does_not_answer_now(door):
+    keeping, changes, moved = bodies_elsewhere(door, 1)
+    keeping.keep()
+    changes[0][1].set_exception(MemoryError("no memory"))
+    keeping.keep()
+    assert (len(changes), moved) == (2, [])
+
+
+def test_who_moves_an_entity_before_the_map_follows_its_body_is_right(door):
+    keeping, changes, _ = bodies_elsewhere(door, 1)
+    keeping.keep()
+    door.change(c.Update(name="chair0", at=(7.0, 7.0, 0.0)))
+    assert door.change(changes[0][0]).commit is None
+    assert door.map.entity("chair0").pose.position_m == (7.0, 7.0, 0.0)
+
+
+def test_a_body_whose_entity_is_gone_is_no_longer_followed(door):
+    keeping, changes, _ = bodies_elsewhere(door, 1)
+    keeping.keep()
+    door.change(c.Remove(names=("chair0",)))
+    assert door.change(changes[0][0]).commit is None
+
+
+def test_an_answer_that_cannot_be_taken_does_not_end_the_keeping(door):
+    asked = []
+
+    def ask(message):
+        asked.append(message.VERB)
+        future = Future()
+        future.set_exception(MemoryError("no memory"))
+        return future
+
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), ask, lambda text: None)
+    keeping.scene.known = True
+    door.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    keeping.keep()
+    keeping.keep()
+    assert asked == ["spawn", "spawn"]
+
+
 def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_rests(door):
-    keeping = Keeping(CoordinatorConfig("map"), door, lambda call: Future(), lambda text: None)
+    keeping = Keeping(CoordinatorConfig("map"), door, at_once(door), lambda call: Future(), lambda text: None)
     keeping.scene.known = True
     for i, name in enumerate(("chair1", "chair2", "chair3")):
         door.change(c.Add(class_="Chair", name=name, at=(1.0 + i, 1.0, 0.0)))

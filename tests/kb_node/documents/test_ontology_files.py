@@ -215,3 +215,18 @@ def test_real_ontologies_come_with_their_imports(files, given, count, missing):
     gathered = gather([folder / file for file in files], {iri: folder / file for iri, file in given.items()})
     assert (len(gathered.files), gathered.missing) == (count, missing)
     assert ontology_files.missing_imports(gathered.triples) == missing
+
+
+def test_nameless_nodes_of_two_files_in_functional_syntax_stay_apart(tmp_path):
+    """Their labels are made by the same counting, and anonymous individuals may be labelled alike."""
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.ofn").write_text(
+            f"Prefix(:=<http://o.org/{name}#>) Ontology(<http://o.org/{name}>"
+            " SubClassOf(:A ObjectSomeValuesFrom(:p :B)) ObjectPropertyAssertion(:p :x _:p0n0) )"
+        )
+    found = ontology_files.gather([tmp_path], {}).triples
+    nodes = {name: {o for s, _, o in found if f"/{name}#" in s and o[0] == "_"} for name in ("one", "two")}
+    assert all(len(of_file) == 2 for of_file in nodes.values())
+    assert nodes["one"].isdisjoint(nodes["two"])
+    assert len({o for _, p, o in found if p == v.iri(f"{v.OWL}onProperty")}) == 2
+    assert len({s for s, p, _ in found if p == v.iri(f"{v.OWL}onProperty")}) == 2

@@ -4,10 +4,12 @@ import math
 
 import pytest
 
+from nodes.kb_node.answers import whereabouts
 from nodes.kb_node.documents import abox_document, rdf
 from nodes.kb_node.entities import alignments
 from ontology import vocabulary as v
 from schemas import errors
+from schemas.commands import Get
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
@@ -226,3 +228,10 @@ def test_the_shipped_alignments_can_be_read():
 def test_what_is_no_alignment_is_told(text):
     with pytest.raises(errors.BadFile, match=r"x\.toml is not an alignment"):
         alignments.read(text, "x.toml")
+
+
+def test_what_is_said_of_places_in_other_words_is_compared_with_the_poses(kitchen):
+    cup = DRAWER.replace("drawer1", "cup1").replace("soma:Drawer", "soma:Cup").replace("1.4 0.9", "5.0 0.9")
+    kitchen.commit(home.transaction(2, triples(cup + "map:cup1 soma:isOntopOf map:drawer1 .", "b")))
+    (wrong,) = whereabouts.Now(kitchen).entity(Get(name="cup1", where=True)).denied
+    assert wrong.text.startswith("cup1 was said to be on drawer1; it ")

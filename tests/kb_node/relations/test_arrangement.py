@@ -9,7 +9,7 @@ from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 WALL = thing("wall1", (0.0, 2.0, 0.0), size=(0.1, 4.0, 2.5), turn=(0.7071068, 0.0, 0.0, 0.7071068))
 PICTURE = thing("picture1", (0.0, 1.93, 1.4), turn=(0.7071068, 0.0, 0.0, -0.7071068))
-CUPS = [thing(f"cup{n}", (0.18 * n, 0.0, TOP)) for n in (-1, 0, 1)]
+CUPS = [thing(f"cup{n}", (0.18 * n, 0.0, TOP)) for n in (1, 2, 3)]
 
 
 def space(*entities):

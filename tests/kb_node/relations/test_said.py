@@ -80,6 +80,8 @@ def test_a_fact_is_read_off_either_of_two_inverse_properties():
         == ("cup1", "isOn", "table1")
     )
     assert fact_of((cup, v.dm("touches"), table)) is None
+    on_top = "<http://www.ease-crc.org/ont/SOMA.owl#isOntopOf>"
+    assert fact_of((cup, on_top, table)) == fact_of((cup, v.dm("isOn"), table))
     cup = thing("cup1", (3.0, 0.0, 0.0))
     twice = [("cup1", "isOn", "table1")] * 2
     assert len(list(denied(Space([TABLE, cup]), twice))) == 1

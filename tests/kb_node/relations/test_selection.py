@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node.relations.selection import meant, selected
+from nodes.kb_node.relations.selection import meant, only_meant, selected
 from nodes.kb_node.relations.space import Space
 from schemas import errors
 from schemas.relations import Where
@@ -55,6 +55,15 @@ def test_words():
     assert meant(MAP, "Cup") == {"cup1", "cup2"}
     with pytest.raises(errors.UnknownName, match="did you mean table1"):
         meant(MAP, "tabel1")
+
+
+def test_a_word_that_means_one_only():
+    assert only_meant(MAP, "my cup") == "cup1"
+    assert only_meant(MAP, "kitchen") == "kitchen1"
+    with pytest.raises(errors.BadRequest, match="'Cup' may mean cup1 and cup2; name one of them"):
+        only_meant(MAP, "Cup")
+    with pytest.raises(errors.UnknownName):
+        only_meant(MAP, "nobody")
 
 
 @pytest.mark.parametrize("where", [{"within": 1.0}, {"nearest": 2}, {"to": "cup1"}])

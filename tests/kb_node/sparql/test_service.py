@@ -11,6 +11,7 @@ import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
+from nodes.kb_node.beliefs import Beliefs
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.sparql import readers
@@ -39,13 +40,16 @@ class Home:
         self.seq = 0
         self.news = queue.SimpleQueue()
         self.there = {}
+        self.beliefs = Beliefs(self.reasoner)
         self.service = SparqlService(
-            lambda: self.reasoner.asserted(), self.news.put, entities=lambda: self.there.values()
+            lambda: self.reasoner.asserted(), self.news.put, believed=lambda: self.beliefs.all()
         )
 
     def commit(self, insert=(), retract=(), changed=(), removed=()):
         insert, retract = tuple(insert), tuple(retract)
-        self.reasoner.apply(delete=retract, insert=insert)
+        self.beliefs.begin()
+        self.beliefs.change(retract, insert)
+        self.beliefs.follow(changed, removed, self.there.get, retract, insert)
         self.seq += 1
         self.there.update((entity.name, entity) for entity in changed)
         for name in removed:
@@ -60,11 +64,12 @@ class Home:
             changed=tuple(changed),
             removed=tuple(Departed(name=name, types=()) for name in removed),
         )
-        self.service.follow(commit)
+        self.service.follow(commit, self.beliefs.believed)
 
     def replace(self, triples):
         """Another TBox."""
         self.reasoner = Reasoner(triples)
+        self.beliefs = Beliefs(self.reasoner)
         self.seq += 1
         self.service.follow(Commit(seq=self.seq, stamp_ns=0, id="", source="operator", tbox=True))
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from nodes import bus
+from nodes.extern.cli.output.printable import say
 from nodes.extern.client import Client
 from schemas import keys
 from schemas.health import LOADING, Health
@@ -22,7 +23,7 @@ def progress(client: Client) -> Iterator[None]:
 
     def tell(_: str, health: Health) -> None:
         if health.detail.startswith(LOADING) and time.monotonic() > from_s:
-            print(f"semmap: {health.detail}", file=sys.stderr, flush=True)
+            say(f"semmap: {health.detail}", file=sys.stderr)
 
     subscriber = bus.follow(client.session, keys.HEALTH, tell)
     try:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rich.cells import cell_len
 
+from nodes.extern.cli.output.printable import escaped
+
 _BETWEEN = "  "
 
 
@@ -25,10 +27,3 @@ def lines(
     yield line(names)
     yield f" {'─' * (sum(widths) + len(_BETWEEN) * (len(widths) - 1))}"
     yield from map(line, shown)
-
-
-def escaped(text: str) -> str:
-    """Text as it is, with line ends and the like as escapes: they would break the row, or the terminal."""
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -14,6 +14,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from nodes.extern.cli.output import plain
+from nodes.extern.cli.output.printable import escaped
 from schemas import agents
 from schemas.commits import Commit
 from schemas.entities import Pose, Provenance
@@ -72,7 +73,7 @@ def table(*columns: str, fold: Collection[str]) -> Rows:
 
 def printable(text: str) -> Text:
     """Text with its line ends and the like escaped, for rich."""
-    return Text(plain.escaped(text))
+    return Text(escaped(text))
 
 
 def card(rows: Mapping[str, str]) -> Table:

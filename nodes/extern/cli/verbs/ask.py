@@ -16,6 +16,7 @@ from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
+from nodes.extern.cli.output.printable import say
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys, roles
@@ -91,8 +92,9 @@ def get(client: Client, name: str, format: str, as_of: str | None) -> None:
 def check(client: Client, engine: Any) -> None:
     """Check whether the map is consistent, and explain why not."""
     checked = client.check(engine)
-    print(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
+    say(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     print_lines(f"  note: {relation.text}" for relation in checked.denied)
+    print_lines(f"  note: {text}" for text in checked.withheld)
     if not checked.consistent:
         sys.exit(errors.Inconsistent.exit_status)
 
@@ -141,7 +143,7 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
     if format == "json":
         print_json(answer)
     else:
-        print(answer.text)
+        say(answer.text)
     if not answer.possible:
         sys.exit(errors.Inconsistent.exit_status)
 
@@ -289,7 +291,7 @@ def _watch_key(client: Client, keyexpr: str) -> None:
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:
-                print(output.show.commit_line(commit), flush=True)
+                say(output.show.commit_line(commit))
     from nodes import bus
 
     if client.identity is not None:
@@ -300,7 +302,7 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 f" {', '.join(followed)}"
             )
     for key, payload in bus.listen(client.session, keyexpr):
-        print(f"{key}  {payload}", flush=True)
+        say(f"{key}  {payload}")
 
 
 def _print_entities(entities: Sequence[Entity]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import click
@@ -104,7 +105,8 @@ def list_(folder: Path) -> None:
     """Show who has a certificate, in which role and until when."""
     rows = table("name", "role", "valid until", "state", fold=())
     for member in Register.read(folder).members.values():
-        state = "revoked" if member.revoked else "admitted"
+        expired = member.expires < datetime.now(UTC)
+        state = "revoked" if member.revoked else "expired" if expired else "admitted"
         rows.add(member.name, member.role, f"{member.expires:%Y-%m-%d}", state)
     show.console().print(rows)
 

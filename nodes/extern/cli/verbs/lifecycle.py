@@ -16,6 +16,7 @@ from msgspec import structs
 from nodes import bus
 from nodes.extern.cli.calling import complain
 from nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from nodes.extern.cli.output.printable import say
 from nodes.identity import SUPERVISOR, Identity
 from nodes.identity.register import Register
 from nodes.runtime import extras
@@ -144,7 +145,7 @@ def up(settings: Settings) -> None:
 
     if settings.truth == "perceived" and not settings.perception:
         complain("no perception node started; add --perception or publish your own observations")
-    run_up(settings, say=lambda line: click.echo(line))
+    run_up(settings, say=say)
 
 
 @click.command()
@@ -157,7 +158,8 @@ def down(data: Path | None, connect: str | None) -> None:
     from nodes.supervisor.control import Supervisor
 
     if data is None and connect is not None:
-        there = [Path(s.data) for s in registry.systems() if connect in (s.listen, s.reachable)]
+        meant = {connect, bus.over_tls(connect)}
+        there = [Path(s.data) for s in registry.systems() if meant & {s.listen, s.reachable}]
         if not there:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = there
@@ -267,6 +269,8 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     if secure is not None:
         if insecure:
             raise errors.BadRequest("give either --secure or --insecure")
+        for endpoint in (listen, *values["connect"]):
+            bus.require_tls(endpoint)
         if values["connect"]:
             return  # the router is elsewhere
         register = Register.read(Path(secure))

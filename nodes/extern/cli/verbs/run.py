@@ -10,6 +10,7 @@ import click
 
 from nodes.extern.cli.calling import complain, connect_option, identity_option, print_lines, run_words
 from nodes.extern.cli.output import lines
+from nodes.extern.cli.output.printable import say
 from nodes.extern.client import Client, connect
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
@@ -31,7 +32,7 @@ def run(file: Path, keep_going: bool, where: str | None, identity: str | None) -
     failed = 0
     with connect(where, agent=f"run/{file.name}", identity=identity) as client:
         for number, line in lines:
-            click.echo(f"{number}: {line}")
+            say(f"{number}: {line}")
             status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")
             failed += status != 0
             if status and not keep_going:

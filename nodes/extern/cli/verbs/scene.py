@@ -10,6 +10,7 @@ import click
 from nodes.extern.cli.calling import carrying, given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
+from nodes.extern.cli.output.printable import say
 from nodes.extern.files import write_atomically
 from nodes.runtime import extras
 from schemas import errors
@@ -29,7 +30,7 @@ def move(client: Client, **fields: Any) -> None:
 
     The map follows when it comes to rest.
     """
-    print(client.move(**given(fields)).text)
+    say(client.move(**given(fields)).text)
 
 
 @click.command()
@@ -37,7 +38,7 @@ def move(client: Client, **fields: Any) -> None:
 @talks
 def pause(client: Client, off: bool) -> None:
     """Pause simulated time, or resume it."""
-    print(client.pause(off=off).text)
+    say(client.pause(off=off).text)
 
 
 @click.command(cls=NegativeNumbers)
@@ -45,7 +46,7 @@ def pause(client: Client, off: bool) -> None:
 @talks
 def step(client: Client, seconds: float) -> None:
     """Advance paused time by SECONDS (default 0.1, at most 60)."""
-    print(client.step(seconds).text)
+    say(client.step(seconds).text)
 
 
 @click.command()
@@ -55,7 +56,7 @@ def reset(client: Client) -> None:
 
     Bodies that could not be created are tried again.
     """
-    print(client.reset().text)
+    say(client.reset().text)
 
 
 @click.command()

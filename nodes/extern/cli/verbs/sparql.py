@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from nodes.extern.cli import output
 from nodes.extern.cli.output.formats import Format
+from nodes.extern.cli.output.printable import say
 from nodes.extern.files import read_file
 from ontology import vocabulary as v
 from schemas import errors
@@ -60,7 +61,7 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
         print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
             for line in output.sparql_formats.news(standing.variables, changed):
-                print(line, flush=True)
+                say(line)
 
 
 def _print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
@@ -78,7 +79,7 @@ def watch_places(client: Client, **where: Any) -> None:
         for changed in standing.changes():
             for sign, rows in (("-", changed.disappeared), ("+", changed.appeared)):
                 for name in _names(rows):
-                    print(f"{sign} {name}  (commit {changed.seq})", flush=True)
+                    say(f"{sign} {name}  (commit {changed.seq})")
 
 
 def _names(rows: Iterable[Row]) -> list[str]:

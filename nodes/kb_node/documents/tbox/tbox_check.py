@@ -15,6 +15,7 @@ from nodes.kb_node.documents.ontology_files import VERSION, Gathered
 from nodes.kb_node.documents.tbox import tbox_declarations
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.entailment.explaining import empty_classes
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from ontology import prefixes, stars
@@ -49,6 +50,10 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     classes = _classes(gathered.triples)
     spatial_classes = _spatial(reasoner)  # first: it tells apart what sentences name
     unsatisfiable = list(_unsatisfiable(reasoner, classes))
+    allowed = [class_ for class_, why in unsatisfiable if not why]
+    for empty in empty_classes(reasoner, allowed, _PATIENCE_S):
+        assert empty.conclusion is not None
+        unsatisfiable.append((empty.conclusion[0], empty.text))
     wrong = {class_ for class_, why in unsatisfiable if why}
     quickness = Quickness(
         load_s=load_s,
@@ -60,7 +65,7 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
         tbox,
         spatial_classes=spatial_classes,
         unsatisfiable=tuple(Unsatisfiable(iri=v.bare(c), why=why) for c, why in unsatisfiable if why),
-        untried=len(classes) - len(unsatisfiable),
+        untried=len(classes) - len({class_ for class_, _ in unsatisfiable}),
         quickness=quickness,
     )
 
@@ -130,7 +135,7 @@ def _spatial(reasoner: Reasoner) -> int | None:
 
 
 def _unsatisfiable(reasoner: Reasoner, classes: Iterable[Term]) -> Iterator[tuple[Term, str]]:
-    """Each class that was tried, with why nothing can be of it, or an empty text.
+    """Each class that was tried, with why nothing can be of it by the rules, or an empty text.
 
     An individual of the class is added, and taken back.
     """

@@ -17,7 +17,7 @@ from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
 from nodes.kb_node.reasoner.abox.steps import Steps
 from nodes.kb_node.reasoner.abox.store import DERIVED, Store
 from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
-from nodes.kb_node.reasoner.explanations import Term
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.terms import is_literal
@@ -54,6 +54,8 @@ class ABox:
         self.spellings: dict[datatypes.Value, list[int]] = {}
         self.is_mixed = False
         """Whether a literal without a known value was ever the same as another: all spellings matter then."""
+        self.overlaid: list[Triple] = []
+        """What was computed, and was asserted since `settle`."""
         self.fresh: list[int] = []
         self.dirty: dict[int, None] = {}
         for term in schema.nominals:
@@ -99,12 +101,10 @@ class ABox:
             yield from self._among_all(node, group)
             return
         for member in self.members(node):
-            for p in group.out:
-                for edge in store.out.of(member, p):
-                    yield edge, member, store.object[edge]
-            for p in group.into:
-                for edge in store.into.of(member, p):
-                    yield edge, member, store.subject[edge]
+            for edge in store.out.among(member, group.out):
+                yield edge, member, store.object[edge]
+            for edge in store.into.among(member, group.into):
+                yield edge, member, store.subject[edge]
 
     def _among_all(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
         store, out, into = self.store, frozenset(group.out), frozenset(group.into)
@@ -144,12 +144,11 @@ class ABox:
             return NONE
         for x in self.members(one):
             for y in self.members(other):
-                for p in group.out:
-                    if (edge := store.edge(x, p, y)) != NONE:
-                        return edge
-                for p in group.into:
-                    if (edge := store.edge(y, p, x)) != NONE:
-                        return edge
+                edge = store.edge_of(x, group.out, y)
+                if edge == NONE:
+                    edge = store.edge_of(y, group.into, x)
+                if edge != NONE:
+                    return edge
         return NONE
 
     def is_plain(self, edge: int) -> bool:
@@ -208,6 +207,7 @@ class ABox:
             if before.excluded is None:
                 self.store.file(node, before, self.store.kind[node])
         self.moved.clear()
+        self.overlaid.clear()
 
     def forget_spelling(self, literal: int) -> None:
         """A literal that nothing has any more is no spelling of its value."""

@@ -9,7 +9,7 @@ from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.kinds import Kind
-from nodes.kb_node.reasoner.abox.store import ASSERTED
+from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
@@ -72,6 +72,29 @@ class View:
             for edge in self._asserted_edges(s, p, o):
                 yield self._triple(edge)
 
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
+        source, edge = self._store.source, -1
+        if s is None and p is None and o is None:
+            while (edge := source.find(COMPUTED, edge + 1)) >= 0:
+                yield self._triple(edge)
+            return
+        for edge in self._stored_edges(s, p, o):
+            if source[edge] == COMPUTED:
+                yield self._triple(edge)
+
+    def is_computed(self, triple: Triple) -> bool:
+        """Whether a triple is computed, and not asserted."""
+        s, o, predicate = (
+            self._store.find(triple[0]),
+            self._store.find(triple[2]),
+            self._schema.find_property(triple[1]),
+        )
+        if s is None or o is None or predicate is None:
+            return False
+        edge = self._store.edge(s, predicate, o)
+        return edge != NONE and self._store.source[edge] == COMPUTED
+
     def by_subject(self) -> Iterator[list[Triple]]:
         """The asserted triples, subject by subject. The ABox may change between two of them.
 
@@ -126,15 +149,16 @@ class View:
         return self._abox.kinds.given(self._store.kind[node])
 
     def _asserted_edges(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[int]:
+        return (e for e in self._stored_edges(s, p, o) if self._store.source[e] == ASSERTED)
+
+    def _stored_edges(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[int]:
         store = self._store
         subject = None if s is None else store.find(s)
         object_ = None if o is None else store.find(o)
         predicate = None if p is None else self._schema.find_property(p)
         if (s and subject is None) or (o and object_ is None) or (p and predicate is None):
             return
-        for edge in self._edges(subject, predicate, object_):
-            if store.source[edge] == ASSERTED:
-                yield edge
+        yield from self._edges(subject, predicate, object_)
 
     def _edges(self, s: int | None, p: int | None, o: int | None) -> Iterator[int]:
         store = self._store

@@ -124,14 +124,39 @@ class Adjacency:
         """Whether a node has no other edge with the edge's predicate."""
         return self.before[edge] == NONE and self.after[edge] == NONE
 
+    def first(self, node: int, predicate: int) -> int:
+        """The first edge of a node with a predicate, or NONE."""
+        edge, column, group = self.heads[node], self.predicate, self.group
+        while edge != NONE and column[edge] != predicate:
+            edge = group[edge]
+        return edge
+
+    def firsts(self, node: int) -> dict[int, int]:
+        """The first edge of each predicate that a node's edges have."""
+        edge, column, group = self.heads[node], self.predicate, self.group
+        found: dict[int, int] = {}
+        while edge != NONE:
+            found[column[edge]] = edge
+            edge = group[edge]
+        return found
+
     def of(self, node: int, predicate: int) -> Iterator[int]:
         """The edges of a node with a predicate."""
-        edge = self.heads[node]
-        while edge != NONE and self.predicate[edge] != predicate:
-            edge = self.group[edge]
+        edge = self.first(node, predicate)
         while edge != NONE:
             yield edge
             edge = self.after[edge]
+
+    def among(self, node: int, predicates: tuple[int, ...]) -> Iterator[int]:
+        """The edges of a node with one of some predicates, predicate by predicate."""
+        if not predicates or self.heads[node] == NONE:
+            return
+        firsts, after = self.firsts(node), self.after
+        for predicate in predicates:
+            edge = firsts.get(predicate, NONE)
+            while edge != NONE:
+                yield edge
+                edge = after[edge]
 
     def all(self, node: int) -> Iterator[int]:
         """All edges of a node."""

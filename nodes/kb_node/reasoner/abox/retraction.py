@@ -7,15 +7,15 @@ are asked in turn. Then everything that was reset runs forward again, as if it w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from nodes.kb_node.reasoner.abox.abox import ABox, Equals
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.saturation import Saturation
-from nodes.kb_node.reasoner.abox.store import ASSERTED, VALUE
+from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, GIVEN, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Reason
 from nodes.kb_node.reasoner.explanations import Term, Triple
-from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Chain, Role
 from nodes.kb_node.reasoner.terms import TYPE
 
 
@@ -33,10 +33,13 @@ class Retraction:
         self.touched: set[int] = set()
         """Nodes that lost something: an asserted class, an edge."""
 
-    def delete(self, triples: Sequence[Triple]) -> list[Triple]:
-        """Take triples back, and what rests on them; those that were there."""
+    def delete(
+        self, triples: Sequence[Triple], computed: Sequence[Triple] = ()
+    ) -> tuple[list[Triple], list[Triple]]:
+        """Take triples back, and what rests on them; those that were there, asserted and computed."""
         types = [triple for triple in triples if triple[1] == TYPE and self._take_type(*triple)]
-        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple)]
+        edges = [triple for triple in triples if triple[1] != TYPE and self._take_edge(*triple, ASSERTED)]
+        others = [triple for triple in computed if self._take_edge(*triple, COMPUTED)]
         while self._suspects:
             node, _ = self._suspects.popitem()
             kind = self._store.kind[node]
@@ -51,7 +54,7 @@ class Retraction:
         for subject, predicate, object_ in self._dropped:
             if made_by(predicate) or kinds[subject].values or kinds[object_].values:
                 self._derive_anew(subject, predicate, object_)
-        return types + edges
+        return types + edges, others
 
     def release(self) -> None:
         """Forget the nodes that nothing is said of any more."""
@@ -77,13 +80,13 @@ class Retraction:
         self._suspects[subject] = None
         return True
 
-    def _take_edge(self, s: Term, p: Term, o: Term) -> bool:
+    def _take_edge(self, s: Term, p: Term, o: Term, source: int) -> bool:
         store, numbers = self._store, self._store.numbers
         subject, object_, predicate = numbers.get(s), numbers.get(o), self._abox.schema.find_property(p)
         if subject is None or object_ is None or predicate is None:
             return False
         edge = store.edge(subject, predicate, object_)
-        if edge == NONE or store.source[edge] != ASSERTED:
+        if edge == NONE or store.source[edge] != source:
             return False
         self._drop(edge)
         return True
@@ -91,16 +94,32 @@ class Retraction:
     def _drop(self, edge: int) -> None:
         """Remove an edge and what rests on it."""
         store = self._store
-        ends = store.subject[edge], store.object[edge]
-        self._dropped.append((ends[0], store.predicate[edge], ends[1]))
+        edge_was = store.subject[edge], store.predicate[edge], store.object[edge]
+        ends = edge_was[0], edge_was[2]
+        self._dropped.append(edge_was)
         store.remove(edge)
-        for node in ends:
-            self._suspects[node] = None
-            self.touched.add(node)
+        self.touched.update(ends)
+        self._suspects.update(dict.fromkeys(self._whose_classes(edge_was)))
         if reason := self._abox.reasons.pop(edge, None):
             reason.alive = False
         for reason in self._abox.rest_on_edge.pop(edge, ()):
             self._cancel(reason)
+
+    def _whose_classes(self, edge: tuple[int, int, int]) -> Iterator[int]:
+        """The ends of an edge that may have classes because of it, beyond those that they were given.
+
+        So a room that loses a cup need not be asked about all else that is in it.
+        """
+        s, p, o = edge
+        subject, object_ = self._store.kind[s], self._store.kind[o]
+        if p <= DIFFERENT:
+            yield from (s, o)
+            return
+        step = self._abox.steps.step
+        if step(p, subject.base, object_).subject is not subject.base:
+            yield s
+        if step(p, subject, object_.base).object is not object_.base:
+            yield o
 
     def _cancel(self, reason: Reason) -> None:
         if not reason.alive:
@@ -141,12 +160,12 @@ class Retraction:
         return close(found) == wanted
 
     def _share(self, edge: int, node: int) -> int:
-        """What an edge alone says of a node, if the edge is asserted or comes with an asserted class."""
+        """What an edge alone says of a node, if the edge is given or comes with an asserted class."""
         store = self._store
         s, p, o = store.subject[edge], store.predicate[edge], store.object[edge]
         subject, object_ = store.kind[s].base, store.kind[o].base
         source = store.source[edge]
-        if source != ASSERTED and not (source == VALUE and self._comes_with(edge)):
+        if source not in GIVEN and not (source == VALUE and self._comes_with(edge)):
             return 0
         step = self._abox.steps.step(p, subject, object_)
         return step.subject.mask if node == s else step.object.mask

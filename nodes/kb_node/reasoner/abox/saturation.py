@@ -8,7 +8,7 @@ from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
 from nodes.kb_node.reasoner.abox.equality import Equality
 from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
-from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED, VALUE
+from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, DERIVED, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
@@ -27,8 +27,11 @@ class Saturation:
         self._store = abox.store
         self._steps = abox.steps
 
-    def insert(self, triple: Triple) -> bool:
-        """Assert a triple; whether it is new. Conclusions come with `run`."""
+    def insert(self, triple: Triple, source: int = ASSERTED) -> bool:
+        """Assert a triple, or have it as computed; whether it is new. Conclusions come with `run`.
+
+        What is asserted is not computed besides.
+        """
         s, p, o = triple
         store, schema = self._store, self._abox.schema
         subject = store.numbers.get(s)
@@ -45,13 +48,16 @@ class Saturation:
             predicate = self._first_use(p, schema.property)
         edge = store.edge(subject, predicate, object_)
         if edge != NONE:
-            if store.source[edge] == ASSERTED:
+            before = store.source[edge]
+            if before in (ASSERTED, source):
                 return False
-            store.source[edge] = ASSERTED
+            if before == COMPUTED:
+                self._abox.overlaid.append(triple)
+            store.source[edge] = source
             if reason := self._abox.reasons.pop(edge, None):
                 reason.alive = False
             return True
-        self._abox.fresh.append(store.add(subject, predicate, object_, ASSERTED))
+        self._abox.fresh.append(store.add(subject, predicate, object_, source))
         return True
 
     def run(self) -> None:

@@ -21,8 +21,11 @@ from nodes.kb_node.reasoner.terms import is_literal
 
 BLOCK: Final = 256
 """Nodes or edges that room is made for at once."""
-VALUE, DERIVED = 1, 2
-"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), or another rule."""
+VALUE, DERIVED, COMPUTED = 1, 2, 3
+"""Where an edge comes from if it is not ASSERTED: a class that has a value (cls-hv1), another rule, or no
+rule at all. A computed one is given like an asserted one, and was not said."""
+GIVEN: Final = frozenset((ASSERTED, COMPUTED))
+"""Edges that rest on no other."""
 
 
 Terms = tuple[Term, ...]
@@ -296,14 +299,32 @@ class Store:
 
     def edge(self, subject: int, predicate: int, object_: int) -> int:
         """The edge of a triple, or NONE. Costs as much as the shorter of the two lists it is in."""
-        if self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+        leaving = self.out.first(subject, predicate)
+        if leaving == NONE:
             return NONE
-        leaving, entering = self.out.of(subject, predicate), self.into.of(object_, predicate)
-        for one, other in zip(leaving, entering, strict=False):
-            if self.object[one] == object_:
-                return one
-            if self.subject[other] == subject:
-                return other
+        return self._edge(subject, object_, leaving, self.into.first(object_, predicate))
+
+    def edge_of(self, subject: int, predicates: tuple[int, ...], object_: int) -> int:
+        """The first edge of two with one of some predicates, or NONE."""
+        if not predicates or self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
+            return NONE
+        leaving, entering = self.out.firsts(subject), self.into.firsts(object_)
+        for p in predicates:
+            if p in leaving and p in entering:
+                edge = self._edge(subject, object_, leaving[p], entering[p])
+                if edge != NONE:
+                    return edge
+        return NONE
+
+    def _edge(self, subject: int, object_: int, leaving: int, entering: int) -> int:
+        """The one among the edges that leave and that enter, from two of one predicate on."""
+        subjects, objects, after, before = self.subject, self.object, self.out.after, self.into.after
+        while leaving != NONE and entering != NONE:
+            if objects[leaving] == object_:
+                return leaving
+            if subjects[entering] == subject:
+                return entering
+            leaving, entering = after[leaving], before[entering]
         return NONE
 
 

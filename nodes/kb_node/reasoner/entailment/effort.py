@@ -16,10 +16,16 @@ _MOST = 1000
 class Effort:
     """Bounds a search for a proof; one that is `traced` also keeps what the proof may rest on."""
 
-    def __init__(self, patience_s: float = inf, *, traced: bool = False) -> None:
+    def __init__(self, patience_s: float = inf, *, traced: bool = False, anew: bool = True) -> None:
+        """Unless `anew`, nothing is supposed for which everything would have to be worked out anew."""
+        self.anew = anew
         self._until_s = time.monotonic() + patience_s
         self._left = _MOST
         self._seen: dict[Triple, None] | None = {} if traced else None
+
+    def begin(self) -> None:
+        """Another proof is looked for, with as many suppositions again."""
+        self._left = _MOST
 
     @property
     def is_traced(self) -> bool:

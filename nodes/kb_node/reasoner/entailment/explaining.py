@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 
 from nodes.kb_node.reasoner.entailment.conclusions import entails
 from nodes.kb_node.reasoner.entailment.effort import Effort
+from nodes.kb_node.reasoner.entailment.prover import Prover
 from nodes.kb_node.reasoner.explain.sentences import following
 from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import TYPE, iri, is_literal
+from nodes.kb_node.reasoner.terms import NOTHING, TYPE, iri, is_literal
 
-_LABEL = iri("rdfs:label")
+_LABEL, _SUB_CLASS_OF = iri("rdfs:label"), iri("rdfs:subClassOf")
 _NEAR = 2
 """Steps from what a question names to the facts that may matter."""
 _FACTS = 2000
@@ -34,7 +36,7 @@ def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
     for _ in range(_NEAR):
         further: set[Term] = set()
         for term in sorted(near):
-            for triple in (*reasoner.asserted(term), *reasoner.asserted(None, None, term)):
+            for triple in (*reasoner.given(term), *reasoner.given(None, None, term)):
                 s, p, o = triple
                 if triple in facts or is_schema(triple) or (p == TYPE and s not in near):
                     continue
@@ -62,9 +64,38 @@ def why_entailed(
     support = [one for one in effort.seen if one in known]
     if not _suffice(support, triple):
         support = sorted(known)
-    support = _shrunk(support, triple, time.monotonic() + patience_s)
+    support = _shrunk(support, lambda some: _suffice(some, triple), time.monotonic() + patience_s)
     text = following(triple, support, words or reasoner.words)
     return Explanation(conclusion=triple, support=tuple(support), steps=(), text=text)
+
+
+def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float) -> Iterator[Explanation]:
+    """Why nothing can be of some classes, although the rules allow it, because of what must exist for it.
+
+    Each that is found, for so many seconds of the processor's time.
+    """
+    until_s = time.process_time() + patience_s
+    known = set(reasoner.asserted())
+    prover = Prover(reasoner, Effort(anew=False))
+    for cls in classes:
+        if time.process_time() > until_s:
+            return
+        if not prover.nothing_can_be(cls):
+            continue
+        traced = Effort(traced=True, anew=False)
+        Prover(reasoner, traced).nothing_can_be(cls)
+        support = [one for one in traced.seen if one in known]
+        support = _shrunk(support, partial(_suffices_for_empty, cls), time.monotonic() + PATIENCE_S)
+        goal = (cls, _SUB_CLASS_OF, NOTHING)
+        text = following(goal, support, reasoner.words)
+        yield Explanation(conclusion=goal, support=tuple(support), steps=(), text=text)
+
+
+def _suffices_for_empty(cls: Term, triples: Sequence[Triple]) -> bool:
+    try:
+        return Prover(Reasoner(triples), Effort(anew=False)).nothing_can_be(cls)
+    except Inconsistent:
+        return False
 
 
 def _suffice(triples: Sequence[Triple], goal: Triple) -> bool:
@@ -74,7 +105,9 @@ def _suffice(triples: Sequence[Triple], goal: Triple) -> bool:
         return False
 
 
-def _shrunk(triples: list[Triple], goal: Triple, until_s: float) -> list[Triple]:
+def _shrunk(
+    triples: list[Triple], suffice: Callable[[Sequence[Triple]], bool], until_s: float
+) -> list[Triple]:
     """Fewer triples that suffice, in their order: first large parts are left out, then single triples."""
     size = len(triples)
     while size > 1 and time.monotonic() < until_s:
@@ -82,7 +115,7 @@ def _shrunk(triples: list[Triple], goal: Triple, until_s: float) -> list[Triple]
         start = 0
         while start < len(triples) and time.monotonic() < until_s:
             rest = triples[:start] + triples[start + size :]
-            if _suffice(rest, goal):
+            if suffice(rest):
                 triples = rest
             else:
                 start += size

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
+from functools import cached_property
 from itertools import combinations, islice
 
 from nodes.kb_node.reasoner import datatypes
@@ -35,6 +36,7 @@ from nodes.kb_node.reasoner.entailment.expressions import (
 from nodes.kb_node.reasoner.entailment.suppositions import WIDEST, Alternatives, given
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.reasoner.tbox.split import is_schema
 from nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
@@ -112,11 +114,13 @@ class Prover:
         if not self._effort.may_suppose():
             return False
         try:
-            with self._reasoner.supposing(supposed):
+            with self._reasoner.supposing(supposed, anew=self._effort.anew):
                 return goal()
         except Inconsistent as found:
             self._effort.note(found.explanation.support)
             return True
+        except NotCompilable:  # and that is not wanted: no proof is found
+            return False
 
     def follows_from_each(self, alternatives: Alternatives, goal: Callable[[], bool]) -> bool:
         """Whether a goal is reached whichever of the alternatives holds."""
@@ -310,14 +314,35 @@ class Prover:
             try:
                 for _ in range(2):
                     new = list(self._must_exist(individuals))
-                    stack.enter_context(self._reasoner.supposing(new))
+                    stack.enter_context(self._reasoner.supposing(new, anew=self._effort.anew))
                     individuals = [
                         term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
                     ]
             except Inconsistent as found:
                 self._effort.note(found.explanation.support)
                 return True
+            except NotCompilable:
+                return False
             return goal()
+
+    def nothing_can_be(self, cls: Term) -> bool:
+        """Whether a class is empty in all models: a member with what must exist for it is a contradiction."""
+        self._effort.begin()
+        x = self.fresh()
+        return self.follows([(x, TYPE, cls)], lambda: self._has_impossible_witnesses([x], steps=2))
+
+    def _has_impossible_witnesses(self, individuals: Sequence[Term], steps: int) -> bool:
+        if steps == 0:
+            return False
+        new = list(self._must_exist(individuals, self._known_existential))
+        further = [term for triple in new for term in triple[::2] if term not in individuals]
+        return self.follows(
+            new, lambda: self._has_impossible_witnesses([t for t in further if t[0] == "_"], steps - 1)
+        )
+
+    @cached_property
+    def _known_existential(self) -> list[tuple[Term, Expression]]:
+        return list(self._existential())
 
     def _individuals(self) -> list[Term]:
         schema = {s for s, _, _ in self._reasoner.asserted(None, TYPE, iri("owl:Class"))}
@@ -331,9 +356,11 @@ class Prover:
                 break
         return [term for term in found if term not in schema and not is_literal(term)]
 
-    def _must_exist(self, individuals: Sequence[Term]) -> Iterator[Triple]:
+    def _must_exist(
+        self, individuals: Sequence[Term], wanted: Sequence[tuple[Term, Expression]] | None = None
+    ) -> Iterator[Triple]:
         """Values of existential restrictions under fresh names, edges to itself, and that all are things."""
-        wanted = list(self._existential())
+        wanted = list(self._existential()) if wanted is None else wanted
         reflexive = self._reflexive()
         for x in individuals:
             for node, expression in wanted:

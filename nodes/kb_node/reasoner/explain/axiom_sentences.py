@@ -147,6 +147,8 @@ class Axioms:
         return _listed([self.clause(member) for member in members], "or")
 
     def _sub_class(self, narrow: Term, wide: Term) -> str:
+        if wide == NOTHING:
+            return f"nothing is {self.a(narrow)}"
         if is_named(narrow):
             noun = self._words.cls(narrow)
             return f"{f'whatever is {noun}' if is_uncountable(noun) else f'every {noun}'} {self.clause(wide)}"

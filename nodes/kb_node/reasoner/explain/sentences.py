@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from nodes.kb_node.reasoner.explain.axiom_sentences import Axioms
@@ -69,6 +69,16 @@ def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
 def said(triple: Triple, words: Words) -> str:
     """A triple as a clause: "milk1 is on counter1"."""
     return _Speaker((triple,), words).say(triple)
+
+
+def as_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
+    """The sentence of a proof, in which computed facts are not told as asserted."""
+    for fact in facts:
+        speaker = _Speaker((fact,), words)
+        for who in (None, "it"):
+            clause = speaker.say(fact, who)
+            text = text.replace(f"{clause} (asserted)", f"{clause} (measured)")
+    return text
 
 
 def denied(triple: Triple, words: Words) -> str:

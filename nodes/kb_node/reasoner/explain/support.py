@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.kinds import bits
-from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
+from nodes.kb_node.reasoner.abox.store import DERIVED, GIVEN
 from nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
 from nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
 from nodes.kb_node.reasoner.explanations import Term, Triple
@@ -119,7 +119,7 @@ class Support:
         if role is not None:
             roles, turned = self._schema.roles(p), (role[0], not role[1])
             found = self._told_by.facts((*roles.get(role, ()), *roles.get(turned, ())))
-        if store.source[edge] == ASSERTED:
+        if store.source[edge] in GIVEN:
             return found | {(store.terms[s], self._schema.axioms[p].term, store.terms[o]): None}
         if store.source[edge] == DERIVED:
             reason = abox.reasons[edge]
@@ -215,7 +215,7 @@ class Support:
     def _may_use(self, edge: int, depth: int) -> bool:
         """Whether an edge is there without the conclusion that is looked for."""
         store = self._abox.store
-        if store.source[edge] == ASSERTED:
+        if store.source[edge] in GIVEN:
             return True
         if store.source[edge] == DERIVED:
             return self._abox.reasons[edge].order < self._before

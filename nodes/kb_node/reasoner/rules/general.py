@@ -20,11 +20,12 @@ from nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
 class GeneralEngine:
     """A graph with its closure. Raises nothing: a clash is found in `contradiction`."""
 
-    def __init__(self, triples: Iterable[Triple], why: str = "") -> None:
-        """Close a graph; `why` says what keeps it from being compiled."""
+    def __init__(self, triples: Iterable[Triple], why: str = "", computed: Iterable[Triple] = ()) -> None:
+        """Close a graph; `why` says what keeps it from being compiled. `computed` facts are not asserted."""
         self.why = why
         self._asserted = dict.fromkeys(triples)
-        self._closure = Closure(self._asserted)
+        self._computed = dict.fromkeys(triple for triple in computed if triple not in self._asserted)
+        self._closure = Closure({**self._asserted, **self._computed})
 
     @cached_property
     def words(self) -> Words:
@@ -36,11 +37,27 @@ class GeneralEngine:
 
     def contradiction(self) -> Explanation | None:
         """Why the graph is inconsistent; None when it is not."""
-        return None if self._closure.clash is None else Prover(self.words).prove(self._asserted, None)
+        return (
+            None
+            if self._closure.clash is None
+            else Prover(self.words).prove((*self._asserted, *self._computed), None)
+        )
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
         return (triple for triple in self._closure.match(s, p, o) if triple in self._asserted)
+
+    def computed(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        """The computed triples of a pattern."""
+        return (
+            triple
+            for triple in self._computed
+            if all(mine in (None, its) for mine, its in zip((s, p, o), triple, strict=True))
+        )
+
+    def is_computed(self, triple: Triple) -> bool:
+        """Whether a triple is computed, and not asserted."""
+        return triple in self._computed
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""

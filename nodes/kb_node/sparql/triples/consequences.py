@@ -11,20 +11,16 @@ as far as changes reach:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Final
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.beliefs import UNCHANGED, Believed
+from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.sparql.triples.computed import Computed, Step
 from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 
-MANY: Final = 5000
-"""Computed facts: of more, those that were withheld are tried again only when something newly contradicts."""
 _OF_THE_SCHEMA = tuple(
     v.iri(name)
     for name in (
@@ -59,48 +55,34 @@ def inferred(reasoner: Reasoner, subject: Term | None = None) -> Iterator[Triple
 
 
 class Consequences:
-    """What follows in a dataset, exact after each commit.
+    """What follows in a dataset, exact after each commit; what is computed is among it."""
 
-    Computed facts are asserted to the reasoner, unless they contradict the rest: then they are withheld; and
-    what they deny of what is asserted is not.
-    """
-
-    def __init__(self, asserted: Iterable[Triple], dataset: Dataset, placed: Iterable[Placed] = ()) -> None:
-        """Put into `dataset` what follows from `asserted`, which is consistent, and from where things are."""
+    def __init__(self, asserted: Iterable[Triple], dataset: Dataset, believed: Believed = UNCHANGED) -> None:
+        """Put into `dataset` what follows from what is asserted and computed, and not set aside."""
         self._dataset = dataset
-        asserted = dict.fromkeys(asserted)
-        self._computed = Computed(_declared(asserted))
-        self._held: dict[Term, set[Triple]] = {}
-        """The computed facts that the reasoner has, by their subjects."""
-        self._withheld: set[Triple] = set()
-        step = self._computed.after(placed, (), (), asserted)
-        self._reasoner = Reasoner(t for t in asserted if t not in step.denied)
-        self._accept(sorted(step.come))
-        dataset.deny(step.denied)
+        aside = set(believed.aside)
+        self._reasoner = Reasoner(t for t in asserted if t not in aside)
+        self._reasoner.believe(come=believed.come, aside=believed.aside)
+        dataset.deny(believed.aside)
         self._read_schema()
-        dataset.infer(self._inferred())
-
-    def _inferred(self, subject: Term | None = None) -> Iterator[Triple]:
-        """What follows or is computed about an individual or all, and is not asserted."""
-        yield from inferred(self._reasoner, subject)
-        for held in self._held.values() if subject is None else (self._held.get(subject, ()),):
-            yield from (triple for triple in held if not self._computed.is_believed(triple))
+        dataset.infer(inferred(self._reasoner))
 
     def _read_schema(self) -> None:
         chains = list(_chains(self._reasoner))
         self._onward = frozenset(property for chain in chains for property in chain)
         self._steps = max(map(len, chains), default=1) - 1
 
-    def after(self, delta: Delta, changed: Iterable[Placed] = (), removed: Iterable[str] = ()) -> Delta:
+    def after(self, delta: Delta, believed: Believed = UNCHANGED) -> Delta:
         """`delta`, which is about what is asserted, with what it changes of what follows; no more is done.
 
-        `changed` are the entities that it changes, `removed` the names of those that it removes.
+        `believed` is what it changes besides.
         """
         was_compiled = self._reasoner.is_compiled
-        step = self._computed.after(changed, removed, delta.retracted, delta.inserted)
-        touched, otherwise = self._believe(delta, step)
+        touched = self._reasoner.believe(gone=believed.gone, aside=believed.aside).touched
+        touched |= self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
+        touched |= self._reasoner.believe(come=believed.come, back=believed.back).touched
         if was_compiled and self._reasoner.is_compiled and not any(map(is_schema, delta.asserted)):
-            gone, new = self._changes((*delta.asserted, *otherwise), touched)
+            gone, new = self._changes((*delta.asserted, *chain(*believed)), touched)
         else:
             gone, new = self._all_changes()
         return Delta(
@@ -109,69 +91,14 @@ class Consequences:
             inserted=delta.inserted,
             no_longer_inferred=tuple(sorted(gone)),
             newly_inferred=tuple(sorted(new)),
-            denied=tuple(sorted(step.denied)),
-            undenied=tuple(sorted(step.undenied)),
+            denied=believed.aside,
+            undenied=believed.back,
         )
-
-    def _believe(self, delta: Delta, step: Step) -> tuple[set[Term], set[Triple]]:
-        """Let the reasoner have what is asserted and not denied, and what is computed; whom that touched.
-
-        Also which triples it has otherwise than before. While nothing is withheld, that is one change. What
-        is withheld, and what newly contradicts, is found by taking in all computed facts anew, in order.
-        """
-        computed = self._computed
-        delete = {t for t in (*delta.retracted, *step.denied, *step.gone) if not self._stays(t)}
-        insert = {t for t in (*delta.inserted, *step.undenied) if not computed.is_denied(t)}
-        insert = {t for t in insert if t not in step.undenied or computed.is_believed(t)}
-        self._withheld -= step.gone
-        if not self._withheld or len(computed.all) > MANY:
-            try:
-                touched = self._reasoner.apply(delete=delete, insert=insert | step.come).touched
-            except Inconsistent:
-                pass
-            else:
-                self._hold(step.gone, step.come)
-                return set(touched), delete | insert | step.come
-        before = {t for held in self._held.values() for t in held}
-        delete |= {t for t in before if not computed.is_believed(t)}
-        found = set(self._reasoner.apply(delete=delete, insert=insert).touched)
-        self._held.clear()
-        self._withheld.clear()
-        found |= self._accept(sorted(computed.all))
-        return found, delete | insert | before | computed.all
-
-    def _stays(self, triple: Triple) -> bool:
-        """Whether it is still asserted and so, or computed."""
-        return triple in self._computed.all or self._computed.is_believed(triple)
-
-    def _accept(self, computed: Sequence[Triple]) -> set[Term]:
-        """Take in what contradicts nothing, the first before the others; whom that touches."""
-        if not computed:
-            return set()
-        try:
-            touched = self._reasoner.apply(insert=computed).touched
-        except Inconsistent:
-            if len(computed) == 1:
-                self._withheld.update(computed)
-                return set()
-            half = len(computed) // 2
-            return self._accept(computed[:half]) | self._accept(computed[half:])
-        self._hold((), computed)
-        return set(touched)
-
-    def _hold(self, gone: Iterable[Triple], come: Iterable[Triple]) -> None:
-        for triple in gone:
-            held = self._held.get(triple[0], set())
-            held.discard(triple)
-            if not held:
-                self._held.pop(triple[0], None)
-        for triple in come:
-            self._held.setdefault(triple[0], set()).add(triple)
 
     def _all_changes(self) -> tuple[set[Triple], set[Triple]]:
         """The same for a commit that changes the schema, or a map that uses its vocabulary freely."""
         self._read_schema()
-        before, now = self._dataset.inferred(None), set(self._inferred())
+        before, now = self._dataset.inferred(None), set(inferred(self._reasoner))
         return before - now, now - before
 
     def _changes(
@@ -191,7 +118,7 @@ class Consequences:
                 continue
             seen.add(subject)
             before = {t for t in self._dataset.inferred(subject) if t[1] not in _OF_THE_SCHEMA}
-            now = set(self._inferred(subject))
+            now = set(inferred(self._reasoner, subject))
             gone |= before - now
             new |= now - before
             waiting |= self._concerned(subject, {*(before ^ now), *said.get(subject, ())}) - seen
@@ -231,11 +158,6 @@ class Consequences:
     def _about(self, s: Term | None, o: Term | None) -> Iterator[Triple]:
         yield from self._reasoner.asserted(s, None, o)
         yield from self._reasoner.inferred(s, None, o)
-
-
-def _declared(triples: Iterable[Triple]) -> frozenset[Term]:
-    """The properties of where things are that a TBox has."""
-    return frozenset(s for s, p, _ in triples if p == v.RDF_TYPE and s in COMPUTED)
 
 
 def _chains(reasoner: Reasoner) -> Iterator[list[Term]]:

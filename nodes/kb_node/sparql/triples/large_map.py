@@ -3,15 +3,15 @@
 The triples go to the process that fills the store piece by piece, between the node's other work, and commits
 may come meanwhile. So the store begins as something between two states of the map; taking in all commits
 since the first piece, which say what is there and what is not, makes it the map as it is.
+
+The store of a map that is mostly one large commit is begun when this is, and filled while it is checked; if
+the commit is what a document says, when that comes, and filled from it while it is read.
 """
 
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from itertools import chain, islice
@@ -21,6 +21,7 @@ from typing import Final, NamedTuple
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.sparql.triples.dataset import Delta
 from nodes.kb_node.sparql.triples.kept import KeptStores
+from nodes.kb_node.sparql.triples.store_filler import StoreFiller
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.futures import settle
 from schemas import errors
@@ -31,6 +32,12 @@ LARGE: Final = 200_000
 """Triples: a map of more has its store on disk; of fewer in memory, which is as soon made."""
 _PIECE: Final = 1000
 """Subjects in a piece: some milliseconds of the node's thread."""
+_FRAME: Final = 20_000
+"""Triples of a commit that are sent at once."""
+_BYTES_OF_A_TRIPLE: Final = 40
+"""At least, in a document."""
+_OTHERWISE: Final = (b"_:", b"[", b"(", b"\xef\xbb\xbf")
+"""With these a document may say something else to the map: blank nodes have other labels there."""
 _FAR_BEHIND: Final = 20_000
 _FAR_BEHIND_BYTES: Final = 16 << 20
 """Commits, and their size in the journal: a store that lacks more is made anew."""
@@ -60,7 +67,9 @@ class LargeMap:
         self._soon = soon
         self._large = large
         self._stores = KeptStores(journal.path.parent)
-        self._process: subprocess.Popen[bytes] | None = None
+        self._filler: StoreFiller | None = None
+        self._foretold: tuple[str, StoreFiller] | None = None
+        """The id of a commit that is being checked, and the store of the map after it."""
 
     @property
     def is_large(self) -> bool:
@@ -82,54 +91,84 @@ class LargeMap:
             return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]
         return None
 
-    def fill(self, seq: int, now: Callable[[], int]) -> Future[Filled]:
+    def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
+        """What a document says will be inserted by a commit of that id: begin its store if that is worth it.
+
+        Whoever finds that it is not so, or that there will be no commit, has to `forget` it.
+        """
+        is_much = len(turtle) > self._large * _BYTES_OF_A_TRIPLE and not any(
+            map(turtle.__contains__, _OTHERWISE)
+        )
+        if is_much and not self.is_large:
+            self._begin(commit_id, (), turtle, base)
+
+    def foretell(self, commit: Commit) -> Callable[[], None]:
+        """A commit will be made if it stands the check: begin its store if that is worth it.
+
+        What is returned gives it up again.
+        """
+        if self._foretold is None or self._foretold[0] != commit.id or commit.retracted:
+            self.forget()  # what was taken back
+            if self.is_much(commit) and not (commit.retracted or self.is_large):
+                self._begin(commit.id, commit.inserted)
+        return self.forget
+
+    def forget(self) -> None:
+        """What was foreseen or foretold does not come."""
+        if self._foretold is not None:
+            self._foretold[1].give_up()
+            self._foretold = None
+
+    def _begin(self, commit_id: str, inserted: Sequence[Triple], turtle: bytes = b"", base: str = "") -> None:
+        self.forget()
+        with suppress(OSError):  # `fill` says so
+            path = self._stores.begin()
+            before = list(self._reasoner().asserted())
+            self._foretold = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
+
+    def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[Filled]:
         """Make the store of the map after commit `seq`, as it is; the node's thread resolves the future.
 
-        `now()` is the number of the last commit. Its error is Refused when the disk does not take it, or when
-        literals differ in nothing but how they are spelled.
+        `commit` is that one if it was just made: its store may be there already. `now()` is the number of the
+        last commit. The future's error is Refused when the disk does not take it, or when literals differ in
+        nothing but how they are spelled.
         """
         future: Future[Filled] = Future()
-        pieces = self._reasoner().by_subject()
-        try:
-            path = self._stores.begin()
-        except OSError as error:
-            future.set_exception(errors.Refused(f"the SPARQL store cannot be created: {error.strerror}"))
-            return future
-
-        def work() -> None:
+        count: int | None = None
+        if commit is not None and self._foretold is not None and self._foretold[0] == commit.id:
+            (_, filler), self._foretold = self._foretold, None
+            count = len(self._reasoner())
+        else:
             try:
-                sent, found = self._pump(pieces, path)
-                self._soon(lambda: settle(future, lambda: self._finished(path, sent, found, seq, now())))
-            except (OSError, ValueError) as error:
-                shutil.rmtree(path, ignore_errors=True)
-                refusal = errors.Refused(f"the SPARQL store could not be created: {error}")
-                self._soon(lambda: future.set_exception(refusal))
+                filler = StoreFiller(self._stores.begin(), self._pieces())
+            except OSError as error:
+                future.set_exception(errors.Refused(f"the SPARQL store cannot be created: {error.strerror}"))
+                return future
+        self._filler = filler
 
-        threading.Thread(target=work, name="sparql-filling", daemon=True).start()
+        def finish(done: Future[tuple[int, int]]) -> Filled:
+            sent, found = done.result()
+            return self._finished(filler.path, found == (sent if count is None else count), seq, now())
+
+        def on_done(done: Future[tuple[int, int]]) -> None:
+            self._soon(lambda: settle(future, lambda: finish(done)))
+
+        filler.outcome.add_done_callback(on_done)
         return future
 
-    def _pump(self, pieces: Iterator[list[Triple]], path: Path) -> tuple[int, int]:
-        """Send all pieces: how many triples were sent, and how many the store has."""
-        command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.triples.filling", str(path)]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-            self._process = process
-            assert process.stdin is not None
-            assert process.stdout is not None
-            sent = 0
-            while piece := self._on_the_node(lambda: list(islice(pieces, _PIECE))):
-                triples = list(chain.from_iterable(piece))
-                sent += len(triples)
-                process.stdin.write("".join([f"{s} {p} {o} .\n" for s, p, o in triples]).encode())
-            process.stdin.close()
-            return sent, int(process.stdout.read())
+    def _pieces(self) -> Iterator[Sequence[Triple]]:
+        """The asserted triples, for another thread, in pieces that the node's makes when it can."""
+        subjects = self._reasoner().by_subject()
+        while groups := self._on_the_node(lambda: list(islice(subjects, _PIECE))):
+            yield list(chain.from_iterable(groups))
 
     def _on_the_node(self, take: Callable[[], list[list[Triple]]]) -> list[list[Triple]]:
         future: Future[list[list[Triple]]] = Future()
         self._soon(lambda: settle(future, take))
         return future.result()
 
-    def _finished(self, path: Path, sent: int, found: int, seq: int, settled: int) -> Filled:
-        if found < sent:
+    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> Filled:
+        if not is_whole:
             shutil.rmtree(path, ignore_errors=True)
             raise errors.Refused("some literals differ only in spelling")
         try:
@@ -139,9 +178,15 @@ class LargeMap:
 
     def close(self) -> None:
         """Give up what is being made."""
-        if self._process is not None:
-            with suppress(OSError):
-                self._process.kill()
+        for filler in (self._filler, self._foretold and self._foretold[1]):
+            if filler is not None and not filler.outcome.done():
+                filler.give_up()
+
+
+def _frames(*groups: Sequence[Triple]) -> Iterator[Sequence[Triple]]:
+    for triples in groups:
+        for start in range(0, len(triples), _FRAME):
+            yield triples[start : start + _FRAME]
 
 
 def delta_of(commit: Commit) -> Delta:

@@ -8,14 +8,17 @@ import pytest
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql import worker
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.sparql.triples import large_map
 from nodes.kb_node.sparql.triples.dataset import Delta
 from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Sparql, Watch
+from tests.conftest import until
 from tests.kb_node.home import chair, new_map, transaction
 
 WAIT_S = 60.0
@@ -39,7 +42,9 @@ class Node:
             return fill(*arguments)
 
         large_map.fill = counted
+        self.large_map = large_map
         self.service = SparqlService(lambda: self.map.reasoner.asserted(), self.news.put, large_map)
+        self.map.foretell = self.service.foretell
 
     def commit(self, number, insert=(), retract=()):
         commit = self.map.commit(transaction(number, insert, retract))
@@ -158,6 +163,115 @@ def test_after_a_large_commit_the_store_is_made_before_anybody_asks(tmp_path):
         assert node.made == 1
     finally:
         node.close()
+
+
+def chairs(count):
+    return [t for i in range(count) for t in chair(f"chair{i}")]
+
+
+def test_the_store_is_begun_with_the_commit(tmp_path, monkeypatch):
+    node = Node(new_map(tmp_path), large=50)
+    node.map.commit(transaction("one", chair("one")))
+    try:
+        monkeypatch.setattr(large_map, "_FRAME", 7)
+        monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
+        node.commit("many", chairs(30))
+        node.commit("two", chair("two"))
+        assert (node.count(), node.made, len(stores(node))) == (32, 1, 1)
+    finally:
+        node.close()
+
+
+@pytest.mark.parametrize(
+    "kind", ["it contradicts itself", "the disk does not take it", "it is one of several"]
+)
+def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatch, kind):
+    node = Node(new_map(tmp_path), large=50)
+    try:
+        wrong = [(v.entity_iri("chair3"), v.RDF_TYPE, v.dm("Kitchen"))] if "contradicts" in kind else []
+        with monkeypatch.context() as patched:
+            if not wrong:
+                patched.setattr(Journal, "append", refuse)
+            if "several" in kind:
+                assert all(map(is_refusal, node.map.commit_together([transaction("a", chairs(30))])))
+            else:
+                with pytest.raises(errors.Refused):
+                    node.commit("a", [*chairs(30), *wrong])
+        folder = node.map._journal.path.parent / FOLDER
+        until(lambda: not list(folder.iterdir()), "nothing is left")
+        node.commit("b", chairs(29))
+        assert (node.count(), len(stores(node))) == (29, 1)
+    finally:
+        node.close()
+
+
+def test_a_store_foretold_for_a_commit_that_was_taken_back_is_not_another_ones(tmp_path):
+    node = Node(new_map(tmp_path), large=50)
+    try:
+        node.map.commit(transaction("a", chairs(30)))  # and nobody hears of it again
+        node.map.commit(transaction("b", retract=chairs(20)))
+        node.commit("c", [t for i in range(30) for t in chair(f"stool{i}")])
+        assert node.count() == 40
+    finally:
+        node.close()
+
+
+def turtle(triples):
+    return "".join(f"{s} {p} {o} .\n" for s, p, o in triples).encode()
+
+
+def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypatch):
+    node = Node(new_map(tmp_path), large=50)
+    node.map.commit(transaction("one", chair("one")))
+    try:
+        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
+        node.service.foresee("many", turtle(said), v.ABOX)
+        monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
+        monkeypatch.setattr(large_map, "_frames", None)
+        node.commit("many", said)
+        node.commit("two", chair("two"))
+        assert (node.count(), node.made, len(stores(node))) == (32, 1, 1)
+    finally:
+        node.close()
+
+
+@pytest.mark.parametrize("why", ["another commit", "something else in it", "no commit", "it retracts, too"])
+def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
+    node = Node(new_map(tmp_path), large=50)
+    node.map.commit(transaction("one", chair("one")))
+    try:
+        node.service.foresee("many", turtle(chairs(30)), v.ABOX)
+        if why in ("no commit", "something else in it"):
+            node.service.forget()
+        if why != "no commit":
+            gone = chair("one") if "too" in why else ()
+            node.commit("other" if "another" in why else "many", chairs(29), gone)
+        left = {"no commit": 1, "it retracts, too": 29}.get(why, 30)
+        assert (node.count(), len(stores(node))) == (left, left > 1)
+        until(lambda: not list((tmp_path / FOLDER).glob("filling-*")), "nothing else is left")
+    finally:
+        node.close()
+
+
+@pytest.mark.parametrize(
+    "text", ["_:a :p _:b .", ":a :p [] .", ":a :p (1) .", "\ufeff:a :p 1 .", ":a :p 1 ."]
+)
+def test_what_may_say_something_else_to_the_map_is_not_foreseen_nor_a_short_document(tmp_path, text):
+    node = Node(new_map(tmp_path), large=50)
+    try:
+        content = text.encode() + b"#" * (3000 if text != ":a :p 1 ." else 100)
+        node.service.foresee("many", content, v.ABOX)
+        assert not (tmp_path / FOLDER).exists()
+    finally:
+        node.close()
+
+
+def refuse(*_, **__):
+    raise NotWritten("the disk is full")
+
+
+def is_refusal(result):
+    return isinstance(result, errors.Refused)
 
 
 def test_a_large_commit_over_a_store_in_memory(tmp_path):

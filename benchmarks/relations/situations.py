@@ -1,0 +1,291 @@
+"""Sixty situations made by hand, each with what a person would say of it.
+
+`tests/kb_node/relations/test_situations.py` holds the relations to it, `picture` draws it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ontology.model_shapes import own_size_m, shapes
+from schemas.entities import Entity, Pose, Provenance, Quaternion, Size, Vector, orientation_from_yaw
+
+_NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
+
+Said = tuple[str, str, str]
+"""Name, relation, name."""
+
+
+class Situation(NamedTuple):
+    """Some things, and what holds of them."""
+
+    title: str
+    things: tuple[Entity, ...]
+    said: frozenset[Said]
+    """All that holds of what is on, inside and attached to what; of places where there are any."""
+    also: frozenset[Said] = frozenset()
+    """Of the other relations what a person would say first."""
+    never: frozenset[Said] = frozenset()
+    """What a hasty reading would say."""
+
+
+def thing(
+    name: str, at: Vector, *, yaw: float = 0.0, turn: Quaternion | None = None, size: Size | None = None
+) -> Entity:
+    """By its model's name and a number; with a size and no model of that name a box."""
+    model = name.rstrip("0123456789")
+    known = model in shapes()
+    return Entity(
+        name=name, class_=model.title(), iri=f"urn:{name}", types=(), model=model if known else "",
+        pose=Pose(position_m=at, orientation_wxyz=turn or orientation_from_yaw(yaw)),
+        size_m=size or (own_size_m(model) if known else None), provenance=_NOBODY,
+        pose_provenance=_NOBODY, shape_provenance=_NOBODY, reference_provenance=_NOBODY,
+    )  # fmt: skip
+
+
+def place(name: str, at: Vector, size: Size) -> Entity:
+    """A room, or a part of one."""
+    return Entity(
+        name=name, class_="Location", iri=f"urn:{name}", types=(), place=True, size_m=size,
+        pose=Pose(position_m=at), provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
+        reference_provenance=_NOBODY,
+    )  # fmt: skip
+
+
+def situation(title: str, *things: Entity, said: str = "", also: str = "", never: str = "") -> Situation:
+    """The facts as "cup1 isOn table1, table1 isOn rug1"."""
+    return Situation(title, things, _facts(said), _facts(also), _facts(never))
+
+
+def _facts(text: str) -> frozenset[Said]:
+    words = [part.split() for part in text.split(",") if part.strip()]
+    return frozenset((name, relation, other) for name, relation, other in words)
+
+
+def about_y(degrees: float) -> Quaternion:
+    """A turn about the y axis: the top leans towards +x."""
+    half = math.radians(degrees) / 2
+    return (math.cos(half), 0.0, math.sin(half), 0.0)
+
+
+def surface(model: str, nth: int = 0) -> float:
+    """The height of a model's surface, counted from above [m]."""
+    return shapes()[model].surfaces[nth].height
+
+
+def tall(model: str) -> float:
+    """A model's height [m]."""
+    return shapes()[model].size_m[2]
+
+
+TOP = tall("table")
+TABLE = thing("table1", (0.0, 0.0, 0.0))
+WALL = thing("wall1", (-0.9, 0.0, 0.0), size=(0.1, 3.0, 2.5))
+FRIDGE = thing("fridge1", (0.0, 0.0, 0.0))
+SHELVES = thing("bookshelf1", (0.0, 0.0, 0.0))
+BOWL = thing("bowl1", (0.0, 0.0, TOP))
+BLOCK = (0.2, 0.2, 0.1)
+
+
+def on_table(name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0, **fields: object) -> Entity:
+    """A thing on the table, or `z` above its top."""
+    return thing(name, (x, y, TOP + z), **fields)  # type: ignore[arg-type]
+
+
+def _leaning(name: str, foot_x: float, degrees: float) -> Entity:
+    """A thin upright thing whose lower edge at its +x side is at a place on the table, its top towards -x."""
+    x, _, _ = own_size_m(name.rstrip("0123456789")) or (0.0, 0.0, 0.0)
+    lean = math.radians(degrees)
+    return on_table(name, foot_x - x / 2 * math.cos(lean), 0.0, x / 2 * math.sin(lean), turn=about_y(degrees))
+
+
+def _ramp(name: str, rise_m: float, run_m: float) -> Entity:
+    """A flat thing with its lower edge on the table at x = 0, over an edge that is so high and so far."""
+    x, _, _ = own_size_m(name.rstrip("0123456789")) or (0.0, 0.0, 0.0)
+    lean = math.atan2(rise_m, run_m)
+    return on_table(
+        name, x / 2 * math.cos(lean), 0.0, x / 2 * math.sin(lean), turn=about_y(-math.degrees(lean))
+    )
+
+
+def _in(model: str, level: int) -> float:
+    """The height of a board inside a model, the lowest first."""
+    return sorted(s.height for s in shapes()[model].surfaces)[level]
+
+
+SITUATIONS: tuple[Situation, ...] = (
+    situation("on a table", TABLE, on_table("cup1"), said="cup1 isOn table1"),
+    situation("let go two centimetres above it", TABLE, on_table("cup1", z=0.02), said="cup1 isOn table1"),
+    situation("sunk a centimetre into it", TABLE, on_table("cup1", z=-0.01), said="cup1 isOn table1"),
+    situation("in the air above it", TABLE, on_table("cup1", z=0.2), also="cup1 isAbove table1"),
+    situation("under it", TABLE, thing("ball1", (0.0, 0.0, 0.0)), also="ball1 isUnder table1"),
+    situation("beside it, at its height", TABLE, on_table("cup1", x=0.6)),
+    situation("half over the edge", TABLE, on_table("box1", x=0.4, size=BLOCK), said="box1 isOn table1"),
+    situation("nearly all of it over the edge", TABLE, on_table("box1", x=0.48, size=BLOCK)),
+    situation("tilted a little", TABLE, on_table("can1", turn=about_y(4.0)), said="can1 isOn table1"),
+    situation(
+        "lying on its side",
+        TABLE, on_table("bottle1", x=-0.14, z=0.0404, turn=about_y(90.0)),
+        said="bottle1 isOn table1",
+    ),
+    situation(
+        "on a book on a table",
+        TABLE, on_table("book1"), on_table("cup1", z=0.03),
+        said="book1 isOn table1, cup1 isOn book1", never="cup1 isOn table1",
+    ),
+    situation(
+        "a stack of three",
+        TABLE, *(on_table(f"box{n}", z=0.1 * (n - 1), yaw=0.2 * n, size=BLOCK) for n in (1, 2, 3)),
+        said="box1 isOn table1, box2 isOn box1, box3 isOn box2",
+    ),
+    situation(
+        "a large one on a small one",
+        TABLE, on_table("can1"), on_table("tray1", z=tall("can")),
+        said="can1 isOn table1, tray1 isOn can1", also="can1 isUnder tray1",
+    ),
+    situation(
+        "askew on another",
+        TABLE, on_table("box1", size=BLOCK), on_table("box2", x=0.1, z=0.1, size=BLOCK),
+        said="box1 isOn table1, box2 isOn box1",
+    ),
+    situation(
+        "a board across two boxes",
+        TABLE, on_table("box1", y=-0.2, size=BLOCK), on_table("box2", y=0.2, size=BLOCK),
+        on_table("board1", z=0.1, size=(0.15, 0.55, 0.02)),
+        said="box1 isOn table1, box2 isOn table1, board1 isOn box1, board1 isOn box2",
+    ),
+    situation(
+        "over the gap of two tables",
+        TABLE, thing("table2", (0.0, 1.25, 0.0)), on_table("box1", y=0.625, size=(0.3, 0.4, 0.2)),
+        said="box1 isOn table1, box1 isOn table2",
+    ),
+    situation(
+        "a book leaning on a box",
+        TABLE, on_table("box1", x=-0.2, size=(0.1, 0.2, 0.3)), _leaning("book1", 0.0, 62.0),
+        said="box1 isOn table1, book1 isOn table1", never="book1 isOn box1",
+    ),
+    situation(
+        "a tray tilted over the edge of a box",
+        TABLE, on_table("box1", x=0.2, size=(0.1, 0.3, 0.05)), _ramp("tray1", 0.05, 0.15),
+        said="box1 isOn table1, tray1 isOn table1, tray1 isOn box1",
+    ),
+    situation("an orange in a bowl", TABLE, BOWL, on_table("orange1", z=0.011),
+              said="bowl1 isOn table1, orange1 isInside bowl1", never="orange1 isOn bowl1"),
+    situation("a ball on a box", TABLE, on_table("box1", size=BLOCK), on_table("ball1", z=0.1),
+              said="box1 isOn table1, ball1 isOn box1", never="ball1 isOn table1"),
+    situation("a tray on two cans", TABLE, on_table("can1", y=-0.15), on_table("can2", y=0.15),
+              on_table("tray1", z=tall("can")),
+              said="can1 isOn table1, can2 isOn table1, tray1 isOn can1, tray1 isOn can2"),
+    situation("a pen in a glass", TABLE, on_table("glass1"),
+              on_table("pen1", x=-0.006, z=0.082, turn=about_y(90.0)),
+              said="glass1 isOn table1, pen1 isInside glass1"),
+    situation(
+        "a bottle that looks out of a basket",
+        TABLE, on_table("basket1"), on_table("bottle1", z=0.012),
+        said="basket1 isOn table1, bottle1 isInside basket1",
+    ),
+    situation(
+        "one orange on another in a basket",
+        TABLE, on_table("basket1"), on_table("orange1", z=0.012), on_table("orange2", z=0.09),
+        said="basket1 isOn table1, orange1 isInside basket1, orange2 isInside basket1, orange2 isOn orange1",
+    ),
+    situation(
+        "glasses on a tray",
+        TABLE, on_table("tray1"), on_table("glass1", y=-0.1, z=0.01), on_table("glass2", y=0.1, z=0.01),
+        said="tray1 isOn table1, glass1 isOn tray1, glass2 isOn tray1",
+    ),
+    situation(
+        "a bowl on a plate, with an egg",
+        TABLE, on_table("plate1"), on_table("bowl1", z=0.018), on_table("egg1", z=0.03),
+        said="plate1 isOn table1, bowl1 isOn plate1, egg1 isInside bowl1",
+    ),
+    situation("a tomato in a bin", thing("bin1", (0.0, 0.0, 0.0)), thing("tomato1", (0.0, 0.0, 0.011)),
+              said="tomato1 isInside bin1"),
+    *(
+        situation(
+            f"on board {nth + 1} of a bookshelf" if nth < 5 else "on top of a bookshelf",
+            SHELVES, thing("book1", (0.0, 0.0, _in("bookshelf", nth))), said="book1 isOn bookshelf1",
+        )
+        for nth in (0, 2, 5)
+    ),
+    situation(
+        "milk on a board of the fridge",
+        FRIDGE, thing("carton1", (0.0, 0.0, _in("fridge", 2))),
+        said="carton1 isInside fridge1", never="carton1 isOn fridge1",
+    ),
+    situation("peas in its freezer", FRIDGE, thing("box1", (0.0, 0.0, _in("fridge", 4)), size=BLOCK),
+              said="box1 isInside fridge1"),
+    situation("a basket on top of it", FRIDGE, thing("basket1", (0.0, 0.0, tall("fridge"))),
+              said="basket1 isOn fridge1"),
+    situation("keys in a drawer", thing("drawer1", (0.0, 0.0, 0.0)),
+              thing("keys1", (0.0, 0.1, _in("drawer", 2))), said="keys1 isInside drawer1"),
+    situation("plates in a cupboard", thing("cupboard1", (0.0, 0.0, 0.0)),
+              thing("plate1", (0.0, 0.0, _in("cupboard", 1))),
+              thing("plate2", (0.0, 0.0, _in("cupboard", 1) + 0.018)),
+              said="plate1 isInside cupboard1, plate2 isInside cupboard1, plate2 isOn plate1"),
+    situation("a cup in the dishwasher", thing("dishwasher1", (0.0, 0.0, 0.0)),
+              thing("cup1", (0.0, 0.0, _in("dishwasher", 1))), said="cup1 isInside dishwasher1"),
+    situation("a tray in the oven", thing("oven1", (0.0, 0.0, 0.0)),
+              thing("tray1", (0.0, 0.0, _in("oven", 1))), said="tray1 isInside oven1"),
+    situation("a pot on the stove on the counter", thing("counter1", (0.0, 0.0, 0.0)),
+              thing("stove1", (0.0, 0.4, tall("counter"))),
+              thing("pot1", (-0.1, 0.3, tall("counter") + surface("stove"))),
+              said="stove1 isOn counter1, pot1 isOn stove1"),
+    situation("on a chair's seat", thing("chair1", (0.0, 0.0, 0.0)),
+              thing("cushion1", (0.03, 0.0, surface("chair", -1))), said="cushion1 isOn chair1"),
+    situation("on the seat of a couch", thing("couch1", (0.0, 0.0, 0.0)),
+              thing("book1", (0.15, 0.3, surface("couch", -1))), said="book1 isOn couch1"),
+    situation("a pillow on a bed", thing("bed1", (0.0, 0.0, 0.0)),
+              thing("pillow1", (-0.6, 0.3, surface("bed", -1))), said="pillow1 isOn bed1"),
+    situation("a ball in the bathtub", thing("bathtub1", (0.0, 0.0, 0.0)), thing("ball1", (0.0, 0.3, 0.06)),
+              said="ball1 isInside bathtub1"),
+    situation("a stool on a rug", thing("rug1", (0.0, 0.0, 0.0)), thing("stool1", (0.0, 0.3, 0.01)),
+              said="stool1 isOn rug1"),
+    situation("shoes in a rack", thing("shoe_rack1", (0.0, 0.0, 0.0)),
+              thing("shoes1", (0.0, 0.0, _in("shoe_rack", 1))), said="shoes1 isOn shoe_rack1"),
+    situation("a box under a table with a cup on it", TABLE, thing("box1", (0.0, 0.0, 0.0)), on_table("cup1"),
+              said="cup1 isOn table1", also="box1 isUnder table1", never="cup1 isOn box1"),
+    situation("a lamp that hangs over a table", TABLE, thing("light1", (0.0, 0.0, 1.6)),
+              also="light1 isAbove table1"),
+    situation("a picture on a wall", WALL, thing("picture1", (-0.83, 0.0, 1.3)),
+              said="picture1 isAttachedTo wall1"),
+    situation("a shelf on a wall, with a book", WALL, thing("shelf1", (-0.725, 0.0, 1.2)),
+              thing("book1", (-0.725, 0.1, 1.2 + tall("shelf"))),
+              said="shelf1 isAttachedTo wall1, book1 isOn shelf1"),
+    situation("a cabinet at a wall", WALL, thing("cabinet1", (-0.6, 0.0, 0.0)),
+              never="cabinet1 isAttachedTo wall1"),
+    situation("a picture on the floor, leaning on a wall", WALL,
+              thing("picture1", (-0.7, 0.0, 0.0), turn=about_y(-14.0)), never="picture1 isAttachedTo wall1"),
+    situation("side by side", TABLE, on_table("cup1", y=-0.08), on_table("cup2", y=0.1),
+              said="cup1 isOn table1, cup2 isOn table1", also="cup1 isNextTo cup2, cup2 isNextTo cup1"),
+    situation("the middle one of three", TABLE, *(on_table(f"cup{n}", x=0.15 * (n - 2)) for n in (1, 2, 3)),
+              said="cup1 isOn table1, cup2 isOn table1, cup3 isOn table1",
+              also="cup1 isNextTo cup2, cup2 isBetween cup1", never="cup1 isNextTo cup3"),
+    situation("close by, on another thing", TABLE, on_table("cup1", y=0.55), thing("stool1", (0.0, 0.85,
+              0.0)),
+              thing("cup2", (0.0, 0.75, tall("stool"))),
+              said="cup1 isOn table1, cup2 isOn stool1", never="cup1 isNextTo cup2"),
+    situation("touching", TABLE, on_table("box1", y=-0.1, size=BLOCK), on_table("box2", y=0.1, size=BLOCK),
+              said="box1 isOn table1, box2 isOn table1", also="box1 touches box2, box1 isNextTo box2"),
+    situation("two things in one place", TABLE, on_table("cup1"), on_table("cup2"),
+              said="cup1 isOn table1, cup2 isOn table1"),
+    situation("in the corner of a room", place("kitchen1", (0.0, 0.0, 0.0), (6.0, 6.0, 2.5)),
+              place("corner1", (0.5, 0.5, 0.0), (1.5, 1.5, 2.5)), thing("floor_lamp1", (0.4, 0.4, 0.0)),
+              said="floor_lamp1 isLocatedIn corner1", never="floor_lamp1 isLocatedIn kitchen1"),
+    situation("where two rooms meet, more in one", place("kitchen1", (-2.0, 0.0, 0.0), (4.0, 4.0, 2.5)),
+              place("hall1", (2.0, 0.0, 0.0), (4.0, 4.0, 2.5)), thing("armchair1", (0.15, 0.0, 0.0)),
+              said="armchair1 isLocatedIn hall1"),
+    situation("through a wall, in the flat only", place("flat1", (0.0, 0.0, 0.0), (9.0, 9.0, 2.5)),
+              place("kitchen1", (-2.1, 0.0, 0.0), (4.0, 4.0, 2.5)),
+              place("hall1", (2.1, 0.0, 0.0), (4.0, 4.0, 2.5)),
+              thing("door1", (0.0, 0.0, 0.0)), said="door1 isLocatedIn flat1"),
+    situation("of no known size", place("kitchen1", (0.0, 0.0, 0.0), (4.0, 4.0, 2.5)), TABLE,
+              thing("thing1", (0.0, 0.0, TOP)),
+              said="thing1 isLocatedIn kitchen1, table1 isLocatedIn kitchen1"),
+    situation("nine kilometres away", thing("table1", (9000.0, 0.0, 0.0)), thing("cup1", (9000.0, 0.0, TOP)),
+              said="cup1 isOn table1"),
+)  # fmt: skip
+
+Relate = Callable[[tuple[Entity, ...]], set[Said]]

@@ -1,0 +1,83 @@
+"""Do relations come and go while nothing moves? Cameras with noise, the whole of perception, and a map.
+
+Twenty things stand on a table that two cameras see from opposite corners. Perception tells a map what it
+sees, and the relations of the map are kept as after each commit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from msgspec import structs
+
+from benchmarks.perception.tracking import CAMERAS, TABLE_M, ObedientMap, things_on_a_table
+from nodes.kb_node.relations.place_facts import Facts
+from nodes.perception_node.config import TrackingConfig
+from nodes.perception_node.pipeline import look, shipped
+from nodes.perception_node.tracking.association import associate
+from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from nodes.perception_node.tracking.occupancy import occupancy_in
+from nodes.perception_node.tracking.tracks import Tracks
+from nodes.sim_node.models.model_table import MODELS
+from nodes.training.scenes.simulated_scenes import Item, Stage
+from nodes.training.taxonomy import class_of_models
+from schemas.entities import Entity, Pose, Provenance
+
+LOOKS_A_SECOND = 5
+_SETTLING = 15
+"""Looks until all is known that can be."""
+
+
+class Watched(NamedTuple):
+    """What became of the relations of `things` that stood still on a table."""
+
+    things: int
+    on_the_table: int
+    """How many the map has on it in the end."""
+    changes: int
+    """How many relations came or went after the first looks."""
+    updates: int
+    """How often perception told the map something then."""
+
+
+def at_rest(seconds: float, things: int = 20, seed: int = 11) -> Watched:
+    """Watch things at rest for so long."""
+    rng, stage, learnt = np.random.default_rng(seed), Stage(), shipped()
+    classes = ClassHierarchy(
+        {n: frozenset(above) for n, above in learnt.ancestors.items()}, {}, learnt.usual_m
+    )
+    models = {class_name: model for model, class_name in class_of_models(MODELS).items()}
+    items = things_on_a_table(things, rng)
+    bodies = stage.show([Item("table", "table", TABLE_M, (0.6, 0.5, 0.4), (0.0, 0.0, 0.0), 0.0), *items])
+    known, tracks, facts = ObedientMap(), Tracks(), Facts()
+    known.entities["table"] = _table()
+    facts.update(known.entities.values())
+    changes = updates = 0
+    for number in range(_SETTLING + round(seconds * LOOKS_A_SECOND)):
+        clouds = stage.shoot(bodies, CAMERAS, rng).clouds
+        seen = look(clouds, learnt).observations.observations
+        told = associate(known.entities, tracks, seen, occupancy_in(clouds), classes, TrackingConfig())
+        tracks, before = told.tracks, dict(known.entities)
+        for command in told.commands:
+            known.obey(command)
+        changed = [
+            structs.replace(entity, model=models.get(entity.class_, ""))
+            for name, entity in known.entities.items()
+            if entity is not before.get(name)
+        ]
+        made = facts.update(changed, before.keys() - known.entities.keys())
+        if number >= _SETTLING:
+            changes += len(made.gone) + len(made.come)
+            updates += len(told.commands)
+    on = {name for name, relation, other in facts if (relation, other) == ("isOn", "table")}
+    return Watched(things, sum(known.at(*i.position_m[:2]) in on for i in items), changes, updates)
+
+
+def _table() -> Entity:
+    said = Provenance(commit=1, stamp_ns=0, source="operator")
+    return Entity(
+        name="table", class_="Table", iri="urn:table", types=("Table",), size_m=TABLE_M, model="table",
+        pose=Pose(position_m=(0.0, 0.0, 0.0)), provenance=said, pose_provenance=said,
+        shape_provenance=said, reference_provenance=said,
+    )  # fmt: skip

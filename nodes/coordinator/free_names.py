@@ -1,0 +1,40 @@
+"""Names for entities that are added without one, without trying every number again each time."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable
+
+from schemas.entities import name_stem
+
+
+class FreeNames:
+    """The first free number of each class, as `schemas.entities.free_name` has it."""
+
+    def __init__(self) -> None:
+        self._first: dict[str, int] = {}
+        """Stem to a number below which all are taken."""
+
+    def name(self, class_name: str, taken: Container[str]) -> str:
+        """The first free name for an entity of a class; `taken` may have grown since the last question."""
+        stem = name_stem(class_name)
+        number = self._first.get(stem, 1)
+        while f"{stem}{number}" in taken:
+            number += 1
+        self._first[stem] = number
+        return f"{stem}{number}"
+
+    def freed(self, names: Iterable[str]) -> None:
+        """These may be given again."""
+        for name in names:
+            for stem, number in _readings(name):
+                if number < self._first.get(stem, 0):
+                    self._first[stem] = number
+
+
+def _readings(name: str) -> Iterable[tuple[str, int]]:
+    """Stems and numbers that a name may be of: `cup12` is the twelfth of `cup` or the second of `cup1`."""
+    at = len(name)
+    while at > 1 and "0" <= name[at - 1] <= "9":
+        at -= 1
+        if name[at] != "0":
+            yield name[:at], int(name[at:])

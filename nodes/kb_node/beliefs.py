@@ -1,0 +1,288 @@
+"""What the reasoner holds to be so beyond what is asserted: where things are, as their poses tell.
+
+Computed facts never refuse a commit. One that contradicts what is asserted is *withheld*, and of several that
+together contradict it, the last in alphabetical order. Which are withheld is a function of what is asserted
+alone, whatever the order of the commits. What somebody asserted of a place, and is not so, is *set aside*.
+When it is so again it comes back, unless it contradicts what was asserted since: then it is withheld, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from nodes.kb_node.progress import parts
+from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explanations import Explanation
+from nodes.kb_node.relations.computed import Computed, Known, Step
+from nodes.kb_node.relations.rules import COMPUTED
+from nodes.kb_node.relations.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.thresholds import Thresholds
+from ontology import vocabulary as v
+from schemas.entities import Entity
+from schemas.explanations import Term, Triple
+
+PART = 20_000
+"""Facts that the reasoner takes in at once, in some tenths of a second."""
+
+
+class Believed(NamedTuple):
+    """How the reasoner's beliefs differ from those before a commit, besides what the commit asserts."""
+
+    gone: tuple[Triple, ...] = ()
+    """Computed facts."""
+    come: tuple[Triple, ...] = ()
+    aside: tuple[Triple, ...] = ()
+    """Asserted facts that do not hold."""
+    back: tuple[Triple, ...] = ()
+
+
+UNCHANGED = Believed()
+
+
+class Beliefs:
+    """Keeps a reasoner's beliefs in step with a map."""
+
+    def __init__(
+        self,
+        reasoner: Reasoner,
+        limits: Thresholds | None = None,
+        progress: Callable[[], None] = lambda: None,
+    ) -> None:
+        """`reasoner` holds what is asserted; `progress` is called between the steps of long work."""
+        self._reasoner = reasoner
+        self._progress = progress
+        self.computed = Computed(_declared(reasoner), limits)
+        self.withheld: dict[Triple, Explanation] = {}
+        """Facts that contradict the rest, and how."""
+        self._rests: dict[Triple, set[Triple]] = {}
+        """By a triple of an explanation, who is withheld because of it."""
+        self._moved: set[Term] = set()
+        self._net: dict[tuple[Triple, bool], bool] = {}
+        """Of triples, as computed or as asserted, that came or went since `begin`: whether they hold now."""
+
+    def begin(self) -> None:
+        """What differs is counted from here on."""
+        self._net.clear()
+        self._moved.clear()
+
+    @property
+    def believed(self) -> Believed:
+        """What differs since `begin`."""
+        found: dict[tuple[bool, bool], list[Triple]] = {}
+        for (triple, is_computed), holds in self._net.items():
+            found.setdefault((is_computed, holds), []).append(triple)
+        return Believed(
+            gone=tuple(found.get((True, False), ())),
+            come=tuple(found.get((True, True), ())),
+            aside=tuple(found.get((False, False), ())),
+            back=tuple(found.get((False, True), ())),
+        )
+
+    def all(self) -> Believed:
+        """All that is computed or set aside."""
+        return Believed(come=tuple(self._reasoner.computed()), aside=tuple(self._reasoner.set_aside()))
+
+    def change(
+        self, delete: Collection[Triple], insert: Collection[Triple], *, lenient: bool = False
+    ) -> Change:
+        """Let the reasoner assert and retract; computed facts that are in the way are withheld.
+
+        When it is `lenient`, so is what is asserted of places, which may be there because it was set aside
+        before a restart. Raises Inconsistent, with everything as it was, when nothing computed is in the way.
+        """
+        withheld: list[Triple] = []
+        insert = list(insert)
+        while True:
+            try:
+                change = self._reasoner.apply(delete=delete, insert=insert)
+            except Inconsistent as error:
+                found = error.explanation
+                doubtful = [t for t in found.support if self._reasoner.is_computed(t)]
+                if not doubtful and lenient:
+                    doubtful = [t for t in found.support if fact_of(t) is not None]
+                if not doubtful:
+                    self._reconsider(withheld)
+                    raise
+                last = max(doubtful)
+                withheld.append(last)
+                if last in insert and not self._reasoner.is_computed(last):
+                    insert.remove(last)
+                    self._withhold(last, found, is_there=False)
+                else:
+                    self._withhold(last, found)
+            else:
+                return change
+
+    def follow(
+        self,
+        changed: Collection[Entity],
+        removed: Collection[str],
+        before: Known,
+        retracted: Collection[Triple],
+        inserted: Collection[Triple],
+    ) -> frozenset[Term]:
+        """Entities and assertions are otherwise: whose named classes changed by what is computed now.
+
+        `before` knows the entities as they were.
+        """
+        if self.computed.is_idle:
+            return frozenset()
+        self._carry_out(self.computed.after(changed, removed, before, retracted, inserted), retracted)
+        return frozenset(self._moved)
+
+    def fill(self, entities: Mapping[str, Entity]) -> None:
+        """Begin with these entities, and all that is asserted."""
+        for _ in self.filling(entities):
+            self._progress()
+
+    def filling(self, entities: Mapping[str, Entity]) -> Iterator[None]:
+        """The same in steps, between which nothing changes; the last may take long.
+
+        What the reasoner has already, of a map before, stays if it is so.
+        """
+        if self.computed.is_idle:
+            return
+        yield from self.computed.facts.filling(entities.values())
+        said = [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
+        step = self.computed.begin(entities.get, said)
+        there, aside = set(self._reasoner.computed()), set(self._reasoner.set_aside())
+        step = step._replace(
+            come=step.come - there,
+            gone=there - step.come,
+            denied=step.denied - aside,
+            undenied=aside - step.denied - self.withheld.keys(),
+        )
+        for triple in aside & self.computed.denied:
+            self._admit(triple)
+        self._carry_out(step, ())
+
+    def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
+        lost = [*step.gone, *step.denied, *retracted]
+        for triple in (*lost, *step.undenied):
+            self._admit(triple)
+        try:
+            self._believe(gone=step.gone, come=step.come, aside=step.denied, back=step.undenied)
+        except Inconsistent:
+            said = set(filter(self._is_said, step.undenied))
+            self._believe(gone=step.gone, aside=step.denied, back=step.undenied - said)
+            self._take_in(sorted(said | step.come, key=self._order))
+        if self._rests:
+            self._reconsider(lost)
+
+    def _believe(
+        self,
+        gone: Collection[Triple] = (),
+        come: Collection[Triple] = (),
+        aside: Collection[Triple] = (),
+        back: Collection[Triple] = (),
+    ) -> None:
+        """Raises Inconsistent, with everything as it was, when what comes contradicts the rest."""
+        if not (gone or come or aside or back):
+            return
+        if len(come) <= PART:
+            self._moved.update(self._reasoner.believe(gone=gone, come=come, aside=aside, back=back).others)
+        else:
+            self._believe_in_parts(gone, come, aside, back)
+        net = self._net
+        for triples, is_computed, holds in (
+            (gone, True, False), (come, True, True), (aside, False, False), (back, False, True),
+        ):  # fmt: skip
+            for triple in triples:
+                if net.setdefault((triple, is_computed), holds) != holds:
+                    del net[triple, is_computed]
+
+    def _believe_in_parts(
+        self,
+        gone: Collection[Triple],
+        come: Iterable[Triple],
+        aside: Collection[Triple],
+        back: Collection[Triple],
+    ) -> None:
+        reasoner, taken = self._reasoner, list[Triple]()
+        self._moved.update(reasoner.believe(gone=gone, aside=aside, back=back).others)
+        try:
+            for part in parts(come, PART, self._progress):
+                self._moved.update(reasoner.believe(come=part).others)
+                taken += part
+        except Inconsistent:
+            reasoner.believe(gone=taken, come=gone, aside=back, back=aside)
+            raise
+
+    # What contradicts
+
+    def _take_in(self, facts: Sequence[Triple]) -> None:
+        """Believe all that contradicts nothing."""
+        if not facts:
+            return
+        said = [t for t in facts if self._is_said(t)]
+        try:
+            self._believe(come=[t for t in facts if t not in said], back=said)
+        except Inconsistent as error:
+            if len(facts) > 1:
+                half = len(facts) // 2
+                self._take_in(facts[:half])
+                self._take_in(facts[half:])
+            else:
+                self._refuse(facts[0], error.explanation)
+
+    def _refuse(self, fact: Triple, found: Explanation) -> None:
+        """Withhold a fact that contradicts the rest, or one that counts less and has its part in that."""
+        doubtful = [t for t in found.support if self._reasoner.is_computed(t)]
+        if self._is_said(fact):
+            doubtful += [t for t in found.support if fact_of(t) is not None and t not in doubtful]
+        last = max((*doubtful, fact), key=self._order)
+        if last == fact:
+            self._note(fact, found)
+            return
+        self._withhold(last, found)
+        self._take_in([fact])
+        self._reconsider([last])
+
+    def _withhold(self, fact: Triple, found: Explanation, *, is_there: bool = True) -> None:
+        """Believe a fact no longer."""
+        if not is_there:
+            self._reasoner.believe(aside=[fact])
+        elif self._reasoner.is_computed(fact):
+            self._believe(gone=[fact])
+        else:
+            self._believe(aside=[fact])
+        self._note(fact, found)
+
+    def _note(self, fact: Triple, found: Explanation) -> None:
+        self._admit(fact)
+        self.withheld[fact] = found
+        for triple in found.support:
+            if triple != fact:
+                self._rests.setdefault(triple, set()).add(fact)
+
+    def _admit(self, fact: Triple) -> None:
+        """A fact is no longer withheld."""
+        found = self.withheld.pop(fact, None)
+        for triple in () if found is None else found.support:
+            resting = self._rests.get(triple, set())
+            resting.discard(fact)
+            if not resting:
+                self._rests.pop(triple, None)
+
+    def _reconsider(self, lost: Iterable[Triple]) -> None:
+        """What contradicted something that is not believed any more may not do so now."""
+        waiting = {fact for triple in lost for fact in self._rests.get(triple, ())}
+        waiting.update(triple for triple in lost if triple in self.withheld)
+        for fact in sorted(waiting, key=self._order):
+            if fact in self.withheld:
+                self._admit(fact)
+                self._take_in([fact])
+
+    def _is_said(self, fact: Triple) -> bool:
+        """Whether a fact is asserted."""
+        return any(self._reasoner.asserted(*fact))
+
+    def _order(self, fact: Triple) -> tuple[bool, Triple]:
+        """Of two that contradict each other the greater is withheld: said ones count more than computed."""
+        return (not self._is_said(fact), fact)
+
+
+def _declared(reasoner: Reasoner) -> frozenset[Term]:
+    """The properties that are computed and that the TBox has."""
+    return frozenset(p for p in COMPUTED if any(reasoner.asserted(p, v.RDF_TYPE, None)))

@@ -1,0 +1,71 @@
+"""A store on disk while a process of its own fills it, and a thread feeds that."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Future
+from contextlib import suppress
+from pathlib import Path
+
+from nodes.kb_node.sparql.triples.filling import END, frame
+from schemas import errors
+from schemas.explanations import Triple
+
+
+class StoreFiller:
+    """Fills a new store at `path`; on any error nothing is left of it."""
+
+    def __init__(
+        self, path: Path, pieces: Iterable[Sequence[Triple]], turtle: bytes = b"", *, base: str = ""
+    ) -> None:
+        """`pieces` are iterated over by the thread; what is said in `turtle`, of that base, comes, too."""
+        self.path = path
+        self._turtle = turtle
+        self._base = base
+        self.outcome: Future[tuple[int, int]] = Future()
+        """How many triples were sent in pieces, and how many the store has; its error is Refused."""
+        self._process: subprocess.Popen[bytes] | None = None
+        self._is_wanted = True
+        threading.Thread(target=self._run, args=(pieces,), name="sparql-filling", daemon=True).start()
+
+    def give_up(self) -> None:
+        """Nobody wants it any more."""
+        self._is_wanted = False
+        if self._process is not None:
+            with suppress(OSError):
+                self._process.kill()
+        self.outcome.add_done_callback(lambda _: shutil.rmtree(self.path, ignore_errors=True))
+
+    def _run(self, pieces: Iterable[Sequence[Triple]]) -> None:
+        try:
+            counts = self._pump(pieces)
+        except (OSError, ValueError) as error:
+            shutil.rmtree(self.path, ignore_errors=True)
+            refusal = errors.Refused(f"the SPARQL store could not be created: {error}")
+            self.outcome.set_exception(refusal)
+        else:
+            self.outcome.set_result(counts)
+
+    def _pump(self, pieces: Iterable[Sequence[Triple]]) -> tuple[int, int]:
+        command = [sys.executable, "-P", "-m", "nodes.kb_node.sparql.triples.filling", str(self.path)]
+        command += [self._base] if self._turtle else []
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+            self._process = process
+            assert process.stdin is not None
+            assert process.stdout is not None
+            sent = 0
+            for piece in pieces:
+                if not self._is_wanted:
+                    raise ValueError("it is not wanted any more")
+                process.stdin.write(frame(piece))
+                sent += len(piece)
+            if self._turtle:
+                process.stdin.write(END)
+                process.stdin.write(self._turtle)
+                self._turtle = b""
+            process.stdin.close()
+            return sent, int(process.stdout.read())

@@ -1,0 +1,11 @@
+"""supervisord that ends when `semmap up` does: `python -m nodes.supervisor.daemon -n -c CONF`."""
+
+from __future__ import annotations
+
+from supervisor.supervisord import main
+
+from nodes.supervisor.orphans import end_when_orphaned
+
+if __name__ == "__main__":
+    end_when_orphaned()
+    main()

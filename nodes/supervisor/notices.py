@@ -1,0 +1,47 @@
+"""What the nodes tell `semmap up` of themselves, as datagrams on a unix socket of this user's."""
+
+from __future__ import annotations
+
+import contextlib
+import select
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+from schemas import codec, errors
+from schemas.health import Health
+
+_MOST_BYTES = 1 << 16
+
+
+class Notices:
+    """The receiving end. Owned by the thread that reads it."""
+
+    def __init__(self, path: Path) -> None:
+        """Listen at `path`, which is replaced. Raises Refused when that cannot be done."""
+        self.path = path
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            path.unlink(missing_ok=True)
+            self._socket.bind(str(path))
+            path.chmod(0o600)
+        except OSError as error:
+            self._socket.close()
+            raise errors.Refused(f"cannot listen to the nodes at {path}: {error.strerror}") from None
+        self._socket.setblocking(False)
+
+    def wait(self, timeout_s: float) -> Iterator[Health]:
+        """What has come, after waiting up to `timeout_s` for a first one. What is no heartbeat is dropped."""
+        select.select([self._socket], [], [], timeout_s)
+        while True:
+            try:
+                datagram = self._socket.recv(_MOST_BYTES)
+            except BlockingIOError:
+                return
+            with contextlib.suppress(errors.BadRequest):
+                yield codec.decode(datagram, Health)
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._socket.close()
+        self.path.unlink(missing_ok=True)

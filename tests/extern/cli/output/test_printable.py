@@ -1,0 +1,34 @@
+"""What a stranger wrote does not command a terminal."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from nodes.extern.cli.calling import complain, print_json, print_lines
+from nodes.extern.cli.output.printable import say
+
+CLEAR = "\x1b[2J\x1b]0;owned\x07 \x9b31m \x7f \u202e"
+
+
+def commands(text):
+    return [c for c in text if not c.isprintable() and c != "\n"]
+
+
+@pytest.mark.parametrize("show", [say, complain, print_json, lambda text: print_lines([text])])
+def test_no_control_character_is_printed(capsys, show):
+    show(f"a reference {CLEAR} of a cup")
+    out, err = capsys.readouterr()
+    assert commands(out + err) == []
+    assert "of a cup" in out + err
+
+
+def test_lines_and_letters_stay(capsys):
+    say("zwei\nZeilen: \u00e4\u00f6\u00fc \u65e5\u672c")
+    assert capsys.readouterr().out == "zwei\nZeilen: \u00e4\u00f6\u00fc \u65e5\u672c\n"
+
+
+def test_json_is_still_the_same_json(capsys):
+    print_json({"text": CLEAR})
+    assert json.loads(capsys.readouterr().out) == {"text": CLEAR}

@@ -1,0 +1,50 @@
+"""Do every fault, or those whose names contain a word: `python -m tests.faults [WORD...]`."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from tests.faults.all_faults import FAULTS
+from tests.faults.table import Fault, Row, outcome
+
+
+def main(words: list[str]) -> int:
+    """Exit status 1 if anything was lost or doubled, or another promise was broken."""
+    chosen = [fault for fault in FAULTS if not words or any(word in fault.name for word in words)]
+    rows = [_row(fault) for fault in chosen]
+    console = Console(width=120)
+    table = Table("what was done", "times", "lost", "doubled", "whole after [s]", "")
+    for row in rows:
+        remark = row.failed or (f"skipped: {row.skipped}" if row.skipped else "")
+        whole = f"{row.whole_s:.1f}" if row.done else ""
+        table.add_row(row.name, str(row.done), str(row.lost), str(row.doubled), whole, remark)
+    console.print(table)
+    lost, doubled = sum(row.lost for row in rows), sum(row.doubled for row in rows)
+    failed = [row for row in rows if row.failed]
+    if failed:
+        print(f"broken promises: {len(failed)}")
+    skipped = sum(bool(row.skipped) for row in rows)
+    print(f"faults: {sum(row.done for row in rows)} done, {skipped} skipped, lost {lost}, doubled {doubled}")
+    return 1 if failed or lost or doubled else 0
+
+
+def _row(fault: Fault) -> Row:
+    print(f"{fault.name} ...", file=sys.stderr, flush=True)
+    with tempfile.TemporaryDirectory(prefix="semmap-faults-") as folder:
+        try:
+            return outcome(fault, Path(folder, "data"), fault.often)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            traceback.print_exc()
+            return Row(fault.name, failed=str(error) or type(error).__name__)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

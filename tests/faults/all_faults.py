@@ -1,0 +1,9 @@
+"""Every fault there is."""
+
+from __future__ import annotations
+
+from tests.faults.forgeries import FORGERIES
+from tests.faults.processes import PROCESSES
+from tests.faults.table import Fault
+
+FAULTS: tuple[Fault, ...] = PROCESSES + FORGERIES

@@ -1,0 +1,164 @@
+"""What a stranger can publish, serve or ask on a system that is not secure.
+
+Nobody who is let onto such a network can be kept from speaking. What is promised is that the system does not
+end, finds out, and goes by what its own nodes say.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+
+import zenoh
+from msgspec import structs
+
+from nodes import bus
+from schemas import codec, keys
+from schemas.commits import Commit, Departed, Effects
+from schemas.entities import Pose
+from schemas.health import Health
+from schemas.replies import Changed
+from schemas.scenes import BodyOrder, Poses, Spawn, Spawned
+from tests.faults.ground import Ground, wait_for
+from tests.faults.processes import ALL, NOTICED_S, _pids, _runs
+from tests.faults.table import Fault
+
+
+def health_of_nobody(ground: Ground) -> None:
+    """A node that there is not says that it lives, and later says nothing."""
+    pids = _pids(ground)
+    with _stranger(ground) as session:
+        session.put(keys.health_key("x"), codec.encode(_health("x", 1)))
+        ground.observe(2 * NOTICED_S)
+    assert ground.system.process.poll() is None
+    assert _pids(ground) == pids
+
+
+def health_of_a_stopped_node(ground: Ground) -> None:
+    """Forged beats do not keep a node that hangs from being replaced."""
+    pid = _pids(ground)["kb_node"]
+    with (
+        _stranger(ground) as session,
+        _repeated(session, keys.health_key("kb_node"), _health("kb_node", pid)),
+    ):
+        time.sleep(1.0)
+        os.kill(pid, signal.SIGSTOP)
+        wait_for(lambda: not _runs(pid), "the node that hangs is replaced", within_s=NOTICED_S)
+
+
+def forged_commit(ground: Ground) -> None:
+    """A commit with the next number hides no acknowledged change for long."""
+    with ground.client() as client, _stranger(ground) as session:
+        (name,) = client.add("Bowl", at=(4.0, 4.0, 0.0)).names
+        gone = (Departed(name=name, types=("Bowl",)),)
+        for _ in range(20):
+            seq = client.status().commit + 1
+            commit = Commit(
+                seq=seq, stamp_ns=time.time_ns(), id=f"forged{seq}", source="scene", removed=gone, digest="00"
+            )
+            session.put(keys.COMMIT.key, codec.encode(commit))
+            session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
+        wait_for(lambda: name in {entity.name for entity in client.list("Bowl")}, "what was hidden is there")
+        client.remove(name)
+
+
+def commit_far_ahead(ground: Ground) -> None:
+    """One with a number that there is not yet: it is looked for, and then forgotten."""
+    with ground.client() as client, _stranger(ground) as session:
+        commit = Commit(seq=10**12, stamp_ns=1, id="far", source="scene", digest="00")
+        session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
+        assert client.status().commit < 10**9
+
+
+def pose_of_the_future(ground: Ground) -> None:
+    """The poses that follow one with a stamp of 2**62 are heard."""
+    with ground.client() as client, _stranger(ground) as session:
+        heard: list[Poses] = []
+        bus.follow(session, keys.POSES, lambda _, poses: heard.append(poses))
+        client.add("Chair", "seat", at=(5.0, 5.0, 0.0), wait=True)
+        poses = wait_for(lambda: heard and "seat" in heard[-1].names and heard[-1], "poses with the chair")
+        session.put(keys.POSES.key, codec.encode(structs.replace(poses, stamp_ns=2**62)))
+        time.sleep(0.5)
+        client.move("seat", at=(7.0, 6.0, 0.0))
+
+        def follows() -> bool:
+            x, y, _ = client.get("seat").pose.position_m
+            return abs(x - 7.0) < 0.2 and abs(y - 6.0) < 0.2
+
+        wait_for(follows, "the map follows the chair", within_s=15.0)
+        client.remove("seat")
+
+
+def stolen_acknowledgements(ground: Ground) -> None:
+    """A foreign queryable answers `add`: no acknowledgement is its own, and every change is made."""
+    stolen = []
+
+    def steal(query: zenoh.Query) -> None:
+        stolen.append(query)
+        with query:
+            query.reply(query.key_expr, codec.encode(Changed(commit=1, text="added", names=("nothing",))))
+
+    with _stranger(ground) as session:
+        session.declare_queryable(f"{keys.CMD}/add", steal, complete=True)
+        with ground.client() as client:
+            wait_for(lambda: client.add("Plate", at=(6.0, 3.0, 0.0)) and stolen, "it was asked")
+            for _ in range(20):
+                names = client.add("Plate", at=(6.0, 2.0, 0.0)).names
+                assert names != ("nothing",)
+                assert set(names) <= {entity.name for entity in client.list("Plate")}
+    assert "nothing" not in ground.load.added
+
+
+def files_of_the_host(ground: Ground) -> None:
+    """No order makes the simulator read a file that is none of its models."""
+    with _stranger(ground) as session:
+        for number, model in enumerate(("/etc/passwd.xml", "../../etc/hosts.obj", "/etc/hostname.stl")):
+            name = f"spy{number}"
+            order = BodyOrder(
+                name=name, class_="Chair", model=model, pose=Pose(position_m=(0.0, 0.0, 1.0)), commit=1
+            )
+            spawned = bus.ask(session, keys.SIM, Spawn.VERB, Spawn(bodies=(order,)), Spawned)
+            assert "folder given by" in spawned.failed[name] or "may be read" in spawned.failed[name], spawned
+
+
+@contextlib.contextmanager
+def _stranger(ground: Ground) -> Iterator[bus.Session]:
+    with bus.open_session(bus.Network(connect=(ground.endpoint,))) as session:
+        yield session
+
+
+@contextlib.contextmanager
+def _repeated(session: bus.Session, key: str, message: object) -> Iterator[None]:
+    """Say it ten times a second meanwhile."""
+    ending = threading.Event()
+
+    def repeat() -> None:
+        while not ending.wait(0.1):
+            session.put(key, codec.encode(message))
+
+    thread = threading.Thread(target=repeat)
+    thread.start()
+    try:
+        yield
+    finally:
+        ending.set()
+        thread.join()
+
+
+def _health(node: str, pid: int) -> Health:
+    return Health(node=node, pid=pid, started_ns=1, stamp_ns=time.time_ns(), state="ready", detail="forged")
+
+
+FORGERIES = (
+    Fault("health of a node that there is not", health_of_nobody, often=1),
+    Fault("forged heartbeats of a stopped node", health_of_a_stopped_node, often=2, in_short=1),
+    Fault("forged commit with the next number", forged_commit, often=5, in_short=1),
+    Fault("forged commit with a far number", commit_far_ahead, often=2),
+    Fault("forged pose with a stamp of 2**62", pose_of_the_future, often=2, words=ALL),
+    Fault("foreign queryable on cmd/add", stolen_acknowledgements, often=3, in_short=1),
+    Fault("orders to read files of the host", files_of_the_host, often=1, words=ALL),
+)

@@ -1,0 +1,133 @@
+"""What a fault is done to: a system under load, whose every acknowledged change is accounted for."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from nodes.extern.client import Client, connect
+from nodes.extern.testing import free_endpoint
+from schemas import errors
+from schemas.replies import NodeStatus
+from tests.conftest import System, running
+
+PATIENCE_S = 60.0
+LOST_WITHIN_S = 20.0
+
+
+class Load(threading.Thread):
+    """Adds cups one after another: by turns with a name, and without one so that a repetition would show."""
+
+    def __init__(self, endpoint: str) -> None:
+        super().__init__(daemon=True)
+        self.added: list[str] = []
+        self.unanswered = 0
+        self.refused: list[str] = []
+        self._endpoint = endpoint
+        self._stopping = threading.Event()
+
+    def run(self) -> None:
+        asked = 0
+        while not self._stopping.is_set():
+            try:
+                with connect(self._endpoint, agent="load") as client:
+                    while not self._stopping.is_set():
+                        asked += 1
+                        name = f"cup_of_load_{asked}" if asked % 2 else None
+                        self.added += client.add("Cup", name, at=(1.0 + asked % 5, 2.0, 0.0)).names
+            except errors.NoAnswer:
+                self.unanswered += 1
+                time.sleep(0.1)
+            except errors.SemmapError as error:
+                self.refused.append(error.text)
+
+    def stop(self) -> None:
+        self._stopping.set()
+        self.join(PATIENCE_S)
+        assert not self.is_alive(), "a change is still not answered"
+
+
+class Ground:
+    """A running system, by `semmap up` with some words, that can be started again."""
+
+    def __init__(self, data: Path, words: tuple[str, ...]) -> None:
+        self.data = data
+        self.endpoint = free_endpoint()
+        self._words = words
+        self._stack = contextlib.ExitStack()
+        self.system = self.start()
+        self.observed_s = 0.0
+        self.load = Load(self.endpoint)
+        self.load.start()
+
+    def start(self) -> System:
+        """Start it (again)."""
+        self.system = self._stack.enter_context(running(self.data, *self._words, endpoint=self.endpoint))
+        return self.system
+
+    def observe(self, seconds: float) -> None:
+        """See what happens for a while, which does not count as time that the system takes."""
+        time.sleep(seconds)
+        self.observed_s += seconds
+
+    def client(self) -> contextlib.AbstractContextManager[Client]:
+        return self.system.client()
+
+    def nodes(self) -> dict[str, NodeStatus]:
+        """The nodes that are heard of, by name."""
+        with self.client() as client:
+            return {node.node: node for node in client.status().nodes if node.state == "ready"}
+
+    def seconds_until_whole(self) -> float:
+        """How long it takes until every node is ready, and a change is made by somebody who comes anew."""
+        began_s = time.monotonic()
+        wanted = set(self._settings().nodes)
+
+        def is_whole() -> bool:
+            try:
+                with self.client() as client:
+                    status = client.status()
+                    ready = {node.node for node in status.nodes if node.state == "ready"}
+                    return ready >= wanted and bool(client.add("Plate", at=(3.0, 3.0, 0.0)).names)
+            except errors.NoAnswer:
+                return False
+
+        wait_for(is_whole, "the system is whole again")
+        seen = len(self.load.added)
+        wait_for(lambda: len(self.load.added) > seen, "the load goes on")
+        return time.monotonic() - began_s
+
+    def _settings(self) -> Any:
+        from nodes.supervisor.control import Supervisor
+
+        return Supervisor(self.data).settings
+
+    def reckon(self) -> tuple[int, int]:
+        """Stop the load; how many acknowledged changes are lost, and how many were done twice."""
+        self.load.stop()
+        assert not self.load.refused, self.load.refused[:3]
+        with self.client() as client:
+            there = {entity.name for entity in client.list("Cup")}
+        lost = len(set(self.load.added) - there)
+        said_twice = len(self.load.added) - len(set(self.load.added))
+        nobodys = len(there) - len(set(self.load.added)) - self.load.unanswered
+        return lost, said_twice + max(0, nobodys)
+
+    def close(self) -> None:
+        with contextlib.suppress(AssertionError):
+            self.load.stop()
+        self._stack.close()
+
+
+def wait_for(condition: Callable[[], Any], what: str, *, within_s: float = PATIENCE_S) -> Any:
+    """What `condition()` gives as soon as it holds; an AssertionError after a while."""
+    deadline_s = time.monotonic() + within_s
+    while time.monotonic() < deadline_s:
+        if result := condition():
+            return result
+        time.sleep(0.05)
+    raise AssertionError(f"waited {within_s:g} s in vain: {what}")

@@ -1,0 +1,138 @@
+"""Processes that are killed, or stopped so that they hang."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import psutil
+
+from nodes.supervisor.control import Supervisor
+from tests.faults.ground import Ground, wait_for
+from tests.faults.table import Fault
+
+NOTICED_S = 5.0
+ALL = ("--abox", "none", "--world", "empty")
+
+
+def kill(node: str, ground: Ground) -> None:
+    pid = _pids(ground)[node]
+    os.kill(pid, signal.SIGKILL)
+    wait_for(lambda: _pids(ground).get(node, pid) != pid, f"{node} is back")
+
+
+def stop(node: str, ground: Ground) -> None:
+    """It hangs: it is replaced within seconds, and nobody else is."""
+    before = _pids(ground)
+    os.kill(before[node], signal.SIGSTOP)
+    began_s = time.monotonic()
+    wait_for(lambda: not _runs(before[node]), f"{node}, which hangs, is ended")
+    noticed_s = time.monotonic() - began_s
+    assert noticed_s < NOTICED_S, f"{node} hung for {noticed_s:.1f} s"
+    wait_for(lambda: node in _pids(ground), f"{node} is back")
+    ground.observe(NOTICED_S)
+    now = _pids(ground)
+    others = {other: (pid, now.get(other)) for other, pid in before.items() if other != node}
+    assert all(was == is_ for was, is_ in others.values()), f"besides {node} others were replaced: {others}"
+
+
+def kill_supervisord(ground: Ground) -> None:
+    """`semmap up` ends with an error, and nothing is left."""
+    pids, up = _pids(ground), ground.system.process
+    os.kill(_supervisord(ground), signal.SIGKILL)
+    assert up.wait(30) not in (0, None)
+    _require_gone(pids)
+    ground.start()
+
+
+def kill_up(ground: Ground) -> None:
+    """Nothing is left serving for long."""
+    pids, up = _pids(ground), ground.system.process
+    up.kill()
+    up.wait(30)
+    _require_gone(pids)
+    ground.start()
+
+
+def kill_up_and_start_at_once(ground: Ground) -> None:
+    """The next `semmap up` takes over, also from a node that hangs."""
+    pids, up = _pids(ground), ground.system.process
+    os.kill(pids["kb_node"], signal.SIGSTOP)
+    up.kill()
+    up.wait(30)
+    ground.start()
+    assert not any(map(_runs, pids.values()))
+
+
+def kill_everybody_above_and_go_down(ground: Ground) -> None:
+    """`semmap down` finds a node that hangs and has been left behind."""
+    pids, up = _pids(ground), ground.system.process
+    supervisord = _supervisord(ground)
+    up.kill()
+    os.kill(supervisord, signal.SIGKILL)
+    os.kill(pids["kb_node"], signal.SIGSTOP)  # not before: the kernel wakes whom it sees orphaned
+    up.wait(30)
+    down = [Path(sys.executable).with_name("semmap"), "down", "--data", str(ground.data)]
+    assert subprocess.run(down, timeout=60, capture_output=True).returncode == 0
+    assert not any(map(_runs, pids.values()))
+    assert subprocess.run(down, timeout=60, capture_output=True).returncode == 3
+    ground.start()
+
+
+def stop_up(ground: Ground) -> None:
+    """Whoever watches is held up; then nobody is taken to hang because of that."""
+    before = _pids(ground)
+    ground.system.process.send_signal(signal.SIGSTOP)
+    ground.observe(2 * NOTICED_S)
+    ground.system.process.send_signal(signal.SIGCONT)
+    ground.observe(NOTICED_S)
+    assert _pids(ground) == before
+
+
+def _pids(ground: Ground) -> dict[str, int]:
+    with contextlib.suppress(Exception):
+        processes = Supervisor(ground.data).processes()
+        return {node: info["pid"] for node, info in processes.items() if info["statename"] == "RUNNING"}
+    return {}
+
+
+def _supervisord(ground: Ground) -> int:
+    return int((ground.data / "supervisord.pid").read_text())
+
+
+def _runs(pid: int) -> bool:
+    try:
+        return bool(psutil.Process(pid).status() != psutil.STATUS_ZOMBIE)
+    except psutil.Error:
+        return False
+
+
+def _require_gone(pids: dict[str, int]) -> None:
+    wait_for(lambda: not any(map(_runs, pids.values())), "nothing is left behind", within_s=10.0)
+
+
+def _of(what: Callable[[str, Ground], None], node: str) -> Callable[[Ground], None]:
+    return partial(what, node)
+
+
+PROCESSES = (
+    Fault("coordinator killed", _of(kill, "coordinator"), often=20, in_short=2),
+    Fault("kb_node killed", _of(kill, "kb_node"), often=20, in_short=1),
+    Fault("sim_node killed", _of(kill, "sim_node"), words=ALL),
+    Fault("coordinator stopped", _of(stop, "coordinator"), words=ALL, in_short=1),
+    Fault("kb_node stopped", _of(stop, "kb_node"), words=ALL),
+    Fault("sim_node stopped", _of(stop, "sim_node"), words=ALL),
+    Fault("recorder stopped", _of(stop, "recorder"), words=ALL),
+    Fault("semmap up stopped for 10 s", stop_up, often=1),
+    Fault("supervisord killed", kill_supervisord, often=2, in_short=1),
+    Fault("semmap up killed", kill_up, often=2),
+    Fault("semmap up killed while kb_node hangs, then up", kill_up_and_start_at_once, often=2),
+    Fault("everybody above killed while kb_node hangs, then down", kill_everybody_above_and_go_down, often=1),
+)

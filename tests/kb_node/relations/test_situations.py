@@ -1,0 +1,39 @@
+"""Sixty situations made by hand: what is computed is what a person would say."""
+
+import pytest
+
+from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
+from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.telling import relations
+from schemas.commands import Relations
+
+
+def test_there_are_sixty():
+    assert len(SITUATIONS) == 60
+    assert len({situation.title for situation in SITUATIONS}) == 60
+
+
+@pytest.mark.parametrize("situation", SITUATIONS, ids=lambda situation: situation.title)
+def test_what_a_person_would_say(situation):
+    facts = Facts()
+    facts.update(situation.things)
+    assert set(facts) == situation.said
+    space = Space(situation.things)
+    told = {
+        (r.subject, r.relation, r.object)
+        for thing in situation.things
+        for r in relations(space, Relations(name=thing.name))
+    }
+    assert situation.also <= told
+    assert not situation.never & told
+
+
+@pytest.mark.parametrize("off_m", [-0.05, -0.02, 0.0, 0.02, 0.05])
+@pytest.mark.parametrize("lean_deg", [0.0, 5.0])
+def test_a_pose_may_be_off_by_as_much_as_the_keeper_tolerates(off_m, lean_deg):
+    facts = Facts()
+    facts.update([TABLE, on_table("can1", z=off_m, turn=about_y(lean_deg))])
+    lowest = facts.space.solids["can1"].bottom - TOP
+    assert (("can1", "isOn", "table1") in facts) == (abs(lowest) <= 0.05 + 1e-9)
+    assert abs(lowest - off_m) < 0.004

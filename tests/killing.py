@@ -1,0 +1,63 @@
+"""A node that is killed again and again while a client works as fast as it can."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import threading
+import time
+
+from schemas import errors
+from tests.conftest import until
+
+
+class Busy(threading.Thread):
+    """A client that does one thing after the other until it is stopped; `step` does one of them."""
+
+    def __init__(self, system):
+        super().__init__()
+        self.done = 0
+        self._system = system
+        self._stopping = threading.Event()
+
+    def run(self):
+        with self._system.client() as client:
+            while not self._stopping.is_set():
+                try:
+                    self.step(client)
+                    self.done += 1
+                except errors.NoAnswer:
+                    self.unanswered()
+
+    def step(self, client):
+        """One thing, which ends with its answer, or raises NoAnswer."""
+        raise NotImplementedError
+
+    def unanswered(self):
+        """The last step got no answer: it may have been done."""
+        raise NotImplementedError
+
+    def stop(self):
+        self._stopping.set()
+        self.join(60)
+        assert not self.is_alive()
+
+    def goes_on(self):
+        """Wait for one more step that is done."""
+        before = self.done
+        until(lambda: self.done > before, "the client goes on")
+
+
+def kill_again_and_again(system, node, busy, kills):
+    """Kill a node so many times while `busy` works, each time once it is back; then stop the client."""
+    chance = random.Random(kills)
+    busy.start()
+    pid = 0
+    for _ in range(kills):
+        busy.goes_on()
+        time.sleep(chance.uniform(0.0, 0.3))
+        pid = until(lambda last=pid: (now := system.pid(node)) != last and now, "it is back")
+        os.kill(pid, signal.SIGKILL)
+    busy.goes_on()
+    busy.stop()

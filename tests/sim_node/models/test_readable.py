@@ -1,0 +1,74 @@
+"""What is named by a map makes the simulator read nothing but models."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes.sim_node.models.library import ModelError
+from nodes.sim_node.models.sources import Models
+
+BOX = '<mujoco>{}<worldbody><body><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>'
+
+
+@pytest.fixture
+def folders(tmp_path):
+    for name in ("models", "data", "elsewhere"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "box.xml").write_text(BOX.format(""))
+    return tmp_path
+
+
+@pytest.fixture
+def models(folders):
+    return Models(folders / "models", folders / "data")
+
+
+def test_models_of_both_folders_are_read(folders, models):
+    assert models("box.xml", None).size_m == pytest.approx((0.2, 0.2, 0.2))
+    for folder in ("models", "data"):
+        assert models(str(folders / folder / "box.xml"), None).size_m == pytest.approx((0.2, 0.2, 0.2))
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../elsewhere/box.xml", "{}/elsewhere/box.xml", "/etc/passwd.xml", "link.xml", "../models/../box.obj"],
+)
+def test_no_other_file_is(folders, models, name):
+    (folders / "models" / "link.xml").symlink_to(folders / "elsewhere" / "box.xml")
+    with pytest.raises(ModelError, match=r"only files in .*models or .*data may be read"):
+        models(name.format(folders), None)
+
+
+def test_without_a_folder_there_is_none_to_read(folders):
+    with pytest.raises(ModelError, match="may be read"):
+        Models()(str(folders / "models" / "box.xml"), None)
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        '<include file="{}/elsewhere/box.xml"/>',
+        '<include file="../elsewhere/box.xml"/>',
+        '<compiler meshdir="{}/elsewhere"/>',
+        '<compiler assetdir=".."/><asset><mesh name="m" file="elsewhere/m.obj"/></asset>',
+        '<asset><mesh name="m" file="/etc/passwd"/></asset>',
+        '<asset><texture name="t" type="cube" fileright="../elsewhere/t.png"/></asset>',
+        '<include file="within.xml"/>',
+    ],
+)
+def test_nor_what_a_model_refers_to(folders, models, inside):
+    (folders / "models" / "spy.xml").write_text(BOX.format(inside.format(folders)))
+    (folders / "models" / "within.xml").write_text(
+        "<mujocoinclude><include file='../elsewhere/box.xml'/></mujocoinclude>"
+    )
+    with pytest.raises(ModelError, match="may be read"):
+        models("spy.xml", None)
+
+
+def test_what_it_refers_to_within_is_read(folders, models):
+    (folders / "models" / "whole.xml").write_text(BOX.format('<include file="parts/assets.xml"/>'))
+    (folders / "models" / "parts").mkdir()
+    (folders / "models" / "parts" / "assets.xml").write_text(
+        "<mujocoinclude><option gravity='0 0 0'/></mujocoinclude>"
+    )
+    assert models("whole.xml", None).size_m == pytest.approx((0.2, 0.2, 0.2))
