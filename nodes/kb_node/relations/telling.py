@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from itertools import combinations
 
+from msgspec import structs
+
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.arrangement import attached, between, next_to
 from nodes.kb_node.relations.measures import Measure
@@ -100,7 +102,10 @@ def relations_between(space: Space, name: str, other_name: str) -> Iterator[Rela
     for relation in wanted:
         measure = measured(space, relation, solid, other)
         if measure is not None:
-            yield _told(relation, solid, other, measure)
+            told = _told(relation, solid, other, measure)
+            if relation == "isOn" and not measure.holds:
+                told = structs.replace(told, text=told.text + _rather(space, solid, other))
+            yield told
         elif relation == "isOn":
             text = f"{name} is not on {other_name}: it is over no surface of that"
             yield Relation(
@@ -109,6 +114,15 @@ def relations_between(space: Space, name: str, other_name: str) -> Iterator[Rela
     yield from _beside(space, solid, other)
     if not (solid.is_place or other.is_place):
         yield from (_between(third, solid, other) for third in between(space, solid, other))
+
+
+def _rather(space: Space, solid: Solid, other: Solid) -> str:
+    """What a thing is inside or on, as a clause that says why it is not on another."""
+    container, supports, _ = space.whereabouts(solid)
+    if container is not None:
+        return f"; it is inside {container[0].name}"
+    names = [bearer.name for bearer, _ in supports if bearer is not other]
+    return f"; it is on {' and '.join(names)}" if names else ""
 
 
 def explained(space: Space, name: str, relation: str, other: str) -> Relation | None:
@@ -190,6 +204,11 @@ SPOKEN: dict[RelationName, str] = {
 
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     limits = space.limits
+    bears = _is_with(space, other, solid) and solid.footprint >= other.footprint
+    if bears or _is_with(space, solid, other):
+        made = measures.touches(solid, other, limits)
+        yield from () if made is None else (_told("touches", solid, other, made),)
+        return
     found: tuple[tuple[RelationName, Measure | None], ...] = (
         ("isAttachedTo", attached(space, solid, other)),
         ("touches", None if other.is_place else measures.touches(solid, other, limits)),
@@ -201,6 +220,12 @@ def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     for relation, measure in found:
         if measure is not None:
             yield _told(relation, solid, other, measure)
+
+
+def _is_with(space: Space, solid: Solid, other: Solid) -> bool:
+    """Whether a thing is on or inside another: then nobody says that it is near or under that."""
+    container, supports, _ = space.whereabouts(solid)
+    return other in (container and container[0], *(bearer for bearer, _ in supports))
 
 
 def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:

@@ -46,6 +46,17 @@ def test_of_a_pair_what_does_not_hold_is_told_too():
     assert not told("cup1", other="corner1")["isLocatedIn", "corner1"].holds
 
 
+def test_why_milk_is_not_on_the_fridge_whose_board_it_stands_on():
+    fridge = thing("fridge1", (3.0, 0.0, 0.0))
+    milk = thing("carton1", (3.0, 0.0, 0.867))
+    space = Space([ROOM, fridge, milk])
+    found = {r.relation: r for r in relations(space, Relations(name="carton1", other="fridge1"))}
+    assert found.keys() == {"isOn", "isInside", "touches"}
+    assert found["isInside"].holds
+    assert not found["isOn"].holds
+    assert found["isOn"].text.endswith("; it is inside fridge1")
+
+
 def test_directions_are_the_viewer_s():
     west, east = told("cup1", viewpoint=(-3.0, 0.0, 0.0, 0.0)), told("cup1", viewpoint=(3.0, 0.0, 0.0, 0.0))
     assert ("isRightOf", "cup2") in west
