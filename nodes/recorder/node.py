@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from concurrent.futures import Future
 
@@ -9,8 +10,10 @@ from nodes.recorder.config import RecorderConfig
 from nodes.recorder.drawing.graph import graph_of
 from nodes.recorder.drawing.stage import Stage
 from nodes.recorder.drawing.surfaces import Kind
+from nodes.recorder.growth import LOOK_S, Growth
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
+from nodes.recorder.retention import KEEP_ALL, Retention, recordings
 from nodes.recorder.state.asserted_relations import Relations, missed
 from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.following import Begun, Follower
@@ -21,6 +24,9 @@ from schemas.bridge import Recall, StarQuery
 from schemas.commits import MANY_ENTITIES, Commit, Star
 from schemas.scenes import Poses, Scene, SceneQuery, SurfaceQuery, Surfaces
 
+log = logging.getLogger(__name__)
+
+_TIDY_S = 10.0
 _SCENE_LOST_S = 10.0
 """A simulator that says nothing for so long is gone; making thousands of bodies takes seconds."""
 _RECALLED_AT_ONCE = 20
@@ -30,7 +36,15 @@ _SURFACES_AT_ONCE = 50
 class Recorder:
     """Binds the recording to the wire."""
 
-    def __init__(self, node: Node, recording: Recording, live: str) -> None:
+    def __init__(
+        self,
+        node: Node,
+        recording: Recording,
+        live: str,
+        keep: Retention = KEEP_ALL,
+        after: int | None = None,
+    ) -> None:
+        """`live` says in words where it is seen live; `keep` and `after` are those of the configuration."""
         self._node = node
         self._recording = recording
         self._live = live
@@ -48,6 +62,11 @@ class Recorder:
         Follower(node, self._map, keys.COMMIT, heard=self._on_commit, begun=self._on_map)
         node.follow(keys.POSES, self._on_poses)
         node.every(0.5, self._tick)
+        self._growth, self._amiss = Growth(recording.path), ""
+        self._keep, self._after, self._begun_s = keep, after, time.time()
+        self.is_full = False
+        node.every(LOOK_S, self._look_after_the_file)
+        node.every(_TIDY_S, self._tidy)
         PerceptionRecorder(node, recording, self._at)
 
     # The map
@@ -71,7 +90,8 @@ class Recorder:
 
     def _on_map(self, begun: Begun) -> None:
         first = begun.before < 0
-        lost = missed(begun.seq - 1 if first else begun.before, begun.seq, self._unknown)
+        before = begun.before if not first else begun.seq - 1 if self._after is None else self._after
+        lost = missed(before, begun.seq, self._unknown)
         self._unknown.clear()
         self._at(time.time_ns(), self._map.seq)
         if first or begun.seq < begun.before:
@@ -177,6 +197,32 @@ class Recorder:
             self._at(time.time_ns())
             self._show_all()
 
+    def _look_after_the_file(self) -> None:
+        """Whoever looks at the status is told of a recording that is not written, for as long as it is so."""
+        before, self._amiss = self._amiss, self._growth.amiss(self._recording.logged)
+        if self._amiss and not before:
+            self._node.report(self._amiss)
+        if self._amiss != before:
+            self._describe()
+
+    def _tidy(self) -> None:
+        """Delete what need not be kept, and let another file be begun when this one is large or old."""
+        path, now_s = self._recording.path, time.time()
+        by_path = {file.path: file for file in recordings(path.parent)}
+        if (current := by_path.pop(path, None)) is None:
+            return
+        for file in self._keep.surplus(by_path.values(), current, now_s):
+            file.path.unlink(missing_ok=True)
+            log.info("deleted %s, as --record-keep says", file.path)
+        if self._map.seq >= 0 and self._keep.is_full(current, self._begun_s, now_s):
+            self.is_full = True
+            self._node.stop()
+
+    @property
+    def recorded(self) -> int:
+        """The last commit that is in the recording."""
+        return self._map.seq
+
     # Both
 
     def _at(self, stamp_ns: int, seq: int | None = None) -> None:
@@ -191,11 +237,18 @@ class Recorder:
         if not self._arranged and self._map.entities:
             self._arranged = True
             self._recording.arrange(self._stage.poses)
-        self._node.ready(f"commit {self._map.seq}, into {self._recording.path.name}, {self._live}")
+        self._describe()
+
+    def _describe(self) -> None:
+        into = f"into {self._recording.path.name}, {self._live}"
+        self._node.ready(f"commit {self._map.seq}, {self._amiss or into}")
 
 
-def run(config: RecorderConfig) -> None:
-    """Record until stopped. Raises BadFile when the file cannot be written."""
+def run(config: RecorderConfig) -> int | None:
+    """Record until stopped, which is answered with None, or until another file is to be begun.
+
+    Then the answer is the last commit that this one has. Raises BadFile when the file cannot be written.
+    """
     serve = config.serve if config.serve is not None and free_to_serve(config.serve) else None
     live = f"live at {serve}" if serve else "no live view"
     if config.serve is not None and serve is None:
@@ -204,5 +257,6 @@ def run(config: RecorderConfig) -> None:
         open_node("recorder", config.network) as node,
         open_recording(config.path, serve) as recording,
     ):
-        Recorder(node, recording, live)
+        recorder = Recorder(node, recording, live, config.keep, config.after)
         node.run()
+        return recorder.recorded if recorder.is_full else None

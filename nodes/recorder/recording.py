@@ -39,6 +39,8 @@ class Recording:
 
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self.path = path
+        self.logged = 0
+        """How often something was recorded."""
         self._stream = stream
         self._in_view: list[Pose] = []
         self._cameras: list[str] = []
@@ -61,37 +63,41 @@ class Recording:
 
     def draw(self, name: str, figure: Figure, pose: Pose) -> None:
         """Draw a figure where it stands."""
-        self._stream.log(["map", figure.group, name], *shape_of(figure), _transform(pose))
+        self._log(["map", figure.group, name], *shape_of(figure), _transform(pose))
 
     def move(self, name: str, figure: Figure, pose: Pose) -> None:
         """Put a figure somewhere else."""
-        self._stream.log(["map", figure.group, name], _transform(pose))
+        self._log(["map", figure.group, name], _transform(pose))
 
     def erase(self, name: str, figure: Figure) -> None:
         """Take a figure away."""
-        self._stream.log(["map", figure.group, name], rr.Clear(recursive=False))
+        self._log(["map", figure.group, name], rr.Clear(recursive=False))
 
     def show(self, path: str, *archetypes: rr.AsComponents) -> None:
         """Draw what perception saw."""
-        self._stream.log(path, *archetypes)
+        self._log(path, *archetypes)
 
     def graph(self, graph: Graph) -> None:
         """Draw the knowledge graph."""
-        self._stream.log("graph", *nodes_and_edges(graph))
+        self._log("graph", *nodes_and_edges(graph))
 
     def commit(self, commit: Commit) -> None:
         """Record a commit: a page and a line to read, and its fields for programs."""
-        self._stream.log(
+        self._log(
             COMMITS,
             rr.TextDocument(commit_text.page(commit), media_type=rr.MediaType.MARKDOWN),
             rr.DynamicArchetype(COMMIT_FIELDS, components=_fields(commit)),
         )
-        self._stream.log(COMMIT_LOG, rr.TextLog(commit_text.headline(commit), level=rr.TextLogLevel.INFO))
+        self._log(COMMIT_LOG, rr.TextLog(commit_text.headline(commit), level=rr.TextLogLevel.INFO))
+
+    def _log(self, path: str | list[str], *archetypes: rr.AsComponents) -> None:
+        self.logged += 1
+        self._stream.log(path, *archetypes)
 
     def note(self, text: str, *, warning: bool = False) -> None:
         """Say something about the recording itself."""
         level = rr.TextLogLevel.WARN if warning else rr.TextLogLevel.INFO
-        self._stream.log(COMMIT_LOG, rr.TextLog(text, level=level))
+        self._log(COMMIT_LOG, rr.TextLog(text, level=level))
 
 
 def _transform(pose: Pose) -> rr.Transform3D:

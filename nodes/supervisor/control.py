@@ -31,7 +31,8 @@ _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
 _STOP_WAIT_S = 3
 _ANSWER_S = 3.0
 """Seconds: supervisord answers within milliseconds, or it hangs."""
-_NO_ANSWER = (OSError, HTTPException, xmlrpc.client.Error)
+_NO_ANSWER = (OSError, HTTPException, xmlrpc.client.ProtocolError, xmlrpc.client.ResponseError)
+"""A fault is an answer: that of a supervisord that is waiting for its nodes to stop."""
 _STOP_WAITS_S = {"kb_node": 30}
 """Longer for those who may be writing: a checkpoint of a million entities takes some time."""
 LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
@@ -107,17 +108,22 @@ class Supervisor:
     def is_running(self) -> bool:
         """Does it answer?"""
         try:
-            with self._rpc() as rpc:
+            with self._rpc() as rpc, contextlib.suppress(xmlrpc.client.Fault):
                 rpc.supervisor.getPID()
         except _NO_ANSWER:
             return False
         return True
 
     def processes(self) -> dict[str, dict[str, Any]]:
-        """State of each node's process, by node. Raises NoAnswer when supervisord does not answer."""
+        """State of each node's process, by node; empty while all are being stopped.
+
+        Raises NoAnswer when supervisord does not answer.
+        """
         try:
             with self._rpc() as rpc:
                 return {info["name"]: info for info in rpc.supervisor.getAllProcessInfo()}
+        except xmlrpc.client.Fault:
+            return {}
         except _NO_ANSWER:
             raise errors.NoAnswer("supervisord does not answer") from None
 
@@ -132,7 +138,7 @@ class Supervisor:
         Raises NoAnswer when nothing of it runs.
         """
         try:
-            with self._rpc() as rpc:
+            with self._rpc() as rpc, contextlib.suppress(xmlrpc.client.Fault):
                 rpc.supervisor.shutdown()
         except _NO_ANSWER:
             if self.end_leftovers():
@@ -143,6 +149,9 @@ class Supervisor:
         deadline = time.monotonic() + LONGEST_STOP_S
         while self.is_running() and time.monotonic() < deadline:
             time.sleep(0.1)
+        deadline = time.monotonic() + _STOP_WAIT_S
+        while orphans.processes_with(self._conf_path) and time.monotonic() < deadline:
+            time.sleep(0.1)  # it does not answer any more, and is about to end
         self.end_leftovers()
 
     def end_leftovers(self) -> int:

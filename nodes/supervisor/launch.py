@@ -21,6 +21,9 @@ from ontology.model_shapes import add_own
 from schemas import codec, errors
 from schemas.keys import ROUTER
 
+_RECORDED = "SEMMAP_RECORDED"
+"""Handed from a recorder to itself: the last commit that is in its file."""
+
 
 def run_node(name: str, settings: Settings) -> None:
     """Run a node until it is stopped. Raises what keeps it from starting."""
@@ -113,10 +116,21 @@ def _perception_node(settings: Settings) -> None:
 def _recorder(settings: Settings) -> None:
     from nodes.recorder.config import RecorderConfig
     from nodes.recorder.node import run
+    from nodes.recorder.retention import KEEP_ALL, Retention
 
     started = time.strftime("%Y-%m-%dT%H-%M-%S")
     path = Path(settings.data) / "recordings" / f"{started}.rrd"
-    run(RecorderConfig(path=path, network=settings.network("recorder"), serve=settings.live_view))
+    after = os.environ.get(_RECORDED)
+    config = RecorderConfig(
+        path=path,
+        network=settings.network("recorder"),
+        serve=settings.live_view,
+        keep=KEEP_ALL if settings.record_keep is None else Retention.read(settings.record_keep),
+        after=None if after is None else int(after),
+    )
+    if (recorded := run(config)) is not None:  # begin another file, in the same process
+        os.environ[_RECORDED] = str(recorded)
+        os.execv(sys.executable, sys.orig_argv)
 
 
 def _router(settings: Settings) -> None:

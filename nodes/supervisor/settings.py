@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -13,6 +14,7 @@ from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
 from nodes.identity import Identity
 from schemas.keys import ROUTER
 
+_LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
 ANY_PORT = "tcp/127.0.0.1:0"
 SETTINGS = "settings.json"
 """The file of the settings in the data folder."""
@@ -45,6 +47,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     connect: tuple[str, ...] = ()
     sim: bool = True
     record: bool = True
+    record_keep: str | None = None
+    """How much is kept of the recordings, by age or size; None is everything."""
     fresh: bool = False
     window: bool = False
     models: str | None = None
@@ -66,7 +70,12 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A Zenoh configuration file of one's own, for every process of the system."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for what is no endpoint, or when perception would see what it said itself."""
+        """Raises ValueError for settings that make no sense, by themselves or together."""
+        if self.record_keep is not None and not _LIMIT.fullmatch(self.record_keep):
+            raise ValueError(
+                f"--record-keep: '{self.record_keep}' is neither an age nor a size; examples: 12h, 7d, 500MB,"
+                " 20GB"
+            )
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")

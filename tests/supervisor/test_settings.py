@@ -59,3 +59,10 @@ def test_what_is_no_endpoint_is_refused(endpoint):
 @pytest.mark.parametrize("endpoint", ["tcp/[::1]:7447", "unixsock-stream//tmp/a", "tls/robot.local:65535"])
 def test_endpoints_of_any_protocol_are_taken(endpoint):
     assert settings(listen=endpoint).listen == endpoint
+
+
+@pytest.mark.parametrize("limit", ["", "7", "7w", "0d", "-1GB"])
+def test_how_much_is_kept_of_recordings_is_an_age_or_a_size(limit):
+    with pytest.raises(ValueError, match="examples: 12h, 7d, 500MB, 20GB"):
+        settings(record_keep=limit)
+    assert settings(record_keep="7d").record_keep == "7d"

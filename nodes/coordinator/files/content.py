@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from typing import Literal
+
+from msgspec import UNSET, DecodeError, Raw, Struct, UnsetType
+from msgspec import json as _json
 
 from schemas.errors import BadFile
 
 Kind = Literal["abox", "scene", "huric"]
 
 _OF_JSON = (".json", ".jsonld")
-_BLANK = b"\xef\xbb\xbf \t\r\n"
+_BOM = b"\xef\xbb\xbf"
+_BLANK = _BOM + b" \t\r\n"
 
 
 def kind_of(content: bytes, filename: str) -> Kind:
@@ -25,7 +30,16 @@ def kind_of(content: bytes, filename: str) -> Kind:
     return "abox"
 
 
+class _Top(Struct):
+    """The one key by which a scene is known."""
+
+    entities: Raw | UnsetType = UNSET
+
+
 def _kind_of_json(content: bytes, filename: str) -> Kind:
+    with suppress(DecodeError, UnicodeDecodeError, RecursionError):  # what it is instead takes a closer look
+        if _json.decode(content.removeprefix(_BOM), type=_Top).entities is not UNSET:
+            return "scene"
     try:
         document = json.loads(content)
     except (ValueError, RecursionError) as error:

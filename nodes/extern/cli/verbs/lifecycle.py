@@ -121,6 +121,12 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
+    @click.option(
+        "--record-keep",
+        metavar="LIMIT",
+        default=None,
+        help="Delete recordings older than 12h or 7d, or beyond 500MB or 20GB. Default: keep all.",
+    )
     @functools.wraps(function)
     def with_settings(name: str | None = None, **options: Any) -> None:
         own = {} if name is None else {"name": name}
@@ -208,6 +214,7 @@ def _settings(
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
+    record_keep: str | None,
     secure: Path | None, zenoh_config: Path | None, insecure: bool,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
@@ -249,6 +256,7 @@ def _settings(
         "when_gone": when_gone,
         "sim": not no_sim,
         "record": not no_record,
+        "record_keep": record_keep,
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
         "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),

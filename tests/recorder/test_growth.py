@@ -1,0 +1,97 @@
+"""A recording that is not written any more is noticed, one that has nothing to write is not taken for it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections import namedtuple
+
+import pytest
+
+from nodes.recorder import growth
+from nodes.recorder.growth import Growth
+from nodes.recorder.recording import open_recording
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "one.rrd"
+    path.write_bytes(b"x")
+    return path
+
+
+def write(path):
+    with path.open("ab") as file:
+        file.write(b"x")
+
+
+def test_a_file_that_grows_with_what_is_recorded_is_well(path):
+    one = Growth(path)
+    for recorded in range(10):
+        write(path)
+        assert one.amiss(recorded) == ""
+
+
+def test_so_is_one_to_which_nothing_is_recorded(path):
+    one = Growth(path)
+    assert [one.amiss(5) for _ in range(10)] == [""] * 10
+
+
+def test_what_was_recorded_just_now_has_time_to_be_written(path):
+    one = Growth(path)
+    assert one.amiss(1) == ""
+    assert one.amiss(2) == ""
+    write(path)
+    assert one.amiss(2) == ""
+    assert one.amiss(2) == ""
+
+
+def test_one_that_does_not_grow_any_more_is_told_until_it_grows(path, monkeypatch):
+    one = Growth(path)
+    one.amiss(1)
+    one.amiss(2)
+    assert one.amiss(3) == f"the recording {path} is not written any more"
+    usage = namedtuple("Usage", "free")
+    monkeypatch.setattr(growth.shutil, "disk_usage", lambda _: usage(0))
+    assert one.amiss(3).endswith("not written any more: the disk is full")
+    write(path)
+    assert one.amiss(3) == ""
+
+
+def test_one_that_is_gone_is_told(path):
+    one = Growth(path)
+    path.unlink()
+    assert one.amiss(0).endswith("cannot be written: No such file or directory")
+
+
+def test_what_a_recording_notes_is_counted(tmp_path):
+    with open_recording(tmp_path / "two.rrd", None) as recording:
+        before = recording.logged
+        recording.note("hello")
+        assert recording.logged == before + 1
+
+
+FULL = """
+import os, resource, signal, sys, time
+from pathlib import Path
+from nodes.recorder.growth import Growth
+from nodes.recorder.recording import open_recording
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+with open_recording(Path(sys.argv[1]), None) as recording:
+    growth = Growth(recording.path)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
+    for i in range(60):
+        recording.note(os.urandom(10_000).hex())
+        time.sleep(0.25)
+        if i % 4 == 0 and (amiss := growth.amiss(recording.logged)):
+            print(amiss, flush=True)
+            break
+"""
+
+
+def test_a_real_recording_that_finds_no_room_is_told(tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-c", FULL, tmp_path / "full.rrd"], capture_output=True, text=True, timeout=60
+    )
+    assert "is not written any more" in run.stdout, run.stderr

@@ -1,0 +1,38 @@
+"""A stop is waited for: the knowledge base may be writing a checkpoint."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sqlite3
+import time
+from contextlib import closing
+
+from tests.conftest import running
+
+SLOW_S = 8.0
+"""Longer than any process may be silent while the system runs."""
+
+
+def test_a_knowledge_base_that_is_slow_to_stop_is_waited_for(tmp_path):
+    data = tmp_path / "data"
+    with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
+        system.cli("add", "Cup", "cup1", "--at", "1", "2", "0")
+        pid = system.pid("kb_node")
+        os.kill(pid, signal.SIGSTOP)
+        began_s = time.monotonic()
+        with system.spawned("down", "--data", str(data)) as down:
+            time.sleep(SLOW_S)
+            os.kill(pid, signal.SIGCONT)
+            down.communicate(timeout=40)
+        assert down.returncode == 0
+        assert time.monotonic() - began_s > SLOW_S
+        said, _ = system.process.communicate(timeout=40)
+        assert said.splitlines()[-1] == "stopped"
+        assert "does not answer" not in said
+        assert system.process.returncode == 0
+    with closing(sqlite3.connect(data / "journal.sqlite")) as journal:
+        ((checkpoint, last),) = journal.execute(
+            "SELECT (SELECT max(seq) FROM checkpoints), (SELECT max(seq) FROM commits)"
+        )
+    assert checkpoint == last >= 2
