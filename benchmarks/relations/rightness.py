@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable
 from itertools import combinations
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,8 @@ from schemas.entities import Entity, Pose, Provenance
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 _SAMPLES = 4000
+FLAT_BY_HAND = Path(__file__).with_name("flat_by_hand.ttl")
+"""What a person wrote down of where the things of the flat are."""
 _ROOM = Entity(
     name="room", class_="", iri="urn:room", types=(), pose=Pose(position_m=(2.0, 0.0, 0.0)), place=True,
     size_m=(20.0, 20.0, 3.0), provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
@@ -129,8 +132,11 @@ class Flat(NamedTuple):
 
 
 def flat() -> Flat:
-    """The flat's own file against what is computed; beyond is what does not follow from the file either."""
-    files = (HOUSEHOLD_TTL, FLAT_TTL)
+    """What was said by hand against what is computed; beyond is what does not follow from the former either.
+
+    The flat's own file says only what is not computed.
+    """
+    files = (HOUSEHOLD_TTL, FLAT_TTL, FLAT_BY_HAND)
     triples = [t for f in files for t in rdf.parse(f.read_bytes(), f.name, label_prefix=f.stem)]
     reasoner = Reasoner(triples)
     classes = ClassTable(reasoner)

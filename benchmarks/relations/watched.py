@@ -24,7 +24,8 @@ from nodes.training.scenes.simulated_scenes import Item, Stage
 from nodes.training.taxonomy import class_of_models
 from schemas.entities import Entity, Pose, Provenance
 
-LOOKS_A_SECOND = 5
+LOOKS_A_SECOND = 2
+"""Five where the machine has nothing else to do."""
 _SETTLING = 15
 """Looks until all is known that can be."""
 

@@ -16,6 +16,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.preconditions import subjects
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.carrying import Loads
+from nodes.kb_node.relations.place_facts import Facts
 from nodes.kb_node.relations.said import denial, fact_of
 from nodes.kb_node.relations.sayings import Sayings, of_places
 from nodes.kb_node.relations.space import Space
@@ -51,20 +52,25 @@ class Places:
         in_order: Callable[[], Iterable[Entity]],
         asserted: Callable[[Term], Iterable[Triple]],
         limits: Callable[[], Thresholds],
-        kept: Callable[[], Space | None] = lambda: None,
+        facts: Callable[[], Facts | None] = lambda: None,
     ) -> None:
         """`entities` by name, as they change; `asserted(property)` are the triples of one.
 
-        `limits()` are the thresholds of the TBox. `kept()` are the solids if somebody else keeps them.
+        `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them.
         """
-        self._kept = kept
+        self._facts = facts
         self._entities = entities
         self._surroundings = Surroundings(in_order, entities.get, limits)
         self._sayings = Sayings(asserted)
 
     def space(self) -> Space:
         """The solids as they are now."""
-        return self._kept() or self._surroundings.space()
+        facts = self._facts()
+        return self._surroundings.space() if facts is None else facts.space
+
+    def loads(self) -> Loads:
+        """What things bear now."""
+        return Loads(self.space(), self._facts())
 
     def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
         """A commit touched these entities, and triples went and came."""
@@ -105,7 +111,7 @@ class Places:
             raise errors.Refused(f"{name} is a place, which carries nothing; move the things in it")
         if entity.pose is None:
             raise errors.Refused(f"{name} has no position yet, so nothing stands on it to be carried")
-        return Loads(self.space()).all_of(name, {*leave, *besides})
+        return self.loads().all_of(name, {*leave, *besides})
 
     def taken_back(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
@@ -133,7 +139,7 @@ class Places:
         leaving = set(names)
         if leaving.issuperset(self._entities):
             return ()
-        loads = Loads(self.space())
+        loads = self.loads()
         notes = (note for name in islice(names, _MANY) for note in self._left_by(name, loads, leaving))
         return tuple(islice(notes, _FEW))
 

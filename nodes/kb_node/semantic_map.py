@@ -18,7 +18,7 @@ from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.place_facts import Facts
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -92,7 +92,7 @@ class SemanticMap:
             self.entities,
             lambda p: self.reasoner.asserted(None, p, None),
             lambda: self.classes.limits,
-            self._space,
+            self._facts,
         )
         self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
         """Told of each commit before it is checked; what it returns is called if that is not made."""
@@ -147,10 +147,10 @@ class SemanticMap:
         if not self._believes:
             self.follow_places()
 
-    def _space(self) -> Space | None:
-        """The solids that relations are computed of, if any are."""
+    def _facts(self) -> Facts | None:
+        """The relations that are computed, if any are, with their solids."""
         self.follow_places()
-        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space
+        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
 
     def entity(self, name: str) -> Entity:
         """The entity of that name. Raises UnknownName with the nearest ones."""

@@ -28,8 +28,9 @@ TBOX_TURTLE = (
     + """
 dm:Thing a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "nothing known" .
 dm:isOn a owl:ObjectProperty ; owl:inverseOf dm:supports ; owl:propertyDisjointWith dm:isInside .
-dm:supports a owl:ObjectProperty .
-dm:isInside a owl:ObjectProperty .
+dm:supports a owl:ObjectProperty ; rdfs:domain dm:Object .
+dm:isInside a owl:ObjectProperty ; owl:inverseOf dm:holds ; rdfs:range dm:Object .
+dm:holds a owl:ObjectProperty ; rdfs:domain dm:Object .
 dm:isLocatedIn a owl:ObjectProperty .
 """
 )
@@ -292,6 +293,18 @@ def test_removing_tells_what_was_on_it_and_in_it(room):
     made = commit(room, remove=("apple1", "tray1", "table2"))
     assert made.notes == ("on tray1 was cup1",)
     assert commit(room, remove=("cup1",)).notes == ()
+
+
+def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
+    """Whatever was computed of it."""
+    commit(room, remove=("bowl1",))
+    made = commit(room, remove=("table1",))
+    assert [gone.name for gone in made.removed] == ["table1"]
+    assert not {"bowl1", "table1"} & set(room.names)
+    assert not list(room.reasoner.inferred(None, None, v.entity_iri("table1")))
+    assert not list(room.reasoner.inferred(v.entity_iri("table1")))
+    take_back(room)
+    assert room.entity("table1").class_ == "Table"
 
 
 def test_removing_all_that_there_is_tells_nothing(room):

@@ -9,9 +9,12 @@ import pytest
 from numpy.typing import NDArray
 from rdflib import OWL, RDF, XSD, Graph, URIRef
 
+from benchmarks.relations.rightness import FLAT_BY_HAND
 from ontology import EMPTY_WORLD, FLAT_WORLD, vocabulary
-from tests.ontology.graphs import DM, MAP, local, named, superclasses
+from tests.ontology.graphs import DM, MAP, local, named, read, superclasses
 
+SINK_RIM_M = 0.85
+"""The rim of sink1, over which its tap rises."""
 TOUCHING_M = 0.001
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]{0,127}")
 
@@ -107,6 +110,12 @@ def blocks(flat: Graph, entities: set[URIRef], places: set[URIRef]) -> dict[str,
     return {local(e): block(flat, e) for e in entities - places}
 
 
+@pytest.fixture(scope="module")
+def by_hand() -> Graph:
+    """Where things are, as a person wrote it down."""
+    return read(FLAT_BY_HAND)
+
+
 def test_header_imports_the_tbox(flat: Graph) -> None:
     (ontology,) = flat.subjects(RDF.type, OWL.Ontology)
     assert f"<{ontology}>" == vocabulary.ABOX_ONTOLOGY
@@ -156,8 +165,9 @@ def test_every_term_of_the_tbox_that_is_used_is_declared(flat: Graph, tbox: Grap
     assert used <= set(tbox.subjects(RDF.type, None))
 
 
-def test_nothing_overlaps(flat: Graph, blocks: dict[str, Block]) -> None:
-    inside = {frozenset((local(s), local(o))) for s, o in flat.subject_objects(DM.isInside)}
+def test_nothing_overlaps(by_hand: Graph, blocks: dict[str, Block]) -> None:
+    inside = {frozenset((local(s), local(o))) for s, o in by_hand.subject_objects(DM.isInside)}
+    inside.add(frozenset(("tap1", "sink1")))  # a sink's box is as tall as the tap that its model has
     clashes = [
         (a.name, b.name)
         for a, b in combinations([*blocks.values(), *walls()], 2)
@@ -170,26 +180,29 @@ def is_wall_joint(a: Block, b: Block, blocks: dict[str, Block]) -> bool:
     return a.name not in blocks and b.name not in blocks
 
 
-def test_what_stands_on_something_stands_on_its_top(flat: Graph, blocks: dict[str, Block]) -> None:
-    pairs = [(blocks[local(s)], blocks[local(o)]) for s, o in flat.subject_objects(DM.isOn)]
+def test_what_stands_on_something_stands_on_its_top(by_hand: Graph, blocks: dict[str, Block]) -> None:
+    pairs = [(blocks[local(s)], blocks[local(o)]) for s, o in by_hand.subject_objects(DM.isOn)]
     assert len(pairs) > 15
     for thing, support in pairs:
-        assert thing.bottom[2] == pytest.approx(support.top_m, abs=1e-6), thing.name
+        top_m = SINK_RIM_M if support.name == "sink1" else support.top_m
+        assert thing.bottom[2] == pytest.approx(top_m, abs=1e-6), thing.name
         assert np.all(np.abs(thing.bottom[:2] - support.bottom[:2]) < max(support.size[:2]) / 2), thing.name
 
 
 def test_what_is_neither_on_nor_in_anything_stands_on_the_floor_or_is_fixed(
-    flat: Graph, tbox: Graph, blocks: dict[str, Block]
+    flat: Graph, by_hand: Graph, tbox: Graph, blocks: dict[str, Block]
 ) -> None:
     for name, thing in blocks.items():
-        if thing.bottom[2] == 0 or any(flat.objects(MAP[name], DM.isOn | DM.isInside)):
+        if thing.bottom[2] == 0 or any(by_hand.objects(MAP[name], DM.isOn | DM.isInside)):
             continue
         ancestors = superclasses(tbox, flat.value(MAP[name], RDF.type))
         assert any((c, DM.fixed, None) in tbox for c in ancestors), name
 
 
-def test_things_are_within_the_place_they_are_said_to_be_in(flat: Graph, blocks: dict[str, Block]) -> None:
-    located = [(s, o) for s, o in flat.subject_objects(DM.isLocatedIn) if local(s) in blocks]
+def test_things_are_within_the_place_they_are_said_to_be_in(
+    flat: Graph, by_hand: Graph, blocks: dict[str, Block]
+) -> None:
+    located = [(s, o) for s, o in by_hand.subject_objects(DM.isLocatedIn) if local(s) in blocks]
     assert len(located) > 30
     for thing, place in located:
         room = block(flat, place)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from nodes.kb_node.answers import asked_terms
-from nodes.kb_node.relations.carrying import Loads
 from nodes.kb_node.relations.selection import Meant, chosen, require_whole, resolved
 from nodes.kb_node.relations.solids import solid_of
 from nodes.kb_node.relations.space import Space
@@ -135,7 +134,7 @@ class StandingPlaces:
             for solid in (None if before is None else solid_of(before), space.solids.get(name)):
                 if solid is not None:
                     found.update(other.name for other in space.around(solid))
-        loads = Loads(space)
+        loads = self._map.places.loads()
         return found.union(*(loads.all_of(name) for name in found))
 
     def _tell(self, standing: _Standing, concerned: set[str], touched: set[str], seq: int) -> None:

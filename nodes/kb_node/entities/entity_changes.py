@@ -71,6 +71,8 @@ def of(
             entity = at_sight.get(iri) or entity_reading.read_entity(
                 reasoner, classes, iri, commit.provenance, about
             )
+            if entity is not None and entity.pose is None and was is not None and not _is_said(reasoner, iri):
+                entity = None  # only what is computed still speaks of it, and will not
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
@@ -93,6 +95,11 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     """The entity with this IRI."""
     entity = by_name.get(v.entity_name(iri))
     return entity if entity is not None and v.iri(entity.iri) == iri else None
+
+
+def _is_said(reasoner: Reasoner, iri: Term) -> bool:
+    """Is anything asserted of an individual?"""
+    return any(reasoner.asserted(iri)) or any(reasoner.asserted(None, None, iri))
 
 
 def _moved_nodes(commit: Commit, change: Change) -> set[Term]:

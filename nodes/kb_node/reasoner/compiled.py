@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Sequence, Set
+from itertools import chain
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.abox_view import View
@@ -24,7 +25,7 @@ from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
 from nodes.kb_node.reasoner.terms import (
@@ -74,7 +75,9 @@ class CompiledEngine:
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
-        self._of_the_schema = frozenset(s for s, _, _ in (*closure.facts, *self._inert.facts))
+        told = (*closure.facts, *self._inert.facts)
+        self._of_the_schema = frozenset(s for s, _, _ in told)
+        self._objects_of_the_schema = frozenset(o for _, _, o in told)
         self._abox = ABox(self._schema)
         self._saturation = Saturation(self._abox)
         self._paths = FastPaths(self._abox) if fast else PlainPaths()
@@ -156,6 +159,7 @@ class CompiledEngine:
         removed: tuple[list[Triple], list[Triple]] = [], []
         computed: list[Triple] = []
         retraction = Retraction(abox, self._saturation) if gone or aside else None
+        abox.store.log = log = list[tuple[int, int, int]]()
         try:
             if retraction is not None:
                 removed = retraction.delete(aside, gone)
@@ -171,12 +175,32 @@ class CompiledEngine:
             if explanation is None:
                 raise
             raise Refused(explanation) from None
-        touched = frozenset(self._moved())
+        finally:
+            abox.store.log = None
+        touched, implied = frozenset(self._moved()), self._implied(log)
         abox.settle()
         if retraction is not None:
             retraction.release()
         self._size += len(added) - len(removed[0])
-        return Change(touched)
+        return Change(touched, implied=implied)
+
+    def _implied(self, edges: Iterable[tuple[int, int, int]]) -> frozenset[Triple] | None:
+        """What edges imply each by itself; None where they may also imply something together with others."""
+        abox, schema, terms = self._abox, self._schema, self._abox.store.terms
+        if abox.equals:
+            return None
+        found: set[Triple] = set()
+        for s, p, o in set(edges):
+            if p <= DIFFERENT or abox.is_literal(o):
+                return None
+            for q, backwards in schema.roles(p):
+                if q in schema.virtual:
+                    return None
+                x, y = (o, s) if backwards else (s, o)
+                name = schema.axioms[q].term
+                if name[0] == "<" and " " not in name:
+                    found.add((terms[x], name, terms[y]))
+        return frozenset(found)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""
@@ -228,8 +252,11 @@ class CompiledEngine:
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
-        yield from self._view.asserted(s, p, o)
-        yield from self._told_of_the_schema(s, p, o)
+        found = self._view.asserted(s, p, o)
+        is_unsaid = o not in self._objects_of_the_schema if s is None else s not in self._of_the_schema
+        if is_unsaid and (s, o) != (None, None):  # as most are
+            return found
+        return chain(found, self._told_of_the_schema(s, p, o))
 
     def _told_of_the_schema(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         for facts in (self._schema.closure, self._inert):
@@ -277,6 +304,8 @@ class CompiledEngine:
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)
+        if subject not in self._of_the_schema:
+            return objects
         for _, predicate, object_ in self._told_of_the_schema(subject, None, None):
             objects.setdefault(predicate, []).append(object_)
         return objects

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from nodes.kb_node.relations.place_facts import Facts
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 
@@ -18,10 +19,11 @@ class Bearer(NamedTuple):
 
 
 class Loads:
-    """What things bear as they stand; each thing is looked at once. A place bears nothing."""
+    """What things bear: as `facts` are kept of them or, without any, as they stand. A place bears nothing."""
 
-    def __init__(self, space: Space) -> None:
+    def __init__(self, space: Space, facts: Facts | None = None) -> None:
         self._space = space
+        self._facts = facts
         self._bearers: dict[str, Bearer | None] = {}
 
     def all_of(self, name: str, leave: Collection[str] = ()) -> list[str]:
@@ -40,7 +42,11 @@ class Loads:
         solid = self._space.solids.get(name)
         if solid is None or solid.is_place:
             return
-        for other in sorted(self._space.around(solid), key=lambda other: other.name):
+        if self._facts is not None:
+            beside = [other for other in map(self._space.solids.get, self._facts.about(name)) if other]
+        else:
+            beside = [o for o in self._space.around(solid) if self._space.may_bear(solid, o)]
+        for other in sorted(beside, key=lambda other: other.name):
             bearer = self._bearer(other)
             if bearer is not None and bearer.name == name:
                 yield other.name, bearer
@@ -53,6 +59,15 @@ class Loads:
     def _looked_up(self, solid: Solid) -> Bearer | None:
         if solid.is_place:
             return None
+        if self._facts is not None:
+            return next(
+                (
+                    Bearer(other, relation == "isInside")
+                    for relation, other in self._facts.of(solid.name)
+                    if relation in ("isInside", "isOn")
+                ),
+                None,
+            )
         container, supports, _ = self._space.whereabouts(solid)
         if container is not None:
             return Bearer(container[0].name, is_inside=True)

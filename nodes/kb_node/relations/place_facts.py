@@ -52,6 +52,15 @@ class Facts:
         name, relation, other = fact
         return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
 
+    def of(self, name: str) -> Iterator[About]:
+        """What holds of a thing; of what it is on and inside, what counts most comes first."""
+        for kept in self._kept:
+            yield from kept.of.get(name, ())
+
+    def about(self, name: str) -> set[str]:
+        """Of whom a fact holds that speaks of a thing."""
+        return {other for kept in self._kept for other in kept.about.get(name, ())}
+
     def upward(self, names: Iterable[str]) -> set[str]:
         """These things, what is on, inside or in them, and what is on or inside that."""
         found = set(names)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nodes.kb_node.relations.carrying import Loads
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.place_facts import Facts
 from schemas.entities import Pose, carried, orientation_from_yaw
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
@@ -17,11 +17,17 @@ BOOK = thing("book1", (0.4, 0.0, TOP))
 LOST = thing("cup2", None)
 
 
-def loads(*entities):
-    return Loads(Space(entities))
+@pytest.fixture(params=["kept", "measured"])
+def loads(request):
+    def made(*entities):
+        facts = Facts()
+        facts.update(entities)
+        return Loads(facts.space, facts if request.param == "kept" else None)
+
+    return made
 
 
-def test_all_that_stands_on_it_or_is_inside_it_and_on_that():
+def test_all_that_stands_on_it_or_is_inside_it_and_on_that(loads):
     there = loads(ROOM, TABLE, TRAY, BOWL, APPLE, CUP, BOOK, LOST)
     assert there.all_of("tray1") == ["bowl1", "cup1", "apple1"]
     assert there.all_of("table1") == ["book1", "tray1", "bowl1", "cup1", "apple1"]
@@ -29,22 +35,22 @@ def test_all_that_stands_on_it_or_is_inside_it_and_on_that():
     assert there.all_of("cup1") == there.all_of("cup2") == there.all_of("nobody") == []
 
 
-def test_a_place_bears_nothing():
+def test_a_place_bears_nothing(loads):
     assert loads(ROOM, TABLE).all_of("kitchen1") == []
 
 
-def test_what_is_left_stays_with_all_that_only_it_bears():
+def test_what_is_left_stays_with_all_that_only_it_bears(loads):
     there = loads(ROOM, TABLE, TRAY, BOWL, APPLE, CUP, BOOK)
     assert there.all_of("tray1", {"bowl1"}) == ["cup1"]
     assert there.all_of("table1", {"tray1", "cup1"}) == ["book1"]
 
 
-def test_whether_it_is_inside_is_told():
+def test_whether_it_is_inside_is_told(loads):
     there = loads(TABLE, BOWL, APPLE)
     assert [(name, bearer.is_inside) for name, bearer in there.directly_on("bowl1")] == [("apple1", True)]
 
 
-def test_things_in_one_spot_carry_one_another_at_most_once():
+def test_things_in_one_spot_carry_one_another_at_most_once(loads):
     """Equal boxes in one spot are on one another in no sensible order: there is an end to it."""
     heap = [thing(f"box{i}", (0.0, 0.0, 0.0), "unheard of", size=(0.1, 0.1, 0.04)) for i in range(30)]
     borne = loads(*heap).all_of("box0")
