@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from benchmarks.relations import flicker, rightness, speed, watched
+from benchmarks.relations import flicker, kept, rightness, speed, watched
 from benchmarks.table import Row, lines
 
 
@@ -17,6 +17,7 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
     flat = rightness.flat()
     went, _ = flicker.gone()
     rest = watched.at_rest(watched_s)
+    facts = kept.measure(10_000, 400)
     moves = {size: speed.move_ms(size) for size in sizes}
     return [
         Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),
@@ -42,6 +43,22 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
             1.5,
         ),
         Row("all relations of 50 bodies from nothing", speed.from_nothing_ms(50), "ms", 20, 5),
+        Row(
+            "bulk load of 10 000, CPU time: with against without",
+            facts.load.cpu_s / facts.load_without.cpu_s,
+            "times",
+            1.5,
+            1.2,
+        ),
+        Row("memory an entity for it", facts.kb_per_entity, "kB", 1.5, 0.8),
+        Row(
+            "over Zenoh, 10 000: a move with against without, p50",
+            facts.move_ms / facts.move_without_ms,
+            "times",
+            1.15,
+            1.05,
+        ),
+        Row("of which with", facts.move_ms, "ms"),
     ]
 
 

@@ -382,6 +382,7 @@ class KnowledgeBase:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
         read = document_change.tbox_of(self.map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.labelled_like(read, self.map.tbox)
+        document_change.require_no_map(self.map, load, tbox)
         transaction = document_change.of_tbox(self.map, load, tbox)
         if transaction is None:
             commit = self._journal.commit_of(load.id)
@@ -393,8 +394,6 @@ class KnowledgeBase:
             raise tbox_validation.DoesNotFit(
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
-        except errors.Inconsistent as error:
-            raise document_change.refused_tbox(self.map, load, tbox, error) from None
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

@@ -62,17 +62,15 @@ def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> 
     return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)
 
 
-def refused_tbox(
-    semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple], refusal: errors.Inconsistent
-) -> errors.SemmapError:
-    """Why a TBox cannot replace the present one: because it is a map, it seems, or because of `refusal`."""
+def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:
+    """Raises BadFile for a TBox that describes what the map has: as a part of it nothing could be changed."""
+    there = set(tbox_validation.described_by(semantic_map.tbox, semantic_map.classes))
     described = tbox_validation.described_by(tbox, semantic_map.classes)
-    if not described:
-        return refusal
-    return errors.BadFile(
-        f"{load.filename or 'the file'} cannot be the TBox: it describes {wording.entities(len(described))}"
-        f" ({wording.few(described, 4)}), and with the map that is a contradiction; load a map without --tbox"
-    )
+    if again := [name for name in described if name not in there and semantic_map.find(name) is not None]:
+        raise errors.BadFile(
+            f"{load.filename or 'the file'} cannot be the TBox: it describes {wording.entities(len(again))}"
+            f" of the map ({wording.few(again, 4)}); load a map without --tbox"
+        )
 
 
 def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:

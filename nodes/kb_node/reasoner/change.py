@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from nodes.kb_node.reasoner.explanations import Term
+from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 
 
@@ -19,6 +19,8 @@ class Change(NamedTuple):
 
     others: frozenset[Term]
     alike: Sequence[Alike] = ()
+    implied: frozenset[Triple] | None = None
+    """Of a change of beliefs: the relations of which some came or went, and no others; None if not known."""
 
     @classmethod
     def together(cls, changes: Sequence[Change]) -> Change:

@@ -24,7 +24,7 @@ from nodes.kb_node.reasoner.fastpaths.shapes import Alike
 from nodes.kb_node.reasoner.fastpaths.star_order import in_stars
 from nodes.kb_node.reasoner.rules.closure import Closure
 from nodes.kb_node.reasoner.rules.facts import Facts
-from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from nodes.kb_node.reasoner.tbox.schema import Schema
 from nodes.kb_node.reasoner.tbox.split import check_compilable, is_inert, is_schema
 from nodes.kb_node.reasoner.terms import (
@@ -156,6 +156,7 @@ class CompiledEngine:
         removed: tuple[list[Triple], list[Triple]] = [], []
         computed: list[Triple] = []
         retraction = Retraction(abox, self._saturation) if gone or aside else None
+        abox.store.log = log = list[tuple[int, int, int]]()
         try:
             if retraction is not None:
                 removed = retraction.delete(aside, gone)
@@ -171,12 +172,32 @@ class CompiledEngine:
             if explanation is None:
                 raise
             raise Refused(explanation) from None
-        touched = frozenset(self._moved())
+        finally:
+            abox.store.log = None
+        touched, implied = frozenset(self._moved()), self._implied(log)
         abox.settle()
         if retraction is not None:
             retraction.release()
         self._size += len(added) - len(removed[0])
-        return Change(touched)
+        return Change(touched, implied=implied)
+
+    def _implied(self, edges: Iterable[tuple[int, int, int]]) -> frozenset[Triple] | None:
+        """What edges imply each by itself; None where they may also imply something together with others."""
+        abox, schema, terms = self._abox, self._schema, self._abox.store.terms
+        if abox.equals:
+            return None
+        found: set[Triple] = set()
+        for s, p, o in set(edges):
+            if p <= DIFFERENT or abox.is_literal(o):
+                return None
+            for q, backwards in schema.roles(p):
+                if q in schema.virtual:
+                    return None
+                x, y = (o, s) if backwards else (s, o)
+                name = schema.axioms[q].term
+                if name[0] == "<" and " " not in name:
+                    found.add((terms[x], name, terms[y]))
+        return frozenset(found)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. Those that are new are `added` as they are inserted."""

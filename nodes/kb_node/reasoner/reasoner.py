@@ -311,6 +311,10 @@ class Reasoner:
         """Whether a triple is asserted or computed, or follows; not if it is set aside."""
         return self._engine.holds(triple)
 
+    def follows(self, triple: Triple) -> bool:
+        """Whether a triple is computed or follows, and is not asserted, unless that is set aside."""
+        return self._engine.holds(triple) and next(self._engine.asserted(*triple), None) is None
+
     def types(self, individual: Term) -> frozenset[Term]:
         """The named classes of an individual, asserted and inferred."""
         return self._engine.types(individual)

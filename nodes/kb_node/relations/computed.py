@@ -36,6 +36,8 @@ class Computed:
         self._said: dict[str, dict[Triple, None]] = {}
         """By the names that a triple is about."""
         self.denied: set[Triple] = set()
+        self._was_flat = True
+        """Of a plan geometry denies less."""
 
     @property
     def is_idle(self) -> bool:
@@ -44,6 +46,7 @@ class Computed:
 
     def begin(self, known: Known, said: Iterable[Triple]) -> Step:
         """All facts are new, and so is all that is said of places."""
+        self._was_flat = self.facts.space.is_flat
         denied = {t for t in self._take_up((), filter(_is_of_place, said)) if self._is_so_no_more(t, known)}
         self.denied |= denied
         return Step(set(self._triples(self.facts, known)), set(), denied, set())
@@ -103,7 +106,10 @@ class Computed:
     ) -> tuple[set[Triple], set[Triple]]:
         """What is newly denied of what is asserted, and what no longer is."""
         looked_at = self._take_up(retracted, inserted)
-        if self._said:
+        if self._was_flat != self.facts.space.is_flat:
+            self._was_flat = not self._was_flat
+            looked_at.update(triple for said in self._said.values() for triple in said)
+        elif self._said:
             for name in self.facts.upward({*touched, *(fact[0] for fact in facts)}):
                 looked_at.update(self._said.get(name, ()))
         denied = {triple for triple in looked_at if self._is_so_no_more(triple, known)}

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.kb_node.relations.lazily import lazily
 from nodes.kb_node.relations.polygons import Point, contains, hull
 from schemas.entities import Vector
 
@@ -41,7 +41,7 @@ class Convex:
     low: Vector
     high: Vector
 
-    @cached_property
+    @lazily
     def lowest(self) -> Point:
         """Where its lowest point is on the floor plan, the middle of that where it is flat below."""
         x, y, _ = self.centre
@@ -57,7 +57,7 @@ class Convex:
             x, y = x + px, y + py
         return x, y
 
-    @cached_property
+    @lazily
     def has_flat_top(self) -> bool:
         """Whether its top is a level face, and all of its shadow."""
         upright = [v for v in self.straight if abs(v[2]) > _LEVEL]
@@ -65,7 +65,7 @@ class Convex:
             return False
         return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
 
-    @cached_property
+    @lazily
     def shadow(self) -> tuple[Point, ...]:
         """Its outline on the floor plan, counterclockwise; what is round has eight corners."""
         cx, cy, _ = self.centre

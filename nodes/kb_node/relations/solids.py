@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 from nodes.kb_node.relations.convex import Convex, convex
 from nodes.kb_node.relations.fitting import fitted
+from nodes.kb_node.relations.lazily import lazily
 from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.polygons import Point, area, hull
 from ontology.model_shapes import Interior, ModelShape, own_size_m
@@ -68,7 +69,7 @@ class Solid:
         """Whether it leans by less than a fifth of a degree."""
         return self.rotation[2][2] >= LEVEL
 
-    @cached_property
+    @lazily
     def corners(self) -> tuple[Vector, ...]:
         """The eight corners, map frame [m]; the four of its base first."""
         x, y, z = self.size
@@ -78,25 +79,25 @@ class Solid:
             for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         )
 
-    @cached_property
+    @lazily
     def bottom(self) -> float:
         """Its lowest point [m]."""
         if not self.parts:
             return min(corner[2] for corner in self.corners)
         return min([part.low[2] for part in self.parts])
 
-    @cached_property
+    @lazily
     def top(self) -> float:
         """Its highest point [m], that of its box."""
         (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
         return self.position[2] + max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
 
-    @cached_property
+    @lazily
     def lowest_top(self) -> float:
         """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
         return min([part.high[2] for part in self.parts], default=self.top)
 
-    @cached_property
+    @lazily
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
         if not self.is_level:
@@ -112,18 +113,18 @@ class Solid:
             (px - ax + bx, py - ay + by),
         ]
 
-    @cached_property
+    @lazily
     def base(self) -> Sequence[Point]:
         """What it stands on: the outline of its lowest parts."""
         parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
         return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
 
-    @cached_property
+    @lazily
     def centre(self) -> Vector:
         """The middle of its box, map frame [m]."""
         return self.to_map((0.0, 0.0, self.size[2] / 2))
 
-    @cached_property
+    @lazily
     def bounds(self) -> Bounds:
         """Least x and y, greatest x and y [m]."""
         (a, b, c), (d, e, f), _ = self.rotation
@@ -134,7 +135,7 @@ class Solid:
         half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
         return px - half_x, py - half_y, px + half_x, py + half_y
 
-    @cached_property
+    @lazily
     def supports(self) -> tuple[Support, ...]:
         """The surfaces that carry things; the whole top of what has no model."""
         if self.is_place or not self.is_measured or not self.is_upright:
@@ -161,7 +162,7 @@ class Solid:
         """Its interiors, in its own frame."""
         return self.shape.interiors if self.is_measured else ()
 
-    @cached_property
+    @lazily
     def parts(self) -> tuple[Convex, ...]:
         """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
         if self.is_place or not self.is_measured:
@@ -196,18 +197,18 @@ class Solid:
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
-    @cached_property
+    @lazily
     def volume(self) -> float:
         """Of its box [m^3]."""
         x, y, z = self.size
         return x * y * z
 
-    @cached_property
+    @lazily
     def footprint(self) -> float:
         """Of its shadow [m^2]."""
         return area(self.outline)
 
-    @cached_property
+    @lazily
     def samples(self) -> list[Vector]:
         """Points spread evenly over its volume, map frame [m]."""
         x, y, z = self.size

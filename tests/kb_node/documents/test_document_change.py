@@ -102,15 +102,13 @@ def test_what_goes_describes_nothing(semantic_map):
         document_change.of_document(semantic_map, document(replace=True, strict=True), strange)
 
 
-def test_a_map_that_is_loaded_as_a_tbox_is_told_to_be_one(semantic_map):
-    contradiction = errors.Inconsistent("chair1 cannot be both")
+def test_a_map_is_not_taken_for_a_tbox(semantic_map):
     order, tbox = LoadTBox(**SIGNED), turtle(":a a dm:Chair . dm:Chair a owl:Class .")
-    refused = document_change.refused_tbox(semantic_map, order, tbox, contradiction)
-    assert refused.text == (
-        "f.ttl cannot be the TBox: it describes 1 entity (a), and with the map that is a contradiction;"
-        " load a map without --tbox"
+    document_change.require_no_map(semantic_map, order, tbox)
+    semantic_map.commit(transaction(1, turtle(":a a dm:Chair .")))
+    with pytest.raises(errors.BadFile) as refused:
+        document_change.require_no_map(semantic_map, order, tbox)
+    assert refused.value.text == (
+        "f.ttl cannot be the TBox: it describes 1 entity of the map (a); load a map without --tbox"
     )
-    refused = document_change.refused_tbox(
-        semantic_map, order, turtle("dm:Chair a owl:Class ."), contradiction
-    )
-    assert refused is contradiction
+    document_change.require_no_map(semantic_map, order, turtle("dm:Chair a owl:Class . :b a dm:Chair ."))

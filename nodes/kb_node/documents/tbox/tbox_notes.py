@@ -13,6 +13,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
+from nodes.kb_node.relations.rules import COMPUTED
 from ontology import HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import wording
@@ -35,6 +36,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
         beyond(outside_rl(filter(is_schema, tbox)) - _known(tbox)),
         described(tbox_validation.described_by(tbox, classes)),
         slow(reasoner),
+        without_places(reasoner, classes),
     )
     return tuple(filter(None, said))
 
@@ -52,6 +54,14 @@ def missing(imports: tuple[str, ...]) -> str:
         return ""
     few = " and ".join(filter(None, (", ".join(imports[:_FEW]), _more(len(imports) - _FEW))))
     return f"{_count(len(imports), 'import')} not found; the TBox is used without: {few}"
+
+
+def without_places(reasoner: Reasoner, classes: ClassTable) -> str:
+    """That nothing is computed of where things are, for want of properties."""
+    if not classes.spatial or any(any(reasoner.asserted(p, v.RDF_TYPE, None)) for p in COMPUTED):
+        return ""
+    few = ", ".join(sorted(COMPUTED.values()))
+    return f"the TBox has none of {few}, so where things are is measured when asked for, and not a fact"
 
 
 def not_in_space(classes: ClassTable) -> str:

@@ -274,7 +274,11 @@ class View:
         if predicate is None:
             return False
         group = self._abox.steps.group((predicate, False))
-        if any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group)):
+        object_ = None if is_literal(o) else self._store.find(o)
+        if object_ is not None:
+            if self._abox.find(node, (predicate, False), object_) != NONE:
+                return True
+        elif any(self._abox.named(end, o) is not None for _, _, end in self._abox.related(node, group)):
             return True
         return any(
             self._abox.named(end, o) is not None

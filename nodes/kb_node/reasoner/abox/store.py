@@ -47,6 +47,8 @@ class Store:
         self.numbers: dict[Term, int] = {}
         self.places = array("i")
         """Where an individual is among those of its kind; `NONE` for one that is listed nowhere."""
+        self.log: list[tuple[int, int, int]] | None = None
+        """While somebody wants to know: the edges that were added or removed."""
         self._free_nodes: list[int] = []
         self._free_edges: list[int] = []
 
@@ -131,6 +133,8 @@ class Store:
         self.subject[edge], self.predicate[edge], self.object[edge] = subject, predicate, object_
         if source != ASSERTED:
             self.source[edge] = source
+        if self.log is not None:
+            self.log.append((subject, predicate, object_))
         self.out.link(subject, edge, predicate)
         self.into.link(object_, edge, predicate)
         return edge
@@ -238,6 +242,8 @@ class Store:
 
     def remove(self, edge: int) -> None:
         """Forget an edge."""
+        if self.log is not None:
+            self.log.append((self.subject[edge], self.predicate[edge], self.object[edge]))
         self.out.unlink(self.subject[edge], edge)
         self.into.unlink(self.object[edge], edge)
         self._free_edge(edge)

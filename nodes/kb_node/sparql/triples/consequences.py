@@ -78,13 +78,20 @@ class Consequences:
         `believed` is what it changes besides.
         """
         was_compiled = self._reasoner.is_compiled
-        touched = self._reasoner.believe(gone=believed.gone, aside=believed.aside).touched
-        touched |= self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        touched |= self._reasoner.believe(come=believed.come, back=believed.back).touched
-        if was_compiled and self._reasoner.is_compiled and not any(map(is_schema, delta.asserted)):
+        less = self._reasoner.believe(gone=believed.gone, aside=believed.aside)
+        touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
+        more = self._reasoner.believe(come=believed.come, back=believed.back)
+        if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
+            gone, new = self._all_changes()
+        elif less.implied is None or more.implied is None:
+            touched |= less.touched | more.touched
             gone, new = self._changes((*delta.asserted, *chain(*believed)), touched)
         else:
-            gone, new = self._all_changes()
+            gone, new = self._changes(delta.asserted, touched)
+            for triple in less.implied | more.implied:
+                self._compare(triple, gone, new)
+            for term in less.touched | more.touched:
+                self._compare_classes(term, gone, new)
         return Delta(
             seq=delta.seq,
             retracted=delta.retracted,
@@ -94,6 +101,18 @@ class Consequences:
             denied=believed.aside,
             undenied=believed.back,
         )
+
+    def _compare(self, triple: Triple, gone: set[Triple], new: set[Triple]) -> None:
+        """Add a relation to what follows no longer, or newly."""
+        was, does = self._dataset.follows(triple), self._reasoner.follows(triple)
+        if was != does:
+            (new if does else gone).add(triple)
+
+    def _compare_classes(self, term: Term, gone: set[Triple], new: set[Triple]) -> None:
+        before = {t for t in self._dataset.inferred(term) if t[1] == v.RDF_TYPE}
+        now = set(self._reasoner.inferred(term, v.RDF_TYPE, None))
+        gone |= before - now
+        new |= now - before
 
     def _all_changes(self) -> tuple[set[Triple], set[Triple]]:
         """The same for a commit that changes the schema, or a map that uses its vocabulary freely."""

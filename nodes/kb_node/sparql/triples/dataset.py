@@ -140,6 +140,11 @@ class Dataset:
         found = self.store.quads_for_pattern(term, None, None, INFERRED)
         return {_triple(quad) for quad in found}
 
+    def follows(self, triple: Triple) -> bool:
+        """Whether a relation of two individuals is among what follows."""
+        s, p, o = triple
+        return ox.Quad(_subject(s), ox.NamedNode(p[1:-1]), _subject(o), INFERRED) in self.store
+
     def neighbours(self, individual: Term) -> set[Term]:
         """The individuals that this one is related to, either way, by anything but its class."""
         term = _subject(individual)
