@@ -11,19 +11,25 @@ import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TypeVar
 
-from benchmarks.kb import disk, engine, scale, table, university, wire
+from benchmarks.kb import disk, engine, in_turn, scale, table, university, wire
 from benchmarks.table import Row, lines
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
 UNIVERSITY = "university"
 """Another shape of data, in the engine alone; measured when it is asked for."""
 UNIVERSITY_TRIPLES = (120_000, 1_200_000)
+VARIANTS = "variants"
+"""The engine with other TBoxes: a top property declared, and `--ontology`."""
+IN_TURN = "turns"
+"""The version in `--before` and this one in turn."""
 LARGE = "scale"
 """A part that is measured when it is asked for: it takes minutes and gigabytes."""
+FURTHER = (UNIVERSITY, VARIANTS, IN_TURN, LARGE)
 CORE_SIZES, LARGE_SIZES = "10,100,1000,10000,100000", "10000,100000"
 T = TypeVar("T")
 
@@ -39,7 +45,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--entities", type=int, default=10_000, help="in the node, on disk and over Zenoh")
     parser.add_argument("--sim-entities", type=int, default=300, help="with bodies in the simulator")
     parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, LARGE))}")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, *FURTHER))}")
+    parser.add_argument("--before", type=Path, metavar="DIR", help=f"another version's root, for {IN_TURN}")
+    parser.add_argument("--ontology", type=Path, help=f"one over DUL, such as SOMA-HOME.owl, for {VARIANTS}")
     parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
     parser.add_argument(
@@ -48,6 +56,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     words.sizes = ",".join(words.sizes) if words.sizes else None
+    if IN_TURN in words.parts.split(",") and words.before is None:
+        parser.error(f"{IN_TURN} takes --before DIR: a checkout of another version")
     if words.quick:
         words.sizes, words.entities, words.sim_entities, words.repeat = "10,100,1000", 1000, 30, 100
     return words
@@ -76,7 +86,13 @@ def main() -> None:
         sizes = UNIVERSITY_TRIPLES[:1] if words.quick else UNIVERSITY_TRIPLES
         universities = [_alone(university.measure, size) for size in sizes]
         rows += table.of_university(universities)
+        if (reasonable_s := _alone(university.against_reasonable, sizes[0])) is not None:
+            rows.append(table.of_reasonable(universities[0], reasonable_s))
         report[UNIVERSITY] = [found._asdict() for found in universities]
+    if VARIANTS in parts:
+        rows += _variants(words, report)
+    if IN_TURN in parts:
+        rows += _in_turn(words, report)
     if LARGE in parts:
         rows += _large(words, report)
     report["rows"] = [{**row._asdict(), "now": row.value, "met": row.met} for row in rows]
@@ -105,6 +121,38 @@ def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool
         figures = _alone(engine.against_owlrl, size, 1)
         rows += table.of_owlrl(figures, alike)
         report["owlrl_add_check"] = [{"entities": size, **figures}]
+    return rows
+
+
+def _variants(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
+    """The engine with other TBoxes."""
+    plain = _alone(engine.adds, words.entities, words.repeat)
+    top = _alone(partial(engine.adds, top=True), words.entities, words.repeat)
+    foreign = None
+    if words.ontology is not None:
+        foreign = _alone(partial(engine.adds, ontology=words.ontology), words.entities, words.repeat)
+    report[VARIANTS] = {"plain": plain, "top": top, "ontology": foreign}
+    return table.of_variants(plain, top, foreign, words.entities)
+
+
+def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
+    """Against another version."""
+    size, count = words.entities, words.repeat
+    core = in_turn.core(words.before, size, count)
+    with tempfile.TemporaryDirectory(dir=words.folder) as folder:
+        wired = in_turn.wire(words.before, Path(folder), size, count)
+    rows = table.of_core_in_turn(core, size) + table.of_wire_in_turn(wired, size)
+    sizes = UNIVERSITY_TRIPLES[:1] if words.quick else UNIVERSITY_TRIPLES
+    universities = {
+        triples: in_turn.of_university(words.before, triples, 3 if i == 0 else 1)
+        for i, triples in enumerate(sizes)
+    }
+    rows += [table.of_university_in_turn(pair, triples) for triples, pair in universities.items()]
+    report[IN_TURN] = {
+        "core": {what: pair._asdict() for what, pair in core.items()},
+        "wire": {what: pair._asdict() for what, pair in wired.items()},
+        "university": {triples: pair._asdict() for triples, pair in universities.items()},
+    }
     return rows
 
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import gc
 import random
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import count
+from pathlib import Path
 from typing import NamedTuple
 
 import owlrl
@@ -11,13 +15,17 @@ import psutil  # type: ignore[import-untyped]
 import rdflib
 
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed
+from nodes.kb_node.documents import ontology_files
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from ontology import stars
 from ontology import vocabulary as v
-from schemas.explanations import Triple
+from schemas.explanations import Term, Triple
 
 _CHUNK = 1000
 _PARTS = 10_000
+_TOP: Triple = (v.iri(f"{v.OWL}topObjectProperty"), v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)
+_ARTEFACT = "<http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#DesignedArtifact>"
+_OF_CLASSES = 16
 
 
 class Engine(NamedTuple):
@@ -57,6 +65,43 @@ def measure(size: int, repeat: int) -> Engine:
     gone = [[t for t in star if t not in old] + now for star, (old, now) in zip(new, moves, strict=True)]
     remove = each(gone, lambda star: reasoner.apply(delete=star))
     return Engine(size, load_s, add, move, refuse, remove, (after - before) / size, after / size)
+
+
+def adds(size: int, repeat: int, *, top: bool = False, ontology: Path | None = None) -> Figures:
+    """Single adds to a map of `size` entities; run it in a process of its own.
+
+    Of the household, if wanted with a `top` property declared; or with an `ontology` over DUL, and of its
+    artefacts.
+    """
+    random_, prefixes = random.Random(size), count()
+    if ontology is None:
+        reasoner = Reasoner([*tbox(), *([_TOP] if top else [])])
+        make = partial(entities, random_=random_)
+    else:
+        reasoner = Reasoner(ontology_files.gather([ontology], {}).triples)
+        classes = random_.sample(sorted(reasoner.subclasses(_ARTEFACT)), _OF_CLASSES)
+        make = partial(_artefacts, random_=random_, classes=classes)
+    for first in range(0, size, _CHUNK):
+        chunk = make(min(_CHUNK, size - first), prefix=f"m{next(prefixes)}_")
+        reasoner.apply(insert=[triple for star in chunk for triple in star])
+    gc.collect()
+    gc.freeze()
+    each(list(make(_CHUNK, prefix="w")), lambda star: reasoner.apply(insert=star))
+    return each(list(make(repeat, prefix="n")), lambda star: reasoner.apply(insert=star))
+
+
+def _artefacts(
+    wanted: int, random_: random.Random, classes: Sequence[Term], prefix: str
+) -> Iterator[list[Triple]]:
+    for i in range(wanted):
+        yield stars.star(
+            f"{prefix}{i}",
+            classes[i % len(classes)],
+            pose=pose(random_),
+            size_m=(0.5, 0.5, 0.5),
+            preferred="thing",
+            alternatives=("a thing",),
+        )
 
 
 def room(repeat: int) -> tuple[Figures, Figures]:

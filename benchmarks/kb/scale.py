@@ -28,6 +28,7 @@ _COUNTED = "Cup"
 _REPEAT = 100
 _LARGE = 100_000
 _QUIET_S = 10.0
+_CHECKED_UP_TO = 100_000
 _JSON_UP_TO = 100_000
 """Entities: a scene of more is measured as Turtle only."""
 
@@ -56,6 +57,8 @@ class Scale(NamedTuple):
     """One in a hundred of the entities, by the client."""
     add_ms: float
     update_ms: float
+    check_s: float | None
+    """`check` from nothing, by the client."""
 
 
 def measure(folder: Path, size: int) -> Scale:
@@ -94,6 +97,7 @@ def measure(folder: Path, size: int) -> Scale:
         rare = [timed(lambda: client.list(big_files.RARE_CLASS)) for _ in range(10)]
         later = [timed(lambda: _require_count(client, counted)) for _ in range(10)]
         spoken = [timed(lambda: _count_by_command_line(endpoint, counted)) for _ in range(5)]
+        check_s = timed(client.check) if size <= _CHECKED_UP_TO else None
     return Scale(
         entities=size,
         load_turtle_s=load_turtle_s,
@@ -111,6 +115,7 @@ def measure(folder: Path, size: int) -> Scale:
         list_class_s=median(rare),
         add_ms=median(adds) * 1e3,
         update_ms=median(updates) * 1e3,
+        check_s=check_s,
     )
 
 

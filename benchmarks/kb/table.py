@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from benchmarks.kb.disk import Disk
 from benchmarks.kb.engine import Engine
+from benchmarks.kb.in_turn import Pair
 from benchmarks.kb.made import Figures
 from benchmarks.kb.scale import Scale
 from benchmarks.kb.university import University
@@ -29,6 +30,56 @@ def of_engine(engines: Sequence[Engine]) -> list[Row]:
     rows.append(Row(f"engine memory an entity, {last.entities}", last.kb_per_entity, "kB", 4, 2))
     rows.append(Row("whole process, an entity", last.process_kb_per_entity, "kB", 15, 8))
     return rows
+
+
+def of_variants(plain: Figures, top: Figures, foreign: Figures | None, size: int) -> list[Row]:
+    """Adds where the TBox is another."""
+    of = f"core: add and check, {size}"
+    rows = [
+        Row(f"{of}, p50", plain["p50_ms"], "ms", None, 0.015),
+        Row(f"{of}, a top property declared, against without", top["p50_ms"] / plain["p50_ms"], "times", 1.1),
+    ]
+    if foreign is not None:
+        rows.append(Row(f"{of}, SOMA and DUL, p50", foreign["p50_ms"], "ms", 0.1, 0.05))
+    return rows
+
+
+_AGAINST: dict[str, Bounds] = {
+    "add": (0.85, None),
+    "move": (0.85, None),
+    "reference": (0.7, None),
+    "remove": (0.7, None),
+}
+"""Of what a command took before, over Zenoh."""
+
+
+def of_core_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
+    """The engine alone, against the version before."""
+    return [
+        Row(f"core: {what}, {size}, {pair.before:.4f} ms before, {pair.now:.4f}", pair.ratio, "times", 1.0)
+        for what, pair in pairs.items()
+    ]
+
+
+def of_wire_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
+    """Over Zenoh, against the version before."""
+    rows: list[Row] = []
+    for what, pair in pairs.items():
+        if what == "sustained":
+            said = f"sustained moves, {size}, {pair.before:.0f}/s before, {pair.now:.0f} now"
+            rows.append(Row(said, pair.ratio, "times", 1.0, None, more=True))
+            continue
+        reach, aim = _AGAINST[what]
+        said = f"over Zenoh: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
+        rows.append(Row(said, pair.ratio, "times", reach, aim))
+        rows.append(Row(f"over Zenoh: {what}, {size}, p50", pair.now, "ms", None, 1.0))
+    return rows
+
+
+def of_university_in_turn(pair: Pair, triples: int) -> Row:
+    """University data, against the version before."""
+    said = f"university data, {triples} triples: CPU time, {pair.before:.2f} s before, {pair.now:.2f} now"
+    return Row(said, pair.ratio, "times", 1.0, 0.6)
 
 
 def of_room(add: Figures, remove: Figures) -> list[Row]:
@@ -58,6 +109,14 @@ def of_university(universities: Sequence[University]) -> list[Row]:
         rows.append(Row(f"{of}: go through {found.inferred} that follow", found.enumerate_s, "s"))
         rows.append(Row(f"{of}: memory", found.memory_mb, "MB"))
     return rows
+
+
+def of_reasonable(ours: University, reasonable_s: float) -> Row:
+    """How long we take for university data, in terms of `reasonable`, which is written in Rust."""
+    whole_s = ours.load_cpu_s + ours.enumerate_cpu_s
+    of = f"university data, {ours.triples} triples"
+    said = f"{of}: CPU time, reasonable {reasonable_s:.2f} s, ours {whole_s:.2f}"
+    return Row(said, whole_s / reasonable_s, "times")
 
 
 def of_disk(disk: Disk) -> list[Row]:
@@ -98,6 +157,7 @@ _OF_SIZE: dict[int, dict[str, Bounds]] = {
         "first_sparql": (3.0, 1.0),
         "sparql": (0.2, 0.16),
         "list": (0.15, 0.05),
+        "check": (20.0, 10.0),
     },
     1_000_000: {"load_turtle": (150.0, 60.0), "memory_gb": (6.0, 4.0), "start": (60.0, 25.0)},
 }
@@ -122,6 +182,7 @@ def of_scale(found: Sequence[Scale]) -> list[Row]:
             ("sparql", f"later SPARQL by the client, {of}", one.sparql_s, "s"),
             ("sparql", f"later SPARQL by the command line, {of}", one.sparql_by_command_line_s, "s"),
             ("list", f"list of one class in a hundred, {of}", one.list_class_s, "s"),
+            ("check", f"check from nothing, {of}", one.check_s, "s"),
             ("", f"add over Zenoh, {of}, p50", one.add_ms, "ms"),
             ("", f"move over Zenoh, {of}, p50", one.update_ms, "ms"),
         ]

@@ -79,6 +79,14 @@ class _Held(Generic[T]):
                 asked.add_done_callback(lambda done: self.go_on(_answer_of(done.result)))
 
 
+def alone(talk: Talk[T]) -> Talk[list[T | Exception]]:
+    """`in_step` for one talk: as most changes come."""
+    try:
+        return [(yield from talk)]
+    except Exception as error:
+        return [error]
+
+
 def in_step(talks: Sequence[Talk[T]]) -> Talk[list[T | Exception]]:
     """Several talks as one, with their results in their order.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
@@ -45,7 +46,10 @@ class _Watched:
 
 
 def work_seconds(pid: int) -> float:
-    """CPU time that a process has used; without end while it waits for a disk, 0 for one that is gone."""
+    """CPU time that a process has used, and that its main thread has waited for a core, as others had them.
+
+    Without end while it waits for a disk, 0 for one that is gone.
+    """
     try:
         process = psutil.Process(pid)
         if process.status() == psutil.STATUS_DISK_SLEEP:
@@ -53,7 +57,16 @@ def work_seconds(pid: int) -> float:
         times = process.cpu_times()
     except psutil.Error:
         return 0.0
-    return float(times.user + times.system)
+    return float(times.user + times.system) + _starved_s(pid)
+
+
+def _starved_s(pid: int) -> float:
+    """How long the main thread of a process could have run and was not let, on Linux."""
+    try:
+        _, waited_ns, _ = Path(f"/proc/{pid}/schedstat").read_text().split()
+        return int(waited_ns) * 1e-9
+    except (OSError, ValueError):
+        return 0.0
 
 
 class Watchdog:

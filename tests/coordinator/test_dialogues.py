@@ -8,7 +8,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from nodes.coordinator.dialogues import hold, hold_later, in_step
+from nodes.coordinator.dialogues import alone, hold, hold_later, in_step
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, Transactions
 from schemas.commits import Commit, Transaction
@@ -157,6 +157,13 @@ def test_what_a_dialogue_is_about_goes_when_it_ends():
         assert (result, seen()) == ("done", None)
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize("name", ["a", "done", "no", "odd"])
+def test_one_talk_alone_is_as_in_step_with_none(name):
+    seen, expected = KnowledgeBase(), KnowledgeBase()
+    (result,), (same,) = hold(alone(change(name)), seen), hold(in_step([change(name)]), expected)
+    assert (type(result), str(result), seen.asked) == (type(same), str(same), expected.asked)
 
 
 def faulty_ask_later(message):

@@ -1,4 +1,7 @@
 import multiprocessing
+import os
+import subprocess
+import sys
 import time
 
 import pytest
@@ -139,3 +142,20 @@ def test_the_work_of_a_process(work):
         process.kill()
         process.join()
     assert work_seconds(process.pid) == 0.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of waiting for a core")
+def test_a_process_that_others_keep_from_its_core_is_at_work():
+    core = min(os.sched_getaffinity(0))
+    loop = f"import os; os.sched_setaffinity(0, {{{core}}}); print(flush=True)\nwhile True: pass"
+    several = [subprocess.Popen([sys.executable, "-c", loop], stdout=subprocess.PIPE) for _ in range(5)]
+    try:
+        for process in several:
+            process.stdout.read(1)
+        before_s, began_s = work_seconds(several[0].pid), time.monotonic()
+        time.sleep(2.0)
+        assert work_seconds(several[0].pid) - before_s > 0.7 * (time.monotonic() - began_s)
+    finally:
+        for process in several:
+            process.kill()
+            process.communicate()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from nodes.coordinator.dialogues import Ask, Talk, hold, in_step
+from nodes.coordinator.dialogues import Ask, Talk, alone, hold, in_step
 from nodes.coordinator.door import changing, loading, undoing
 from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.hands import Hands
@@ -45,6 +45,8 @@ class Door:
 
     def together(self, commands: Sequence[Change]) -> Talk[list[Changed | Exception]]:
         """Changes of different entities, with as few questions as one."""
+        if len(commands) == 1:
+            return alone(self._changing(commands[0]))
         return in_step([self._changing(command) for command in commands])
 
     def _changing(self, command: Change) -> Talk[Changed]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Sequence, Set
+from itertools import chain
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.abox_view import View
@@ -74,7 +75,9 @@ class CompiledEngine:
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
         self._schema = Schema(closure)
-        self._of_the_schema = frozenset(s for s, _, _ in (*closure.facts, *self._inert.facts))
+        told = (*closure.facts, *self._inert.facts)
+        self._of_the_schema = frozenset(s for s, _, _ in told)
+        self._objects_of_the_schema = frozenset(o for _, _, o in told)
         self._abox = ABox(self._schema)
         self._saturation = Saturation(self._abox)
         self._paths = FastPaths(self._abox) if fast else PlainPaths()
@@ -249,8 +252,11 @@ class CompiledEngine:
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
-        yield from self._view.asserted(s, p, o)
-        yield from self._told_of_the_schema(s, p, o)
+        found = self._view.asserted(s, p, o)
+        is_unsaid = o not in self._objects_of_the_schema if s is None else s not in self._of_the_schema
+        if is_unsaid and (s, o) != (None, None):  # as most are
+            return found
+        return chain(found, self._told_of_the_schema(s, p, o))
 
     def _told_of_the_schema(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         for facts in (self._schema.closure, self._inert):
@@ -298,6 +304,8 @@ class CompiledEngine:
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """The asserted triples of a subject: predicate to objects."""
         objects = self._view.about(subject)
+        if subject not in self._of_the_schema:
+            return objects
         for _, predicate, object_ in self._told_of_the_schema(subject, None, None):
             objects.setdefault(predicate, []).append(object_)
         return objects

@@ -45,7 +45,7 @@ class Loads:
         if self._facts is not None:
             beside = [other for other in map(self._space.solids.get, self._facts.about(name)) if other]
         else:
-            beside = self._space.around(solid)
+            beside = [o for o in self._space.around(solid) if self._space.may_bear(solid, o)]
         for other in sorted(beside, key=lambda other: other.name):
             bearer = self._bearer(other)
             if bearer is not None and bearer.name == name:

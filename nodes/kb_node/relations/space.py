@@ -116,6 +116,18 @@ class Space:
         floor = None if place is None else solid.bottom - place[0].bottom
         return Whereabouts(container, self._supports(solid, below, container, floor) if below else (), place)
 
+    def may_bear(self, bearer: Solid, solid: Solid) -> bool:
+        """Whether one is in a hollow of another or touches it from above: else it is not among its supports.
+
+        That takes a look at the two; `whereabouts` looks at all that is around.
+        """
+        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+            return False
+        if bearer.hollows and self._is_within(solid, bearer):
+            return True
+        made = measures.on(solid, bearer, self.limits)
+        return made is not None and made.holds
+
     def _supports(
         self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None
     ) -> tuple[Found, ...]:

@@ -38,6 +38,7 @@ CREATE UNIQUE INDEX commits_by_command ON commits (command_id);
 CREATE TABLE touches (name TEXT, seq INTEGER, PRIMARY KEY (name, seq)) STRICT, WITHOUT ROWID;
 CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 """
+_TOUCH = "INSERT INTO touches VALUES (?, ?)"
 _FORMAT = b"4"
 _PAGE = 256
 _DENSE_FROM = 1 << 16
@@ -130,7 +131,10 @@ class Journal:
         whole = None if begun is None else begun.finish(commit)
         with self._file.writing(f"commit {commit.seq}") as db:
             touches = [(name, commit.seq) for name in commit.names]
-            db.executemany("INSERT INTO touches VALUES (?, ?)", touches)
+            if len(touches) == 1:
+                db.execute(_TOUCH, touches[0])
+            else:
+                db.executemany(_TOUCH, touches)
             body = codec.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
             digest = _chain(self._digest, body)
             db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))

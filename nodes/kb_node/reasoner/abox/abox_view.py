@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Set
 from itertools import chain
 
 from nodes.kb_node.reasoner import datatypes
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.kinds import Kind
 from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Role
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
+
+Further = tuple[tuple[int, Term], ...]
+"""Properties with their names that an edge implies, at one of its ends."""
 
 
 class View:
@@ -21,16 +25,47 @@ class View:
         self._abox = abox
         self._store = abox.store
         self._schema = abox.schema
+        self._further: dict[int, tuple[Further, Further]] = {}
+        self._unsaid: dict[Kind, list[Term]] = {}
 
     # Asserted
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """The asserted triples of a pattern."""
-        if s is None and p is None and o is None:
-            for node, term in enumerate(self._store.terms):
-                if term and not self._abox.is_literal(node):
-                    yield from self.asserted(term, None, None)
+        if p is None and (s is None or o is None):
+            if s is not None:
+                return self._said_of(s)
+            return self._everything() if o is None else self._said_with(o)
+        return self._matching(s, p, o)
+
+    def _everything(self) -> Iterator[Triple]:
+        for node, term in enumerate(self._store.terms):
+            if term and not self._abox.is_literal(node):
+                yield from self._said_of(term)
+
+    def _said_of(self, s: Term) -> Iterator[Triple]:
+        """The asserted triples of a subject."""
+        store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(s)
+        if node is None:
             return
+        for cls in self._given(node):
+            yield (s, TYPE, self._schema.classes[cls])
+        for edge in store.out.all(node):
+            if store.source[edge] == ASSERTED:
+                yield (s, axioms[store.predicate[edge]].term, store.terms[store.object[edge]])
+
+    def _said_with(self, o: Term) -> Iterator[Triple]:
+        """The asserted triples of an object."""
+        if self._schema.find_class(o) is not None:
+            yield from self._asserted_types(None, o)
+        store, axioms, node = self._store, self._schema.axioms, self._store.numbers.get(o)
+        if node is None:
+            return
+        for edge in store.into.all(node):
+            if store.source[edge] == ASSERTED:
+                yield (store.terms[store.subject[edge]], axioms[store.predicate[edge]].term, o)
+
+    def _matching(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         if p is None or p == TYPE:
             yield from self._asserted_types(s, o)
         if p != TYPE:
@@ -164,11 +199,72 @@ class View:
             nodes = (node for node in self._instances(o))
         else:
             nodes = (node for node, term in enumerate(self._store.terms) if term)
+        is_regular = p is None and not (self._abox.equals or self._abox.spellings)
+        virtual = self._of_virtual_roles() if is_regular else frozenset[int]()
         for node in nodes:
             if not self._abox.is_literal(node):
-                for triple in self._inferred_of(node, p):
-                    if o is None or triple[2] == o:
-                        yield triple
+                found = self._inferred_quickly(node, virtual) if is_regular else self._inferred_of(node, p)
+                if o is None:
+                    yield from found
+                else:
+                    yield from (triple for triple in found if triple[2] == o)
+
+    def _of_virtual_roles(self) -> frozenset[int]:
+        """The predicates of the edges by which somebody may be reached by a virtual role."""
+        groups = [
+            self._abox.steps.group((p, turned)) for p in self._schema.virtual for turned in (False, True)
+        ]
+        return frozenset(p for group in groups for p in (*group.out, *group.into))
+
+    def _inferred_quickly(self, node: int, virtual: Set[int]) -> Iterable[Triple]:
+        """`_inferred_of` where nothing is the same as anything else; `virtual` are `_of_virtual_roles`."""
+        store = self._store
+        term, kind = store.terms[node], store.kind[node]
+        unsaid = self._unsaid.get(kind)
+        if unsaid is None:
+            given = {self._schema.classes[cls] for cls in self._given(node)}
+            unsaid = self._unsaid[kind] = list(kind.names - given)
+        types = [(term, TYPE, name) for name in unsaid]
+        object_of, predicate, source, further = store.object, store.predicate, store.source, self._further
+        implied: dict[tuple[int, int], Term] = {}
+        for edge in store.out.all(node):
+            if (p := predicate[edge]) in virtual:
+                return self._inferred_of(node, None)
+            onward, _ = further.get(p) or self._further_of(p)
+            if onward:
+                end = object_of[edge]
+                is_told = source[edge] == ASSERTED
+                for q, name in onward:
+                    if q != p or not is_told:
+                        implied[q, end] = name
+        for edge in store.into.all(node):
+            if (p := predicate[edge]) in virtual:
+                return self._inferred_of(node, None)
+            _, back = further.get(p) or self._further_of(p)
+            if back:
+                end = store.subject[edge]
+                for q, name in back:
+                    implied[q, end] = name
+        if not implied:
+            return types
+        kinds = store.kind
+        if any(kinds[end].excluded is not None for _, end in implied):
+            return self._inferred_of(node, None)  # of values, which have spellings
+        told = {(predicate[e], object_of[e]) for e in store.out.all(node) if source[e] == ASSERTED}
+        terms = store.terms
+        return types + [
+            (term, name, terms[end]) for (q, end), name in implied.items() if (q, end) not in told
+        ]
+
+    def _further_of(self, predicate: int) -> tuple[Further, Further]:
+        """The named properties that an edge's subject has by it, and those that its object has."""
+        ends: tuple[list[tuple[int, Term]], list[tuple[int, Term]]] = ([], [])
+        for q, backwards in self._schema.roles(predicate) if predicate != SAME else ():
+            name = self._schema.axioms[q].term
+            if name[0] == "<" and " " not in name:
+                ends[backwards].append((q, name))
+        found = self._further[predicate] = (tuple(ends[0]), tuple(ends[1]) if predicate > DIFFERENT else ())
+        return found
 
     def _linked_to(self, term: Term) -> Iterator[int]:
         """The individuals that may be related to a term."""

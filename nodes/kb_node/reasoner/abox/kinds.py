@@ -18,6 +18,8 @@ _NUMBER = re.compile(
     + ")"
 )
 """How programs write a floating-point number; the group says of which datatype."""
+_TEXT = re.compile(r'"[ !#-\[\]-~]*"')
+"""The plainest texts; any other is looked at more closely."""
 
 
 class Kind:
@@ -60,6 +62,9 @@ class Kinds:
 
         self._numbers = [] if schema.literals else [self._literal(f'"1"^^{name}') for name in _FLOATING]
         """The kinds of all numbers, unless the schema speaks of single ones."""
+        is_text_one = not schema.literals and not any(map(datatypes.tells_texts_apart, schema.datatypes))
+        self._text = self._literal('""') if is_text_one else None
+        """The kind of all plain texts, unless the schema tells some from others."""
 
     def __iter__(self) -> Iterator[Kind]:
         return iter(self._kinds.values())
@@ -75,6 +80,8 @@ class Kinds:
 
     def literal(self, term: Term) -> Kind:
         """The kind of a literal: the datatypes that hold its value, and its nominal."""
+        if term[-1] == '"' and self._text is not None and _TEXT.fullmatch(term):
+            return self._text
         number = _NUMBER.fullmatch(term) if self._numbers else None
         return self._literal(term) if number is None else self._numbers[(number.lastindex or 0) - 1]
 

@@ -32,11 +32,12 @@ class Proof:
         self.explanation = explanation
         self.terms = terms
         self._words = words
-        self._text = _pieces(explanation, terms, words)
+        self._pattern = _Pattern(explanation, terms)
+        self._text = _pieces(explanation.text, self._pattern, terms, words)
 
     def about(self, terms: Sequence[Term]) -> Explanation:
         """The same proof about other terms."""
-        goal, support, steps = _renamed(self.explanation, dict(zip(self.terms, terms, strict=True)))
+        goal, support, steps = self._pattern.renamed(dict(zip(self.terms, terms, strict=True)))
         if self._text is None:
             text = sentence(goal, support, steps, self._words)
         else:
@@ -109,43 +110,62 @@ def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value 
     return (len(numbers), datatype, same)
 
 
-def _renamed(
-    explanation: Explanation, names: Mapping[Term, Term]
-) -> tuple[Triple | None, tuple[Triple, ...], tuple[Step, ...]]:
-    """Goal, support and steps with other terms."""
-    renamed: dict[Triple, Triple] = {}
-    name = names.get
+class _Pattern:
+    """A proof of which some terms may be others: the facts in it, and which of them that concerns."""
 
-    def other(fact: Triple) -> Triple:
-        found = renamed.get(fact)
-        if found is None:
-            s, p, o = fact
-            found = renamed[fact] = (name(s, s), p, name(o, o))
-        return found
+    def __init__(self, explanation: Explanation, terms: Iterable[Term]) -> None:
+        number: dict[Triple, int] = {}
+        goal, free = explanation.conclusion, frozenset(terms)
 
-    steps = tuple(
-        [
-            Step(
-                rule=step.rule,
-                premises=tuple([other(fact) for fact in step.premises]),
-                conclusion=step.conclusion and other(step.conclusion),
-            )
+        def place(fact: Triple) -> int:
+            return number.setdefault(fact, len(number))
+
+        self._goal = None if goal is None else place(goal)
+        self._support = tuple(map(place, explanation.support))
+        steps = [
+            (step, tuple(map(place, step.premises)), step.conclusion and place(step.conclusion))
             for step in explanation.steps
         ]
-    )
-    goal = explanation.conclusion
-    return goal and other(goal), tuple([other(fact) for fact in explanation.support]), steps
+        self._facts = list(number)
+        self._varying = [(i, s, p, o) for i, (s, p, o) in enumerate(number) if s in free or o in free]
+        varying = {i for i, *_ in self._varying}
+        self._steps = [
+            (step, premises, conclusion, not varying.isdisjoint((*premises, conclusion)))
+            for step, premises, conclusion in steps
+        ]
+
+    def renamed(
+        self, names: Mapping[Term, Term]
+    ) -> tuple[Triple | None, tuple[Triple, ...], tuple[Step, ...]]:
+        """Goal, support and steps with other terms."""
+        facts, name = self._facts.copy(), names.get
+        for i, s, p, o in self._varying:
+            facts[i] = (name(s, s), p, name(o, o))
+        steps = tuple(
+            [
+                Step(
+                    rule=step.rule,
+                    premises=tuple([facts[i] for i in premises]),
+                    conclusion=None if conclusion is None else facts[conclusion],
+                )
+                if varies
+                else step
+                for step, premises, conclusion, varies in self._steps
+            ]
+        )
+        support = tuple([facts[i] for i in self._support])
+        return None if self._goal is None else facts[self._goal], support, steps
 
 
-def _pieces(explanation: Explanation, terms: Sequence[Term], words: Words) -> list[str | int] | None:
+def _pieces(text: str, pattern: _Pattern, terms: Sequence[Term], words: Words) -> list[str | int] | None:
     """The sentence in pieces: text, and the numbers of the terms that are named in between.
 
     None when a mark is in the text as it is.
     """
-    if _MARK.search(explanation.text):
+    if _MARK.search(text):
         return None
     marks = {term: _mark(term, i) for i, term in enumerate(terms) if _is_free(term)}
-    pieces: list[str | int] = list(_MARK.split(sentence(*_renamed(explanation, marks), words)))
+    pieces: list[str | int] = list(_MARK.split(sentence(*pattern.renamed(marks), words)))
     pieces[1::2] = map(int, pieces[1::2])
     return pieces
 

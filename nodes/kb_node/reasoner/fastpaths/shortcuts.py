@@ -27,11 +27,11 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     edges = None if is_doubtful else _edges_of(abox, going, wanted)
     if edges is None or not _concern_nobody(abox, going, edges):
         return None
-    values = {store.object[edge] for edge in edges} if abox.spellings else ()
-    literals = [node for node in values if abox.is_literal(node)]
-    last = [node for node in literals if all(store.subject[e] in going for e in store.into.all(node))]
-    for node in last:
-        abox.forget_spelling(node)
+    if abox.spellings:
+        literals = [node for node in {store.object[edge] for edge in edges} if abox.is_literal(node)]
+        last = [node for node in literals if all(store.subject[e] in going for e in store.into.all(node))]
+        for node in last:
+            abox.forget_spelling(node)
     store.erase(going, edges)
     return {triple[0] for triple in triples}
 
@@ -64,12 +64,13 @@ def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
         return False
     if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
         return False
+    source, object_ = store.source, store.object
     for edge in edges:
-        node = store.object[edge]
-        if store.source[edge] == DERIVED or (node not in nodes and kinds[node].base is not kinds[node]):
+        node = object_[edge]
+        if source[edge] == DERIVED or (node not in nodes and kinds[node].base is not kinds[node]):
             return False
-        if abox.spellings and node in abox.equals:
-            return False
+    if abox.spellings and not abox.equals.keys().isdisjoint(object_[edge] for edge in edges):
+        return False
     return all(store.subject[edge] in nodes for node in nodes for edge in store.into.all(node))
 
 

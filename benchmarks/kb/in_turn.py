@@ -1,0 +1,123 @@
+"""Another version and this one in turn: on a machine with others a gain is seen side by side only."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from statistics import median
+from typing import Any, NamedTuple
+
+from benchmarks.kb import university
+
+CORE = ("add", "move", "refuse", "remove")
+WIRE = ("add", "move", "reference", "remove")
+_HERE = Path(__file__).parents[2]
+_ROUNDS = 6
+
+
+class Pair(NamedTuple):
+    """The medians of a figure: before, and now."""
+
+    before: float
+    now: float
+
+    @property
+    def ratio(self) -> float:
+        """Now, in terms of before."""
+        return self.now / self.before
+
+
+class Sides:
+    """The processes of both versions, asked in turn; who is asked first changes from round to round."""
+
+    def __init__(self, sides: Sequence[subprocess.Popen[str]]) -> None:
+        self._sides = sides
+        self._first = 0
+
+    def ask(self, word: str, count: int) -> tuple[Any, Any]:
+        """What the version before and this one answer."""
+        answers: dict[int, Any] = {}
+        for i in (self._first, 1 - self._first):
+            side = self._sides[i]
+            assert side.stdin is not None
+            assert side.stdout is not None
+            print(word, count, file=side.stdin, flush=True)
+            answers[i] = json.loads(side.stdout.readline())
+        self._first = 1 - self._first
+        return answers[0], answers[1]
+
+
+def core(before: Path, size: int, count: int) -> dict[str, Pair]:
+    """The engine alone; medians of the rounds' medians [ms]."""
+    with _sides(before, ["core", str(size)], ["core", str(size)]) as sides:
+        sides.ask("warm", count // 5)
+        rounds = [sides.ask(f"n{i}_", count) for i in range(_ROUNDS)]
+    return {what: _pair([(old[what], new[what]) for old, new in rounds]) for what in CORE}
+
+
+def wire(before: Path, folder: Path, size: int, count: int) -> dict[str, Pair]:
+    """Two whole systems at once, one client each: medians of all times [ms], and sustained moves a second."""
+    words = [["wire", str(folder / side), str(size)] for side in ("before", "now")]
+    took: dict[str, tuple[list[float], list[float]]] = {what: ([], []) for what in WIRE}
+    with _sides(before, *words) as sides:
+        for i in range(_ROUNDS + 1):
+            for what in WIRE:
+                old, new = sides.ask(what, count // _ROUNDS if i else 20)
+                took[what][0].extend(old if i else [])
+                took[what][1].extend(new if i else [])
+        rates = [sides.ask("sustained", 2 * count) for _ in range(3)]
+    return {**{what: Pair(*map(median, both)) for what, both in took.items()}, "sustained": _pair(rates)}
+
+
+def of_university(before: Path, triples: int, turns: int) -> Pair:
+    """CPU time from nothing to all that follows of university data [s]."""
+    words = ["university", str(triples), str(Path(university.__file__))]
+    rounds = []
+    for _ in range(turns):
+        with _sides(before, words, words) as sides:
+            rounds.append(sides.ask("once", 1))
+    return _pair([(_whole_s(old), _whole_s(new)) for old, new in rounds])
+
+
+def _whole_s(found: dict[str, float]) -> float:
+    return found["load_cpu_s"] + found["enumerate_cpu_s"]
+
+
+def _pair(rounds: Sequence[tuple[float, float]]) -> Pair:
+    old, new = zip(*rounds, strict=True)
+    return Pair(median(old), median(new))
+
+
+@contextmanager
+def _sides(before: Path, *words: Sequence[str]) -> Iterator[Sides]:
+    """A process of each version, when both are ready."""
+    with ExitStack() as stack:
+        sides = []
+        for root, said in zip((before.resolve(), _HERE), words, strict=True):
+            command = [sys.executable, "-P", str(Path(__file__).with_name("one_side.py")), *said]
+            if said[0] == "wire":
+                Path(said[1]).mkdir(parents=True)
+            side = stack.enter_context(
+                subprocess.Popen(
+                    command,
+                    cwd=root,
+                    env={**os.environ, "PYTHONPATH": str(root)},
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    text=True,
+                )
+            )
+            sides.append(side)
+        for side in sides:
+            assert side.stdout is not None
+            if side.stdout.readline() != "ready\n":
+                raise RuntimeError(f"{' '.join(map(str, side.args))} did not start")  # type: ignore[arg-type]
+        yield Sides(sides)
+        for side in sides:
+            assert side.stdin is not None
+            side.stdin.close()

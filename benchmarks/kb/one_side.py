@@ -1,0 +1,117 @@
+"""One version's side of a comparison: it does what stdin says, and prints how long that took, in JSON.
+
+    PYTHONPATH=<its root> python -P <this file> core 10000
+    PYTHONPATH=<its root> python -P <this file> wire FOLDER 10000
+    PYTHONPATH=<its root> python -P <this file> university 120000 <benchmarks/kb/university.py>
+
+It uses only what both versions have.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import random
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from benchmarks.kb import disk, engine, made, wire
+from nodes.extern.client import Client
+from nodes.extern.testing import own_system
+from nodes.kb_node.reasoner import Reasoner
+
+_UP = ("--no-record", "--world", "empty", "--no-sim")
+
+
+def core(size: int) -> Iterator[Callable[[str, int], Any]]:
+    """A map in the engine alone; each round is of adds, moves, refusals and removals: medians in ms."""
+    random_ = random.Random(size)
+    reasoner = Reasoner(made.tbox())
+    for first in range(0, size, 1000):
+        chunk = made.entities(min(1000, size - first), random_, f"m{first}_")
+        reasoner.apply(insert=[triple for star in chunk for triple in star])
+
+    def round_(word: str, count: int) -> dict[str, float]:
+        new = list(made.entities(count, random_, word))
+        moves = [engine._position(star, random_) for star in new]
+        wrong = [engine._kitchen(star) for star in made.entities(count, random_, "r")]
+        gone = [[t for t in s if t not in old] + now for s, (old, now) in zip(new, moves, strict=True)]
+        took = {
+            "add": made.each(new, lambda star: reasoner.apply(insert=star)),
+            "move": made.each(moves, lambda change: reasoner.apply(delete=change[0], insert=change[1])),
+            "refuse": made.each(wrong, lambda star: engine._refused(reasoner, star)),
+            "remove": made.each(gone, lambda star: reasoner.apply(delete=star)),
+        }
+        return {what: figures["p50_ms"] for what, figures in took.items()}
+
+    yield round_
+
+
+def system(folder: Path, size: int) -> Iterator[Callable[[str, int], Any]]:
+    """A whole system of so many entities, with one client: each time in ms, or moves a second."""
+    disk.prepare(folder, size)
+    random_, live = random.Random(), list[str]()
+    with own_system(folder, *_UP) as client:
+
+        def do(word: str, count: int) -> Any:
+            if word == "sustained":
+                names = [f"e{i % size}" for i in range(count)]
+                return wire._sustained(client, names, random_)
+            return [_timed(client, word, random_, size, live) for _ in range(count)]
+
+        yield do
+
+
+def _timed(client: Client, word: str, random_: random.Random, size: int, live: list[str]) -> float:
+    at, name = made.pose(random_).position_m, f"e{random_.randrange(size)}"
+    class_name = made.CLASSES[len(live) % len(made.CLASSES)]
+    if word == "add":
+        live.append(f"n{time.time_ns()}")
+    began_s = time.perf_counter()
+    match word:
+        case "add":
+            client.add(class_name, live[-1], at=at, size=(0.5, 0.5, 0.5), ref=class_name.lower())
+        case "move":
+            client.update(name, at=at)
+        case "reference":
+            client.update(name, ref=f"thing {began_s}")
+        case "remove":
+            client.remove(live.pop())
+        case _:
+            raise ValueError(word)
+    return (time.perf_counter() - began_s) * 1e3
+
+
+def university(triples: int, module: Path) -> Iterator[Callable[[str, int], Any]]:
+    """University data by the generator in `module`, once: its figures."""
+    spec = importlib.util.spec_from_file_location("university", module)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    yield lambda word, count: found.measure(triples)._asdict()
+
+
+def main() -> None:
+    """Say `ready`, then answer each line `WORD COUNT`."""
+    what, *words = sys.argv[1:]
+    match what:
+        case "core":
+            side = core(int(words[0]))
+        case "wire":
+            side = system(Path(words[0]), int(words[1]))
+        case _:
+            side = university(int(words[0]), Path(words[1]))
+    do = next(side)
+    print("ready", flush=True)
+    for line in sys.stdin:
+        word, count = line.split()
+        print(json.dumps(do(word, int(count))), flush=True)
+    next(side, None)
+
+
+if __name__ == "__main__":
+    main()
