@@ -92,7 +92,8 @@ def ask(
                 return read_reply(key, reply, kind, timeout_s).decode()
             if not foreign:
                 foreign, deadline_s = True, time.monotonic() + patience_s
-                log.warning("%s", _foreign(key, servers))
+                if lifelines.is_news(key):
+                    log.warning("%s", _foreign(key, servers))
             target = zenoh.QueryTarget.ALL
         if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
             deadline_s = now_s + patience_s

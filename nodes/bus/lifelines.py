@@ -23,6 +23,7 @@ class Lifelines:
     def __init__(self, session: zenoh.Session) -> None:
         self._tokens: dict[tuple[str, ...], zenoh.CancellationToken] = {}
         self._there: set[str] = set()
+        self._foreign_replies: set[str] = set()
         self._instances: dict[str, frozenset[str]] = {}
         session.liveliness().declare_subscriber(keys.live_key("*"), self._on_change, history=True)
 
@@ -36,9 +37,11 @@ class Lifelines:
         replier = reply.replier_id if ready else None
         return replier is None or any(str(replier.zid) in there for there in ready)
 
-    def instances(self, node: str) -> int:
-        """How many say that they are this node; more than one only for a moment, after a restart."""
-        return len(self._instances.get(node, ()))
+    def is_news(self, key: str) -> bool:
+        """Is it the first time that somebody else was found to answer on this key?"""
+        known = key in self._foreign_replies
+        self._foreign_replies.add(key)
+        return not known
 
     def of(self, nodes: tuple[str, ...]) -> zenoh.CancellationToken:
         """For questions, from now on, that any of these nodes may answer."""

@@ -263,7 +263,7 @@ class KnowledgeBase:
                 parts=len(commits),
                 names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
                 skipped=tuple(sorted_out.skipped),
-                notes=tuple(sorted_out.notes),
+                notes=(*sorted_out.notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
 
     def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:

@@ -23,7 +23,7 @@ from schemas.entities import Pose
 from schemas.health import Health
 from schemas.replies import Changed
 from schemas.scenes import BodyOrder, Poses, Spawn, Spawned
-from tests.faults.ground import Ground, wait_for
+from tests.faults.ground import Ground, free_place, wait_for
 from tests.faults.processes import ALL, NOTICED_S, _pids, _runs
 from tests.faults.table import Fault
 
@@ -105,9 +105,9 @@ def stolen_acknowledgements(ground: Ground) -> None:
     with _stranger(ground) as session:
         session.declare_queryable(f"{keys.CMD}/add", steal, complete=True)
         with ground.client() as client:
-            wait_for(lambda: client.add("Plate", at=(6.0, 3.0, 0.0)) and stolen, "it was asked")
+            wait_for(lambda: client.add("Plate", at=free_place()) and stolen, "it was asked")
             for _ in range(20):
-                names = client.add("Plate", at=(6.0, 2.0, 0.0)).names
+                names = client.add("Plate", at=free_place()).names
                 assert names != ("nothing",)
                 assert set(names) <= {entity.name for entity in client.list("Plate")}
     assert "nothing" not in ground.load.added

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import random
 import threading
 import time
 from collections.abc import Callable
@@ -17,6 +18,11 @@ from tests.conftest import System, running
 
 PATIENCE_S = 60.0
 LOST_WITHIN_S = 20.0
+
+
+def free_place() -> tuple[float, float, float]:
+    """On the floor of a wide hall, away from the rest: what overlaps is another matter."""
+    return random.uniform(-200.0, 200.0), random.uniform(20.0, 200.0), 0.0
 
 
 class Load(threading.Thread):
@@ -38,7 +44,7 @@ class Load(threading.Thread):
                     while not self._stopping.is_set():
                         asked += 1
                         name = f"cup_of_load_{asked}" if asked % 2 else None
-                        self.added += client.add("Cup", name, at=(1.0 + asked % 5, 2.0, 0.0)).names
+                        self.added += client.add("Cup", name, at=free_place()).names
             except errors.NoAnswer:
                 self.unanswered += 1
                 time.sleep(0.1)
@@ -92,7 +98,7 @@ class Ground:
                 with self.client() as client:
                     status = client.status()
                     ready = {node.node for node in status.nodes if node.state == "ready"}
-                    return ready >= wanted and bool(client.add("Plate", at=(3.0, 3.0, 0.0)).names)
+                    return ready >= wanted and bool(client.add("Plate", at=free_place()).names)
             except errors.NoAnswer:
                 return False
 

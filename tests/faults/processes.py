@@ -77,7 +77,9 @@ def kill_everybody_above_and_go_down(ground: Ground) -> None:
     supervisord = _supervisord(ground)
     up.kill()
     os.kill(supervisord, signal.SIGKILL)
-    os.kill(pids["kb_node"], signal.SIGSTOP)  # not before: the kernel wakes whom it sees orphaned
+    while _runs(supervisord):
+        time.sleep(0.001)
+    os.kill(pids["kb_node"], signal.SIGSTOP)  # not before: the kernel ends whom it sees stopped and orphaned
     up.wait(30)
     down = [Path(sys.executable).with_name("semmap"), "down", "--data", str(ground.data)]
     assert subprocess.run(down, timeout=60, capture_output=True).returncode == 0

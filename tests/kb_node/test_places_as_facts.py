@@ -5,7 +5,7 @@ import random
 import pytest
 
 from nodes.kb_node import undo
-from nodes.kb_node.answers import trials
+from nodes.kb_node.answers import answers, trials
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
@@ -112,3 +112,18 @@ def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     with pytest.raises(OSError, match="full"):
         flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
     assert state(flat) == before
+
+
+def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
+    bare = b'dm:Counter rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:supports ; owl:maxCardinality "0"^^xsd:nonNegativeInteger ] .'  # noqa: E501
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + bare, "household.ttl", label_prefix="t")
+    journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
+    barred = SemanticMap(journal)
+    barred.commit(Transaction(id="flat", source="file", insert=tuple(t for t in FLAT if t[1] != ON)))
+    told = list(answers.withheld(barred))
+    assert any(text.startswith("that milk1 is on counter1 (measured) would contradict") for text in told)
+    assert not any("on counter1 (asserted)" in text for text in told)
+    assert not barred.reasoner.holds(on("milk1", "counter1"))
+    barred.commit(moved(barred, "milk1", (2.0, 2.0, 0.0)))
+    assert len(list(answers.withheld(barred))) == len(told) - 1
+    journal.close()

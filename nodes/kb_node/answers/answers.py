@@ -15,6 +15,7 @@ from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.relations import said
 from nodes.kb_node.relations.place_facts import Fact
+from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -62,10 +63,15 @@ def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> It
 
 def withheld(semantic_map: SemanticMap) -> Iterator[str]:
     """The facts about places that would contradict the map, and how, a sentence each."""
+    words = semantic_map.reasoner.words
     for fact, found in sorted(semantic_map.beliefs.withheld.items()):
-        clause = sentences.said(fact, semantic_map.reasoner.words)
+        clause = sentences.said(fact, words)
+        measured = [
+            triple for triple in found.support if triple[1] in COMPUTED and not semantic_map.has(triple)
+        ]
         seen = "asserted" if semantic_map.has(fact) else "measured"
-        yield f"that {clause} ({seen}) would contradict the map, so it is left out: {found.text}"
+        reason = sentences.as_measured(found.text, measured, words)
+        yield f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
 
 
 class Picture(NamedTuple):

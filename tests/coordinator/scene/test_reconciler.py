@@ -12,6 +12,7 @@ from nodes.coordinator.scene.reconciler import Keeping
 from nodes.coordinator.scene.spawn_batches import BATCH
 from schemas import commands as c
 from schemas import errors
+from schemas.commits import Effects
 from schemas.entities import Pose
 from schemas.scenes import BodiesMoved, Body, BodyOrder, Deleted, Scene, Spawned
 from tests.coordinator.conftest import at_once
@@ -318,3 +319,11 @@ def test_what_a_hand_carried_together_is_followed_in_one_commit_once_all_of_it_r
     assert door.map.seq == seq + 1
     assert door.map.entity("chair3").pose_provenance.agent == "ann"
     assert door.change(c.Undo()).names == ("chair1", "chair3")
+
+
+def test_map_and_scene_do_not_agree_by_a_commit_that_the_knowledge_base_has_not_confirmed(door):
+    keeping, _, _ = bodies_elsewhere(door, 0)
+    door.change(c.Add(class_="Kitchen", name="kitchen1"))
+    assert keeping.in_agreement()
+    door.map.take(Effects(seq=door.map.seq + 1, id="forged", digest="00"))
+    assert keeping.in_agreement() is False

@@ -57,3 +57,22 @@ def test_what_is_older_than_what_is_known_says_nothing():
 def test_when_bodies_came_or_went_a_snapshot_is_needed():
     assert seen().update(poses(11, (True, True), version=2)) is None
     assert seen().update(poses(9, (True, True), run="another")) is None
+
+
+def test_poses_of_another_time_have_the_scene_asked_and_do_not_count():
+    view = seen()
+    assert view.update(poses(2**62, (False, False))) is None
+    assert view.update(poses(20, (False, True))) == {"a"}
+
+
+def test_a_clock_that_was_set_back_does_not_stop_the_poses():
+    day_ns = 86_400 * 10**9
+    view = SceneView()
+    view.take(
+        Scene(run="r", version=1, stamp_ns=day_ns, sim_time_s=0.0, world="w", bodies=(body("a"), body("b")))
+    )
+    assert view.update(poses(10, (False, True))) is None
+    view.take(
+        Scene(run="r", version=1, stamp_ns=15, sim_time_s=0.0, world="w", bodies=(body("a"), body("b")))
+    )
+    assert view.update(poses(20, (False, True))) == {"a"}

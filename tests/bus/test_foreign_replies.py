@@ -1,0 +1,103 @@
+"""A program that serves a key of a node's, and is not that node."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import threading
+
+import pytest
+
+from nodes import bus
+from schemas import commands, keys, replies
+from tests.bus.conftest import answer
+from tests.conftest import free_endpoint, until
+
+ASKED = (commands.Get(name="x"), replies.Done)
+
+
+@pytest.fixture
+def three():
+    """A node, a thief and a client; the thief is preferred, because it is nearer."""
+    endpoint = free_endpoint()
+    with (
+        bus.open_session(bus.Network(mode="peer", listen=(endpoint,), connect=())) as thief,
+        bus.open_session(bus.Network(connect=(endpoint,))) as node,
+        bus.open_session(bus.Network(connect=(endpoint,))) as client,
+    ):
+        stolen = []
+
+        def steal(request):
+            stolen.append(request)
+            return replies.Done(text="stolen")
+
+        bus.serve(thief, keys.BRIDGE, answer(steal), verb="get")
+        yield node, client, stolen
+
+
+def ready(node, client):
+    """The node serves, too, and its token is seen."""
+    bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
+    lifelines = bus.Lifelines(client)
+    token = bus.appear(node, "kb_node")
+    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+    return lifelines, token
+
+
+def test_its_reply_is_passed_over_for_the_nodes_own(three, caplog):
+    node, client, stolen = three
+    lifelines, _token = ready(node, client)
+    said = "a program that is not kb_node answers on semmap/bridge/get"
+    with caplog.at_level(logging.WARNING):
+        for _ in range(300):  # who comes first is not said
+            assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "true"
+            if said in caplog.text:
+                break
+    assert stolen
+    assert caplog.text.count(said) <= 1
+
+
+def test_without_the_nodes_own_it_is_told(three):
+    node, client, _ = three
+    lifelines = bus.Lifelines(client)
+    token = bus.appear(node, "kb_node")
+    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+    with pytest.raises(bus.ForeignReply, match="its answers are ignored"):
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines, patience_s=0.3)
+    del token
+
+
+def test_who_asks_without_waiting_is_told_and_can_ask_everybody(three):
+    node, client, _ = three
+    lifelines = bus.Lifelines(client)
+    token = bus.appear(node, "kb_node")
+    until(lambda: lifelines.is_there("kb_node"), "the token is seen")
+
+    def ask(everybody):
+        answers, done = [], threading.Event()
+
+        def take(read):
+            answers.append(read)
+            done.set()
+
+        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, lifelines=lifelines, everybody=everybody)
+        assert done.wait(10)
+        return answers[0]
+
+    with pytest.raises(bus.ForeignReply):
+        ask(everybody=False)()
+    bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
+
+    def is_true():
+        with contextlib.suppress(bus.ForeignReply):
+            return ask(everybody=True)().decode().text == "true"
+
+    until(is_true, "the node is asked, too")
+    del token
+
+
+def test_while_no_node_is_ready_nobody_can_tell(three):
+    _, client, stolen = three
+    lifelines = bus.Lifelines(client)
+    reply = until(lambda: bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines), "a reply")
+    assert (reply.text, bool(stolen)) == ("stolen", True)
