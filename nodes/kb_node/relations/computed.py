@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Set
 from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.place_facts import Fact, Facts
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import denial, fact_of
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -66,7 +67,7 @@ class Computed:
         now = {entity.name: entity for entity in changed}
         reborn = [e.name for e in changed if (was := before(e.name)) is not None and was.iri != e.iri]
         old = self.facts.update((), reborn) if reborn else None
-        gone, come = self.facts.update(changed, removed)
+        gone, come = self.facts.update([e for e in changed if not _stays(before(e.name), e)], removed)
         if old is not None:
             gone, come = gone | old.gone, come | old.come
 
@@ -156,3 +157,8 @@ def _are(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term])
 
 def _names(triple: Triple) -> tuple[str, str]:
     return v.entity_name(triple[0]), v.entity_name(triple[2])
+
+
+def _stays(was: Entity | None, now: Entity) -> bool:
+    """Whether nothing that relations depend on is otherwise: a reference changed, or a property."""
+    return was is not None and Placed.of(was) == Placed.of(now)
