@@ -399,10 +399,10 @@ class KnowledgeBase:
         """Consistency, worked out beside the node's own work."""
         self.map.follow_places()
         held, denied = self.map.reasoner.held(), self._now.denied()
-        withheld = tuple(answers.withheld(self.map))
+        withheld, crowds = tuple(answers.withheld(self.map)), self.map.places.crowds()
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld
+                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
             )
         )
 

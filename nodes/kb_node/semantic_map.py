@@ -560,6 +560,9 @@ class SemanticMap:
             inserted=commit.inserted,
         )
         self._believed[commit.seq] = self.beliefs.believed
+        crowds = self.places.crowds(commit.names)
+        if crowds:
+            commit = structs.replace(commit, notes=(*commit.notes, *crowds))
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
