@@ -27,7 +27,8 @@ TBOX_TURTLE = (
     + WORDS
     + """
 dm:Thing a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "nothing known" .
-dm:isOn a owl:ObjectProperty , owl:AsymmetricProperty ; owl:inverseOf dm:supports ; owl:propertyDisjointWith dm:isInside .
+dm:isOn a owl:ObjectProperty , owl:AsymmetricProperty ; owl:inverseOf dm:supports ;
+    owl:propertyDisjointWith dm:isInside .
 dm:supports a owl:ObjectProperty ; rdfs:domain dm:Object .
 dm:isInside a owl:ObjectProperty ; owl:inverseOf dm:holds ; rdfs:range dm:Object .
 dm:holds a owl:ObjectProperty ; rdfs:domain dm:Object .
@@ -218,7 +219,7 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
 def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
     say(room, "table1", "isOn", "table2")
     before = triples(room), room.all_believed()
-    with pytest.raises(errors.Inconsistent, match="table1 and table2|table2 and table1"):
+    with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
         say(room, "table2", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
         say(room, "table1", "supports", "table2")
@@ -242,7 +243,7 @@ def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
     retracted = commit(room, retract=(on,))
     say(room, "table1", "isOn", "lost1")
     before = triples(room), room.all_believed()
-    with pytest.raises(errors.Inconsistent, match="cannot be undone: .*table1"):
+    with pytest.raises(errors.Inconsistent, match=r"cannot be undone: .*table1"):
         take_back(room, retracted.seq)
     assert (triples(room), room.all_believed()) == before
 
