@@ -91,20 +91,15 @@ def only_meant(everyone: Sequence[Entity], word: str) -> str:
 
 
 def _is_on(space: Space, solid: Solid, carriers: Set[str]) -> bool:
-    """On one of them, or on what is on one of them."""
+    """On one of them, or on or inside what is on one of them, and so on: SPARQL's (isOn|isInside)*/isOn."""
     seen, waiting = {solid}, [solid]
     while waiting:
-        upper = waiting.pop()
-        container, supports, _ = space.whereabouts(upper)
-        bearers = [other for other, _ in supports]
-        if container is not None and upper is not solid:
-            bearers.append(container[0])
-        if any(bearer.name in carriers for bearer in bearers):
+        container, supports, _ = space.whereabouts(waiting.pop())
+        if any(bearer.name in carriers for bearer, _ in supports):
             return True
-        if container is not None:
-            bearers.append(container[0])
-        waiting += [bearer for bearer in bearers if bearer not in seen]
-        seen.update(bearers)
+        below = [bearer for bearer, _ in (*filter(None, (container,)), *supports) if bearer not in seen]
+        waiting += below
+        seen.update(below)
     return False
 
 
