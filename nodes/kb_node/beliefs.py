@@ -8,7 +8,7 @@ When it is so again it comes back, unless it contradicts what was asserted since
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
@@ -113,6 +113,62 @@ class Beliefs:
                     self._withhold(last, found)
             else:
                 return change
+
+    def require_agreement(self, inserted: Iterable[Triple]) -> None:
+        """What was just asserted must not contradict what is asserted and set aside, directly or in a chain.
+
+        Geometry may deny either, but a later change of poses, or taking one back, would bring both together.
+        The reasoner's beliefs are as before, also when this raises Inconsistent.
+        """
+        if not self._reasoner.sets_aside:
+            return
+        asserted = frozenset(inserted)
+        given: list[Triple] = []
+        gone: list[Triple] = []
+        try:
+            for triple in self._aside_about(asserted):
+                if self._is_given_back(triple, asserted, gone):
+                    given.append(triple)
+        finally:
+            if given or gone:
+                self._reasoner.believe(aside=given, come=gone)
+
+    def _aside_about(self, asserted: Iterable[Triple]) -> list[Triple]:
+        """What is set aside of those that triples are about, of those that this is about, and so on."""
+        waiting = {term for s, _, o in asserted for term in (s, o)}
+        left = sorted(self._reasoner.set_aside())
+        found: list[Triple] = []
+        while waiting:
+            joined = [t for t in left if t[0] in waiting or t[2] in waiting]
+            left = [t for t in left if t[0] not in waiting and t[2] not in waiting]
+            waiting = {term for s, _, o in joined for term in (s, o)}
+            found += joined
+        return sorted(found)
+
+    def _is_given_back(self, triple: Triple, asserted: Set[Triple], gone: list[Triple]) -> bool:
+        """Let a triple hold that is set aside, without the computed facts that are in its way (`gone`).
+
+        False when it contradicted the rest before. Raises Inconsistent for one that contradicts `asserted`.
+        """
+        while True:
+            try:
+                self._reasoner.believe(back=[triple])
+            except Inconsistent as error:
+                support = error.explanation.support
+                if doubtful := [t for t in support if self._reasoner.is_computed(t)]:
+                    self._reasoner.believe(gone=doubtful)
+                    gone += doubtful
+                elif asserted.isdisjoint(support):
+                    return False
+                else:
+                    raise
+            else:
+                return True
+
+    @property
+    def contradicted(self) -> dict[Triple, Explanation]:
+        """What is asserted of places and withheld, as it contradicts other assertions."""
+        return {t: found for t, found in self.withheld.items() if self._is_said(t)}
 
     def follow(
         self,

@@ -524,20 +524,43 @@ class SemanticMap:
             *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         self.beliefs.begin()
-        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=not self._follows)
+        restores = bool(commit.undoes)
+        contradicted = self.beliefs.contradicted.keys() if restores else frozenset()
+        lenient = restores or not self._follows
+        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
+            if not lenient:
+                self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
             if self._follows:
                 commit = self._with_places(commit)
+            if restores and self._follows:
+                self._require_no_more_than(contradicted)
             commit = make_durable(commit)
         except BaseException:
             self._reverse(commit, {name: self._entities.get(name) for name in commit.names})
             raise
         return self._taken(commit)
 
+    def _require_agreement(self, commit: Commit) -> None:
+        """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
+        try:
+            self.beliefs.require_agreement(commit.inserted)
+        except Inconsistent as error:
+            raise proofs.refusal(error) from None
+
+    def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
+        """Raises Inconsistent when assertions contradict one another that geometry does not deny.
+
+        Taking something back may bring such together that did at the time, since geometry denied them.
+        """
+        newly = {t: why for t, why in self.beliefs.contradicted.items() if t not in contradicted}
+        if newly:
+            raise proofs.refusal(Inconsistent(newly[min(newly)]))
+
     def _reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
         """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
-        self._change(delete=commit.inserted, insert=commit.retracted)
+        self._change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not self._follows:
             return
         after = {entity.name: entity for entity in commit.changed}

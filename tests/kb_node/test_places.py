@@ -27,7 +27,8 @@ TBOX_TURTLE = (
     + WORDS
     + """
 dm:Thing a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "nothing known" .
-dm:isOn a owl:ObjectProperty ; owl:inverseOf dm:supports ; owl:propertyDisjointWith dm:isInside .
+dm:isOn a owl:ObjectProperty , owl:AsymmetricProperty ; owl:inverseOf dm:supports ;
+    owl:propertyDisjointWith dm:isInside .
 dm:supports a owl:ObjectProperty ; rdfs:domain dm:Object .
 dm:isInside a owl:ObjectProperty ; owl:inverseOf dm:holds ; rdfs:range dm:Object .
 dm:holds a owl:ObjectProperty ; rdfs:domain dm:Object .
@@ -213,6 +214,53 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
         say(room, "apple1", "isInside", "table1")
     edit = Edit(name="apple1", at=(0.0, 2.0, 0.0), set=(Statement(property="isInside", values=("table1",)),))
     assert len(commit(room, edit=(edit,)).notes) == 2
+
+
+def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
+    say(room, "table1", "isOn", "table2")
+    before = triples(room), room.all_believed()
+    with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
+        say(room, "table2", "isOn", "table1")
+    with pytest.raises(errors.Inconsistent):
+        say(room, "table1", "supports", "table2")
+    assert (triples(room), room.all_believed()) == before
+    assert say(room, "cup1", "isOn", "table2") is not None
+
+
+def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
+    say(room, "apple1", "isOn", "table2")
+    before = room.all_believed()
+    assert say(room, "bowl1", "isOn", "apple1").notes  # apple1 is measured to be inside bowl1
+    take_back(room)
+    after = room.all_believed()
+    assert (set(after.come), set(after.aside)) == (set(before.come), set(before.aside))
+
+
+def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
+    """Of what has no position geometry denies nothing."""
+    commit(room, add=(new("lost1", "Cup", None, on="table1"),))
+    on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
+    retracted = commit(room, retract=(on,))
+    say(room, "table1", "isOn", "lost1")
+    before = triples(room), room.all_believed()
+    with pytest.raises(errors.Inconsistent, match=r"cannot be undone: .*table1"):
+        take_back(room, retracted.seq)
+    assert (triples(room), room.all_believed()) == before
+
+
+def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
+    say(room, "table1", "isOn", "table2")
+    with monkeypatch.context() as patched:  # as maps were that were made before this was refused
+        patched.setattr(room.beliefs, "require_agreement", lambda inserted: None)
+        say(room, "table2", "isOn", "table1")
+    before = triples(room), {*room.all_believed().aside}
+    assert len(before[1]) == 2
+    moved = move(room, "table1", (0.0, 3.0, 0.0))
+    assert len(moved.retracted) > len(moved.inserted)
+    take_back(room)
+    assert (triples(room), {*room.all_believed().aside}) == before
+    assert trials.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
+    assert (triples(room), {*room.all_believed().aside}) == before
 
 
 def test_it_is_the_same_after_a_restart(room):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from nodes.kb_node.relations.solids import Bounds, Solid
+from nodes.kb_node.relations.forms import Bounds
+from nodes.kb_node.relations.solids import Solid
 
 CELL_M = 1.0
 MOST_CELLS = 1024

@@ -7,10 +7,11 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.forms import Bounds
 from nodes.kb_node.relations.grid import Grid
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.solids import Bounds, Solid, solid_of
+from nodes.kb_node.relations.solids import Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
 
