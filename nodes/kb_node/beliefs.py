@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.reasoner.explanations import Explanation
 from nodes.kb_node.relations.computed import Computed, Known, Step
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import PROPERTIES, fact_of
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -57,6 +59,10 @@ class Beliefs:
         """Facts that contradict the rest, and how."""
         self._rests: dict[Triple, set[Triple]] = {}
         """By a triple of an explanation, who is withheld because of it."""
+        self._newly: dict[Triple, None] = {}
+        """What was withheld since `begin`, and may not be any more."""
+        self._formerly: set[Triple] = set()
+        """What was withheld at `begin`, and has been looked at again since."""
         self._moved: set[Term] = set()
         self._net: dict[tuple[Triple, bool], bool] = {}
         """Of triples, as computed or as asserted, that came or went since `begin`: whether they hold now."""
@@ -65,6 +71,8 @@ class Beliefs:
         """What differs is counted from here on."""
         self._net.clear()
         self._moved.clear()
+        self._newly.clear()
+        self._formerly.clear()
 
     @property
     def believed(self) -> Believed:
@@ -169,6 +177,30 @@ class Beliefs:
     def contradicted(self) -> dict[Triple, Explanation]:
         """What is asserted of places and withheld, as it contradicts other assertions."""
         return {t: found for t, found in self.withheld.items() if self._is_said(t)}
+
+    @property
+    def left_out(self) -> frozenset[Fact]:
+        """What is measured and withheld."""
+        if not self.withheld:
+            return frozenset()
+        return frozenset(
+            (v.entity_name(s), COMPUTED[p], v.entity_name(o))
+            for s, p, o in self.withheld
+            if p in COMPUTED and not self._is_said((s, p, o))
+        )
+
+    @property
+    def newly_withheld(self) -> list[Triple]:
+        """What is withheld and was not at `begin`."""
+        return sorted(fact for fact in self._newly if fact in self.withheld)
+
+    def told(self, fact: Triple) -> str:
+        """What is withheld, and why, in a sentence."""
+        words, found = self._reasoner.words, self.withheld[fact]
+        measured = [t for t in found.support if t[1] in COMPUTED and not self._is_said(t)]
+        clause, reason = sentences.said(fact, words), sentences.as_measured(found.text, measured, words)
+        seen = "asserted" if self._is_said(fact) else "measured"
+        return f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
 
     def follow(
         self,
@@ -308,6 +340,8 @@ class Beliefs:
     def _note(self, fact: Triple, found: Explanation) -> None:
         self._admit(fact)
         self.withheld[fact] = found
+        if fact not in self._formerly:
+            self._newly[fact] = None
         for triple in found.support:
             if triple != fact:
                 self._rests.setdefault(triple, set()).add(fact)
@@ -315,6 +349,8 @@ class Beliefs:
     def _admit(self, fact: Triple) -> None:
         """A fact is no longer withheld."""
         found = self.withheld.pop(fact, None)
+        if found is not None and fact not in self._newly:
+            self._formerly.add(fact)
         for triple in () if found is None else found.support:
             resting = self._rests.get(triple, set())
             resting.discard(fact)

@@ -132,7 +132,7 @@ class Places:
                 if (relation := denial(space, fact)) is not None:
                     triples.append(triple)
                     notes[f"taken back: {relation.text}"] = None
-        return TakenBack(tuple(triples), _at_most(notes))
+        return TakenBack(tuple(triples), at_most(notes))
 
     def left_behind(self, names: Collection[str]) -> tuple[str, ...]:
         """What stands on those that leave, or is inside them, and stays: a sentence on each; the first."""
@@ -165,10 +165,11 @@ class Places:
         space = self.space()
         with space.supposing(commit.changed, (gone.name for gone in commit.removed)):
             relations = (denial(space, fact) for fact in facts)
-            return _at_most(dict.fromkeys(r.text for r in relations if r is not None))
+            return at_most(dict.fromkeys(r.text for r in relations if r is not None))
 
 
-def _at_most(notes: Collection[str]) -> tuple[str, ...]:
+def at_most(notes: Collection[str]) -> tuple[str, ...]:
+    """The first sentences of a kind, and how many more there are."""
     first = tuple(islice(notes, _FEW))
     more = len(notes) - len(first)
     return (*first, f"and {more} more of this kind") if more else first

@@ -15,7 +15,7 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
-from nodes.kb_node.places import Places
+from nodes.kb_node.places import Places, at_most
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.relations.place_facts import Facts
@@ -504,7 +504,7 @@ class SemanticMap:
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             if self._follows:
-                commit = self._with_places_anew(commit)
+                commit = self._with_places_anew(commit, before[-1].withheld.keys())
             commit = make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes, self.beliefs = before
@@ -583,6 +583,7 @@ class SemanticMap:
             inserted=commit.inserted,
         )
         self._believed[commit.seq] = self.beliefs.believed
+        commit = self._with_withheld(commit, self.beliefs.newly_withheld)
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
@@ -594,12 +595,22 @@ class SemanticMap:
                 changed[name] = structs.replace(entity, types=self._types(entity))
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
 
-    def _with_places_anew(self, commit: Commit) -> Commit:
-        """The same for a commit that replaces the TBox, so that everything is worked out anew."""
+    def _with_withheld(self, commit: Commit, facts: Collection[Triple]) -> Commit:
+        """`commit` with a note on what it lets contradict the map, so that it is left out."""
+        if not facts:
+            return commit
+        return structs.replace(commit, notes=(*commit.notes, *at_most(list(map(self.beliefs.told, facts)))))
+
+    def _with_places_anew(self, commit: Commit, withheld: Set[Triple]) -> Commit:
+        """The same for a commit that replaces the TBox, so that everything is worked out anew.
+
+        `withheld` is what was before.
+        """
         gone = {departed.name for departed in commit.removed}
         after = {name: e for name, e in self._entities.items() if name not in gone}
         after.update((entity.name, entity) for entity in commit.changed)
         self.beliefs.fill(after)
+        commit = self._with_withheld(commit, sorted(self.beliefs.withheld.keys() - withheld))
         for name, entity in after.items():
             after[name] = structs.replace(entity, types=self._types(entity))
         changed = tuple(e for name, e in after.items() if e != self._entities.get(name))

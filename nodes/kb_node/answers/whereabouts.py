@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import denied, fact_of
 from nodes.kb_node.relations.selection import only_meant, selected
@@ -34,7 +35,11 @@ class Now:
         found = answers.entities_of(self._map, query.class_)
         if query.where is None:
             return found
-        return tuple(selected(self._map.places.space(), found, query.where, self._map.entities()))
+        return tuple(
+            selected(
+                self._map.places.space(), found, query.where, self._map.entities(), self._map.beliefs.left_out
+            )
+        )
 
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
@@ -43,7 +48,10 @@ class Now:
             return Described.of(entity)
         space = self._map.places.space()
         wrong = denied(space, answers.said_of_place(self._map, entity))
-        return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
+        left_out = self._map.beliefs.left_out
+        there = (r for r in whereabouts(space, entity.name) if _fact(r) not in left_out)
+        withheld = tuple(answers.withheld(self._map, entity))
+        return Described.of(entity, tuple(there), tuple(wrong), withheld)
 
     def denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
@@ -53,7 +61,9 @@ class Now:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
-        return tuple(relations(self._map.places.space(), named))
+        left_out = self._map.beliefs.left_out
+        found = relations(self._map.places.space(), named)
+        return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
@@ -68,6 +78,10 @@ class Now:
             seen = explained(space, query.name, query.predicate, query.value)
         found = questions.why(self._map.reasoner, asked)
         if found is None:
+            if (
+                withheld := next((t for t in asked.triples if t in self._map.beliefs.withheld), None)
+            ) is not None:
+                raise errors.Refused(f"it does not hold: {self._map.beliefs.told(withheld)}")
             if seen is not None and not seen.holds:
                 raise errors.Refused(seen.text)
             return None if seen is None else self._measured(seen)
@@ -131,6 +145,16 @@ class Then:
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
+
+
+def _fact(relation: Relation) -> Fact:
+    return (relation.subject, relation.relation, relation.object)
+
+
+def _as_left_out(relation: Relation) -> Relation:
+    """A relation that is measured and withheld."""
+    note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
+    return structs.replace(relation, text=f"{relation.text}; {note}")
 
 
 def _named(
