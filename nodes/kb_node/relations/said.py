@@ -7,11 +7,11 @@ from typing import Final
 
 from nodes.kb_node.entities.alignments import shipped
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.phrases import SPOKEN, metres, why
 from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.polygons import distance
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.telling import SPOKEN, metres, why
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 from schemas.relations import Relation, RelationName
@@ -99,7 +99,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     if not other.supports or not (is_borne or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may hang or lean there
     made = measures.over(solid, other, limits)
-    return "it is over no surface of it" if made is None else why(relation, solid, other, made)
+    return f"it is over no surface of {other.name}" if made is None else why(relation, solid, other, made)
 
 
 def _bearers(space: Space, solid: Solid) -> set[Solid]:
