@@ -19,6 +19,7 @@ from nodes.kb_node.places import Places
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -211,6 +212,10 @@ class SemanticMap:
         """What is computed and what is set aside."""
         self.believe_places()
         return self.beliefs.all()
+
+    def placed(self) -> tuple[Placed, ...]:
+        """Where everything is."""
+        return tuple(map(Placed.of, self._entities.values()))
 
     def believed_of(self, commit: Commit) -> Believed:
         """What a commit changed of that; it is told once."""

@@ -9,7 +9,8 @@ from itertools import combinations
 from msgspec import structs
 
 from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.arrangement import attached, between, next_to
+from nodes.kb_node.relations.arrangement import attached, between
+from nodes.kb_node.relations.beside import beside, is_apart
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
@@ -203,29 +204,10 @@ SPOKEN: dict[RelationName, str] = {
 
 
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
-    limits = space.limits
-    bears = _is_with(space, other, solid) and solid.footprint >= other.footprint
-    if bears or _is_with(space, solid, other):
-        made = measures.touches(solid, other, limits)
-        yield from () if made is None else (_told("touches", solid, other, made),)
-        return
-    found: tuple[tuple[RelationName, Measure | None], ...] = (
-        ("isAttachedTo", attached(space, solid, other)),
-        ("touches", None if other.is_place else measures.touches(solid, other, limits)),
-        ("isUnder", measures.beneath(solid, other, limits)),
-        ("isAbove", measures.beneath(other, solid, limits)),
-        ("isNextTo", next_to(space, solid, other)),
-        ("isNear", measures.near(solid, other, limits)),
-    )
-    for relation, measure in found:
-        if measure is not None:
-            yield _told(relation, solid, other, measure)
-
-
-def _is_with(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether a thing is on or inside another: then nobody says that it is near or under that."""
-    container, supports, _ = space.whereabouts(solid)
-    return other in (container and container[0], *(bearer for bearer, _ in supports))
+    if is_apart(space, solid, other) and (made := attached(space, solid, other)) is not None:
+        yield _told("isAttachedTo", solid, other, made)
+    for relation, measure in beside(space, solid, other):
+        yield _told(relation, solid, other, measure)
 
 
 def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:
