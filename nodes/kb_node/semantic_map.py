@@ -563,11 +563,12 @@ class SemanticMap:
         self._change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not self._follows:
             return
-        after = {entity.name: entity for entity in commit.changed}
+        after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
+        after.update((entity.name, entity) for entity in commit.changed)
         self.beliefs.follow(
             changed=[entity for entity in before.values() if entity is not None],
             removed=[name for name, entity in before.items() if entity is None],
-            before=lambda name: after.get(name) or self._entities.get(name),
+            before=lambda name: after[name] if name in after else self._entities.get(name),
             retracted=commit.inserted,
             inserted=commit.retracted,
         )
