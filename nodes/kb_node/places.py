@@ -68,6 +68,14 @@ class Places:
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
+    def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
+        """A sentence on each spot where so many things are that not all are looked at; the first of them.
+
+        With `names`, only where one of these is. Nothing where no relations are kept.
+        """
+        facts = self._facts()
+        return () if facts is None else tuple(islice(facts.space.crowds(names), _FEW))
+
     def loads(self) -> Loads:
         """What things bear now."""
         return Loads(self.space(), self._facts())

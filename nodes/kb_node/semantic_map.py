@@ -584,6 +584,9 @@ class SemanticMap:
             inserted=commit.inserted,
         )
         self._believed[commit.seq] = self.beliefs.believed
+        crowds = self.places.crowds(commit.names)
+        if crowds:
+            commit = structs.replace(commit, notes=(*commit.notes, *crowds))
         commit = self._with_withheld(commit, self.beliefs.newly_withheld)
         if not moved:
             return commit

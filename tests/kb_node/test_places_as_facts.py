@@ -62,6 +62,19 @@ def test_a_thing_that_is_added_is_somewhere(flat):
     assert flat.believed_of(commit).come
 
 
+def test_what_comes_into_a_crowd_is_told_so(flat):
+    assert flat.places.crowds() == ()
+    pose = Pose(position_m=(3.95, 0.55, 0.42))
+    cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
+    commit = flat.commit(Transaction(id="cups", source="operator", add=cups))
+    (note,) = commit.notes
+    assert note.endswith("what they are on or inside is looked for among the 100 largest")
+    assert flat.places.crowds() == (note,)
+    assert {on(f"cup{k}", "coffee_table1") for k in range(50, 250)} <= set(flat.inferred())
+    elsewhere = flat.commit(moved(flat, "apple1", (8.2, 2.2, 0.74)))
+    assert elsewhere.notes == ()
+
+
 def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
     bare = flat.entity("coffee_table1")
     for name in [v.entity_name(s) for s, _, _ in flat.reasoner.given(None, ON, v.iri(bare.iri))]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from typing import Final
 
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
+from nodes.kb_node.relations.phrases import SPOKEN
 from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.relations.said import denied, fact_of
+from nodes.kb_node.relations.said import PROPERTIES, denial, denied, fact_of
 from nodes.kb_node.relations.selection import only_meant, selected
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
+from nodes.kb_node.relations.telling import explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from ontology import vocabulary as v
@@ -20,8 +22,14 @@ from schemas import errors
 from schemas.bridge import Entities
 from schemas.commands import Explain, Get, Relations
 from schemas.entities import Entity
-from schemas.explanations import Explanation, Triple
-from schemas.relations import Described, Relation
+from schemas.explanations import Explanation, Term, Triple
+from schemas.relations import Described, Relation, RelationName
+
+_MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
+    **{v.dm(name): (name, False) for name in SPOKEN},
+    **PROPERTIES,
+}
+"""The properties that `explain` has measured; of the inverse ones the object is the thing."""
 
 
 class Now:
@@ -65,6 +73,27 @@ class Now:
         found = relations(self._map.places.space(), named)
         return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
 
+    def measured(self, query: Explain) -> Explanation | None:
+        """What was measured of a relation that the TBox has no property for; None of any other.
+
+        Raises Refused when it does not hold, UnknownName.
+        """
+        relation = next((name for name in SPOKEN if name == query.predicate), None)
+        if relation is None or self._map.classes.property_names.find(relation) is not None:
+            return None
+        if query.negated:
+            raise errors.BadRequest(f"the TBox has no property '{relation}', so nothing can exclude it")
+        space = self._map.places.space()
+        ends = [self._map.entity(word).name for word in (query.name, query.value)]
+        for name in ends:
+            if name not in space.solids:
+                raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
+        seen = explained(space, ends[0], relation, ends[1])
+        assert seen is not None
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
+
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
 
@@ -72,10 +101,7 @@ class Now:
         """
         if query.negated:
             return None
-        space = self._map.places.space()
-        seen = None
-        if query.predicate in SPOKEN:
-            seen = explained(space, query.name, query.predicate, query.value)
+        seen = self._seen(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
         if found is None:
             if (
@@ -83,10 +109,14 @@ class Now:
             ) is not None:
                 raise errors.Refused(f"it does not hold: {self._map.beliefs.told(withheld)}")
             if seen is not None and not seen.holds:
-                raise errors.Refused(seen.text)
+                is_said = self._map.has(asked.triples[0]) and self.against(asked.triples[0]) is not None
+                aside = "; it was asserted, but is left out of what holds as long as it is not so"
+                raise errors.Refused(seen.text + (aside if is_said else ""))
             return None if seen is None else self._measured(seen)
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
             return structs.replace(found, text=self._told(found.conclusion))
+        if seen is not None and seen.relation == "touches" and not seen.holds:
+            seen = None
         if seen is not None:
             link = "; and" if seen.holds else "; but as it stands"
             return structs.replace(found, text=f"{found.text.rstrip('.')}{link} {seen.text}")
@@ -94,6 +124,27 @@ class Now:
         if not told:
             return found
         return structs.replace(found, text=f"{found.text.rstrip('.')}; measured: {'; '.join(told)}")
+
+    def against(self, triple: Triple) -> str | None:
+        """What geometry says against a fact about a place, as a clause; None where it says nothing."""
+        if (fact := fact_of(triple)) is None:
+            return None
+        found = denial(self._map.places.space(), fact)
+        return None if found is None else found.text.partition("; ")[2]
+
+    def _seen(self, triple: Triple) -> Relation | None:
+        """What is measured of a relation of two entities, or of its inverse; None for any other triple."""
+        s, p, o = triple
+        if p not in _MEASURED or o.startswith('"'):
+            return None
+        relation, is_inverse = _MEASURED[p]
+        ends = [v.entity_name(s), v.entity_name(o)]
+        for name, iri in zip(ends, (s, o), strict=True):
+            if (entity := self._map.find(name)) is None or v.iri(entity.iri) != iri:
+                return None
+        if is_inverse:
+            ends.reverse()
+        return explained(self._map.places.space(), ends[0], relation, ends[1])
 
     def _measured(self, seen: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))

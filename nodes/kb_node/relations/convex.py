@@ -213,6 +213,8 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
 
     Of what is further apart than `most` only that is known.
     """
+    if one.is_square and other.is_square:
+        return _between_boxes(one, other)
     offset = np.subtract(one.centre, other.centre)
     straight = np.array([*one.straight, *other.straight]).reshape(-1, 3).T
     rounds = [np.array(r).T for r in (one.round, other.round) if r]
@@ -243,6 +245,26 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
         if distances[best] > distance:
             normal, distance = tried[best], float(distances[best])
     return Contact(distance, (float(normal[0]), float(normal[1]), float(normal[2])))
+
+
+def _between_boxes(one: Convex, other: Convex) -> Contact:
+    """The same of two boxes along the axes: from corner to corner, or along the axis that separates best."""
+    apart = [
+        max(low - its_high, its_low - high)
+        for low, high, its_low, its_high in zip(one.low, one.high, other.low, other.high, strict=True)
+    ]
+    least = max(apart)
+    if least > 0.0:
+        reach = [max(along, 0.0) for along in apart]
+        distance = length = math.hypot(*reach)
+    else:
+        reach = [float(axis == apart.index(least)) for axis in range(3)]
+        distance, length = least, 1.0
+    x, y, z = (
+        math.copysign(along / length, here - there)
+        for along, here, there in zip(reach, one.centre, other.centre, strict=True)
+    )
+    return Contact(distance, (x, y, z))
 
 
 def _exact_normals(one: Convex, other: Convex) -> Floats:

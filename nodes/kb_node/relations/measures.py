@@ -44,10 +44,8 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     None where they do not, or where the one's base is nowhere over the other. It does not hold of what only
     leans there, along a steeper normal.
     """
-    if upper is lower or not overlap(upper.bounds, lower.bounds):
-        return None
     reach = limits.gap_m + _ROUNDING
-    if upper.bottom - lower.top > reach:
+    if upper is lower or upper.bottom - lower.top > reach or not overlap(upper.bounds, lower.bounds):
         return None
     # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
     most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
@@ -65,7 +63,10 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
                 continue
             if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
                 pairs.append((least, part, other))
-    pairs.sort(key=_least)
+    if not pairs:
+        return None
+    if len(pairs) > 1:
+        pairs.sort(key=_least)
     best: Measure | None = None
     leaning: Measure | None = None
     for least, part, other in pairs:
@@ -88,7 +89,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     if not (is_flat and upper.is_upright):
         return best
     share = _covered(upper, lower, best.height_m)
-    return best._replace(share=share) if share > 0.0 else None
+    return Measure(True, best.gap_m, share, best.height_m, most) if share > 0.0 else None
 
 
 def _least(pair: tuple[float, object, object]) -> float:

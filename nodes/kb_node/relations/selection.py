@@ -103,7 +103,7 @@ def only_meant(everyone: Sequence[Entity], word: str) -> str:
 
 
 def _is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:
-    """On one of them, or on what is on one of them."""
+    """On one of them, or on or inside what is on one of them, and so on: SPARQL's (isOn|isInside)*/isOn."""
     seen, waiting = {solid}, [solid]
     while waiting:
         upper = waiting.pop()
@@ -112,15 +112,11 @@ def _is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) 
             supports = tuple(s for s in supports if (upper.name, "isOn", s[0].name) not in left_out)
             if container is not None and (upper.name, "isInside", container[0].name) in left_out:
                 container = None
-        bearers = [other for other, _ in supports]
-        if container is not None and upper is not solid:
-            bearers.append(container[0])
-        if any(bearer.name in carriers for bearer in bearers):
+        if any(bearer.name in carriers for bearer, _ in supports):
             return True
-        if container is not None:
-            bearers.append(container[0])
-        waiting += [bearer for bearer in bearers if bearer not in seen]
-        seen.update(bearers)
+        below = [bearer for bearer, _ in (*filter(None, (container,)), *supports) if bearer not in seen]
+        waiting += below
+        seen.update(below)
     return False
 
 
