@@ -41,19 +41,25 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An entity with, if that was asked for, where it is.
 
     `whereabouts`: what it is inside, on and in, as measured. `denied`: what somebody said of that and is not
-    so, as things stand.
+    so, as things stand. `withheld`: what is measured, or was said, and would contradict the map, with the
+    reason, a sentence each; it is not among `whereabouts`.
     """
 
     whereabouts: tuple[Relation, ...] = ()
     denied: tuple[Relation, ...] = ()
+    withheld: tuple[str, ...] = ()
 
     @classmethod
     def of(
-        cls, entity: Entity, whereabouts: tuple[Relation, ...] = (), denied: tuple[Relation, ...] = ()
+        cls,
+        entity: Entity,
+        whereabouts: tuple[Relation, ...] = (),
+        denied: tuple[Relation, ...] = (),
+        withheld: tuple[str, ...] = (),
     ) -> Described:
         """An entity with these relations."""
         fields = {name: getattr(entity, name) for name in Entity.__struct_fields__}
-        return cls(**fields, whereabouts=whereabouts, denied=denied)
+        return cls(**fields, whereabouts=whereabouts, denied=denied, withheld=withheld)
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

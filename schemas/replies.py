@@ -43,6 +43,8 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What somebody said of where things are, and is not so as they stand; it contradicts nothing."""
     withheld: tuple[str, ...] = ()
     """What is measured of where things are and would contradict the map, with the reason, a sentence each."""
+    crowds: tuple[str, ...] = ()
+    """Where so many things are in one spot that not all are looked at as bearers, a sentence each."""
 
 
 class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -17,6 +17,7 @@ from schemas.explanations import Triple
 
 CLASSES = ("Chair", "Table", "Bottle", "Book", "Lamp", "Cup", "Fridge", "Window")
 Figures = dict[str, float]
+_APART_M = 3.0
 
 
 def tbox() -> list[Triple]:
@@ -25,8 +26,9 @@ def tbox() -> list[Triple]:
 
 
 def pose(random_: random.Random) -> Pose:
-    """Somewhere within 50 m."""
-    return Pose(position_m=(_number(random_, -50, 50), _number(random_, -50, 50), 0.0))
+    """Somewhere within 1.5 km, 3 m from any other place: things of up to 2 m do not stand in one another."""
+    x, y = (_APART_M * random_.randrange(-500, 500) + _number(random_, 0, 0.9) for _ in range(2))
+    return Pose(position_m=(round(x, 4), round(y, 4), 0.0))
 
 
 def star(name: str, class_name: str, random_: random.Random) -> list[Triple]:

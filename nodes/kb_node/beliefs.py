@@ -8,13 +8,15 @@ When it is so again it comes back, unless it contradicts what was asserted since
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
+from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.reasoner.explanations import Explanation
 from nodes.kb_node.relations.computed import Computed, Known, Step
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.said import PROPERTIES, fact_of
 from nodes.kb_node.relations.thresholds import Thresholds
@@ -57,6 +59,10 @@ class Beliefs:
         """Facts that contradict the rest, and how."""
         self._rests: dict[Triple, set[Triple]] = {}
         """By a triple of an explanation, who is withheld because of it."""
+        self._newly: dict[Triple, None] = {}
+        """What was withheld since `begin`, and may not be any more."""
+        self._formerly: set[Triple] = set()
+        """What was withheld at `begin`, and has been looked at again since."""
         self._moved: set[Term] = set()
         self._net: dict[tuple[Triple, bool], bool] = {}
         """Of triples, as computed or as asserted, that came or went since `begin`: whether they hold now."""
@@ -65,6 +71,8 @@ class Beliefs:
         """What differs is counted from here on."""
         self._net.clear()
         self._moved.clear()
+        self._newly.clear()
+        self._formerly.clear()
 
     @property
     def believed(self) -> Believed:
@@ -113,6 +121,86 @@ class Beliefs:
                     self._withhold(last, found)
             else:
                 return change
+
+    def require_agreement(self, inserted: Iterable[Triple]) -> None:
+        """What was just asserted must not contradict what is asserted and set aside, directly or in a chain.
+
+        Geometry may deny either, but a later change of poses, or taking one back, would bring both together.
+        The reasoner's beliefs are as before, also when this raises Inconsistent.
+        """
+        if not self._reasoner.sets_aside:
+            return
+        asserted = frozenset(inserted)
+        given: list[Triple] = []
+        gone: list[Triple] = []
+        try:
+            for triple in self._aside_about(asserted):
+                if self._is_given_back(triple, asserted, gone):
+                    given.append(triple)
+        finally:
+            if given or gone:
+                self._reasoner.believe(aside=given, come=gone)
+
+    def _aside_about(self, asserted: Iterable[Triple]) -> list[Triple]:
+        """What is set aside of those that triples are about, of those that this is about, and so on."""
+        waiting = {term for s, _, o in asserted for term in (s, o)}
+        left = sorted(self._reasoner.set_aside())
+        found: list[Triple] = []
+        while waiting:
+            joined = [t for t in left if t[0] in waiting or t[2] in waiting]
+            left = [t for t in left if t[0] not in waiting and t[2] not in waiting]
+            waiting = {term for s, _, o in joined for term in (s, o)}
+            found += joined
+        return sorted(found)
+
+    def _is_given_back(self, triple: Triple, asserted: Set[Triple], gone: list[Triple]) -> bool:
+        """Let a triple hold that is set aside, without the computed facts that are in its way (`gone`).
+
+        False when it contradicted the rest before. Raises Inconsistent for one that contradicts `asserted`.
+        """
+        while True:
+            try:
+                self._reasoner.believe(back=[triple])
+            except Inconsistent as error:
+                support = error.explanation.support
+                if doubtful := [t for t in support if self._reasoner.is_computed(t)]:
+                    self._reasoner.believe(gone=doubtful)
+                    gone += doubtful
+                elif asserted.isdisjoint(support):
+                    return False
+                else:
+                    raise
+            else:
+                return True
+
+    @property
+    def contradicted(self) -> dict[Triple, Explanation]:
+        """What is asserted of places and withheld, as it contradicts other assertions."""
+        return {t: found for t, found in self.withheld.items() if self._is_said(t)}
+
+    @property
+    def left_out(self) -> frozenset[Fact]:
+        """What is measured and withheld."""
+        if not self.withheld:
+            return frozenset()
+        return frozenset(
+            (v.entity_name(s), COMPUTED[p], v.entity_name(o))
+            for s, p, o in self.withheld
+            if p in COMPUTED and not self._is_said((s, p, o))
+        )
+
+    @property
+    def newly_withheld(self) -> list[Triple]:
+        """What is withheld and was not at `begin`."""
+        return sorted(fact for fact in self._newly if fact in self.withheld)
+
+    def told(self, fact: Triple) -> str:
+        """What is withheld, and why, in a sentence."""
+        words, found = self._reasoner.words, self.withheld[fact]
+        measured = [t for t in found.support if t[1] in COMPUTED and not self._is_said(t)]
+        clause, reason = sentences.said(fact, words), sentences.as_measured(found.text, measured, words)
+        seen = "asserted" if self._is_said(fact) else "measured"
+        return f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
 
     def follow(
         self,
@@ -252,6 +340,8 @@ class Beliefs:
     def _note(self, fact: Triple, found: Explanation) -> None:
         self._admit(fact)
         self.withheld[fact] = found
+        if fact not in self._formerly:
+            self._newly[fact] = None
         for triple in found.support:
             if triple != fact:
                 self._rests.setdefault(triple, set()).add(fact)
@@ -259,6 +349,8 @@ class Beliefs:
     def _admit(self, fact: Triple) -> None:
         """A fact is no longer withheld."""
         found = self.withheld.pop(fact, None)
+        if found is not None and fact not in self._newly:
+            self._formerly.add(fact)
         for triple in () if found is None else found.support:
             resting = self._rests.get(triple, set())
             resting.discard(fact)

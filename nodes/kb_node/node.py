@@ -340,12 +340,16 @@ class KnowledgeBase:
 
     def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
         """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        if (measured := self._now.measured(query)) is not None:
+            return measured
         asked = questions.of_explain(self.map, query)
         return self._now.explained(query, asked) or self._tried(questions.explain, asked)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""
-        return self._tried(questions.could, questions.of_could(self.map, query))
+        asked = questions.of_could(self.map, query)
+        against = self._now.against(asked.triples[0])
+        return self._tried(partial(questions.could, against=against), asked)
 
     def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
@@ -401,10 +405,10 @@ class KnowledgeBase:
         """Consistency, worked out beside the node's own work."""
         self.map.follow_places()
         held, denied = self.map.reasoner.held(), self._now.denied()
-        withheld = tuple(answers.withheld(self.map))
+        withheld, crowds = tuple(answers.withheld(self.map)), self.map.places.crowds()
         return self._aside.submit(
             lambda: structs.replace(
-                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld
+                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
             )
         )
 

@@ -68,6 +68,14 @@ class Places:
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
+    def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
+        """A sentence on each spot where so many things are that not all are looked at; the first of them.
+
+        With `names`, only where one of these is. Nothing where no relations are kept.
+        """
+        facts = self._facts()
+        return () if facts is None else tuple(islice(facts.space.crowds(names), _FEW))
+
     def loads(self) -> Loads:
         """What things bear now."""
         return Loads(self.space(), self._facts())
@@ -132,7 +140,7 @@ class Places:
                 if (relation := denial(space, fact)) is not None:
                     triples.append(triple)
                     notes[f"taken back: {relation.text}"] = None
-        return TakenBack(tuple(triples), _at_most(notes))
+        return TakenBack(tuple(triples), at_most(notes))
 
     def left_behind(self, names: Collection[str]) -> tuple[str, ...]:
         """What stands on those that leave, or is inside them, and stays: a sentence on each; the first."""
@@ -165,10 +173,11 @@ class Places:
         space = self.space()
         with space.supposing(commit.changed, (gone.name for gone in commit.removed)):
             relations = (denial(space, fact) for fact in facts)
-            return _at_most(dict.fromkeys(r.text for r in relations if r is not None))
+            return at_most(dict.fromkeys(r.text for r in relations if r is not None))
 
 
-def _at_most(notes: Collection[str]) -> tuple[str, ...]:
+def at_most(notes: Collection[str]) -> tuple[str, ...]:
+    """The first sentences of a kind, and how many more there are."""
     first = tuple(islice(notes, _FEW))
     more = len(notes) - len(first)
     return (*first, f"and {more} more of this kind") if more else first

@@ -15,7 +15,7 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_changes, entity_reading, entity_writing
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.entities.fast_reading import Patterns
-from nodes.kb_node.places import Places
+from nodes.kb_node.places import Places, at_most
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.relations.place_facts import Facts
@@ -509,7 +509,7 @@ class SemanticMap:
             concerned.update(i for c in self.classes.spatial for i in self.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             if self._follows:
-                commit = self._with_places_anew(commit)
+                commit = self._with_places_anew(commit, before[-1].withheld.keys())
             commit = make_durable(commit)
         except BaseException:
             self.tbox, self.reasoner, self.classes, self.beliefs = before
@@ -529,27 +529,51 @@ class SemanticMap:
             *(entity_reading.owners(self.reasoner, self.classes, s) for s in steadily(known, self._progress))
         )
         self.beliefs.begin()
-        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=not self._follows)
+        restores = bool(commit.undoes)
+        contradicted = self.beliefs.contradicted.keys() if restores else frozenset()
+        lenient = restores or not self._follows
+        change = self._change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
+            if not lenient:
+                self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, subjects - known))
             if self._follows:
                 commit = self._with_places(commit)
+            if restores and self._follows:
+                self._require_no_more_than(contradicted)
             commit = make_durable(commit)
         except BaseException:
             self._reverse(commit, {name: self._entities.get(name) for name in commit.names})
             raise
         return self._taken(commit)
 
+    def _require_agreement(self, commit: Commit) -> None:
+        """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
+        try:
+            self.beliefs.require_agreement(commit.inserted)
+        except Inconsistent as error:
+            raise proofs.refusal(error) from None
+
+    def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
+        """Raises Inconsistent when assertions contradict one another that geometry does not deny.
+
+        Taking something back may bring such together that did at the time, since geometry denied them.
+        """
+        newly = {t: why for t, why in self.beliefs.contradicted.items() if t not in contradicted}
+        if newly:
+            raise proofs.refusal(Inconsistent(newly[min(newly)]))
+
     def _reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
         """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
-        self._change(delete=commit.inserted, insert=commit.retracted)
+        self._change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not self._follows:
             return
-        after = {entity.name: entity for entity in commit.changed}
+        after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
+        after.update((entity.name, entity) for entity in commit.changed)
         self.beliefs.follow(
             changed=[entity for entity in before.values() if entity is not None],
             removed=[name for name, entity in before.items() if entity is None],
-            before=lambda name: after.get(name) or self._entities.get(name),
+            before=lambda name: after[name] if name in after else self._entities.get(name),
             retracted=commit.inserted,
             inserted=commit.retracted,
         )
@@ -565,6 +589,10 @@ class SemanticMap:
             inserted=commit.inserted,
         )
         self._believed[commit.seq] = self.beliefs.believed
+        crowds = self.places.crowds(commit.names)
+        if crowds:
+            commit = structs.replace(commit, notes=(*commit.notes, *crowds))
+        commit = self._with_withheld(commit, self.beliefs.newly_withheld)
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
@@ -576,12 +604,22 @@ class SemanticMap:
                 changed[name] = structs.replace(entity, types=self._types(entity))
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
 
-    def _with_places_anew(self, commit: Commit) -> Commit:
-        """The same for a commit that replaces the TBox, so that everything is worked out anew."""
+    def _with_withheld(self, commit: Commit, facts: Collection[Triple]) -> Commit:
+        """`commit` with a note on what it lets contradict the map, so that it is left out."""
+        if not facts:
+            return commit
+        return structs.replace(commit, notes=(*commit.notes, *at_most(list(map(self.beliefs.told, facts)))))
+
+    def _with_places_anew(self, commit: Commit, withheld: Set[Triple]) -> Commit:
+        """The same for a commit that replaces the TBox, so that everything is worked out anew.
+
+        `withheld` is what was before.
+        """
         gone = {departed.name for departed in commit.removed}
         after = {name: e for name, e in self._entities.items() if name not in gone}
         after.update((entity.name, entity) for entity in commit.changed)
         self.beliefs.fill(after)
+        commit = self._with_withheld(commit, sorted(self.beliefs.withheld.keys() - withheld))
         for name, entity in after.items():
             after[name] = structs.replace(entity, types=self._types(entity))
         changed = tuple(e for name, e in after.items() if e != self._entities.get(name))

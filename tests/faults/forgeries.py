@@ -89,7 +89,7 @@ def pose_of_the_future(ground: Ground) -> None:
             x, y, _ = client.get("seat").pose.position_m
             return abs(x - 7.0) < 0.2 and abs(y - 6.0) < 0.2
 
-        wait_for(follows, "the map follows the chair", within_s=15.0)
+        wait_for(follows, "the map follows the chair")
         client.remove("seat")
 
 

@@ -82,7 +82,8 @@ def kill_everybody_above_and_go_down(ground: Ground) -> None:
     os.kill(pids["kb_node"], signal.SIGSTOP)  # not before: the kernel ends whom it sees stopped and orphaned
     up.wait(30)
     down = [Path(sys.executable).with_name("semmap"), "down", "--data", str(ground.data)]
-    assert subprocess.run(down, timeout=60, capture_output=True).returncode == 0
+    hangs = _runs(pids["kb_node"])  # unless it was quicker than we
+    assert subprocess.run(down, timeout=60, capture_output=True).returncode == (0 if hangs else 3)
     assert not any(map(_runs, pids.values()))
     assert subprocess.run(down, timeout=60, capture_output=True).returncode == 3
     ground.start()

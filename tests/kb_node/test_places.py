@@ -27,7 +27,8 @@ TBOX_TURTLE = (
     + WORDS
     + """
 dm:Thing a owl:Class ; rdfs:subClassOf dm:Physical_Thing ; dm:model "nothing known" .
-dm:isOn a owl:ObjectProperty ; owl:inverseOf dm:supports ; owl:propertyDisjointWith dm:isInside .
+dm:isOn a owl:ObjectProperty , owl:AsymmetricProperty ; owl:inverseOf dm:supports ;
+    owl:propertyDisjointWith dm:isInside .
 dm:supports a owl:ObjectProperty ; rdfs:domain dm:Object .
 dm:isInside a owl:ObjectProperty ; owl:inverseOf dm:holds ; rdfs:range dm:Object .
 dm:holds a owl:ObjectProperty ; rdfs:domain dm:Object .
@@ -215,6 +216,53 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
     assert len(commit(room, edit=(edit,)).notes) == 2
 
 
+def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
+    say(room, "table1", "isOn", "table2")
+    before = triples(room), room.all_believed()
+    with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
+        say(room, "table2", "isOn", "table1")
+    with pytest.raises(errors.Inconsistent):
+        say(room, "table1", "supports", "table2")
+    assert (triples(room), room.all_believed()) == before
+    assert say(room, "cup1", "isOn", "table2") is not None
+
+
+def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
+    say(room, "apple1", "isOn", "table2")
+    before = room.all_believed()
+    assert say(room, "bowl1", "isOn", "apple1").notes  # apple1 is measured to be inside bowl1
+    take_back(room)
+    after = room.all_believed()
+    assert (set(after.come), set(after.aside)) == (set(before.come), set(before.aside))
+
+
+def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
+    """Of what has no position geometry denies nothing."""
+    commit(room, add=(new("lost1", "Cup", None, on="table1"),))
+    on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
+    retracted = commit(room, retract=(on,))
+    say(room, "table1", "isOn", "lost1")
+    before = triples(room), room.all_believed()
+    with pytest.raises(errors.Inconsistent, match=r"cannot be undone: .*table1"):
+        take_back(room, retracted.seq)
+    assert (triples(room), room.all_believed()) == before
+
+
+def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
+    say(room, "table1", "isOn", "table2")
+    with monkeypatch.context() as patched:  # as maps were that were made before this was refused
+        patched.setattr(room.beliefs, "require_agreement", lambda inserted: None)
+        say(room, "table2", "isOn", "table1")
+    before = triples(room), {*room.all_believed().aside}
+    assert len(before[1]) == 2
+    moved = move(room, "table1", (0.0, 3.0, 0.0))
+    assert len(moved.retracted) > len(moved.inserted)
+    take_back(room)
+    assert (triples(room), {*room.all_believed().aside}) == before
+    assert trials.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
+    assert (triples(room), {*room.all_believed().aside}) == before
+
+
 def test_it_is_the_same_after_a_restart(room):
     say(room, "cup1", "isOn", "table1")
     made = move(room, "cup1", (0.0, 2.0, 0.0))
@@ -379,3 +427,16 @@ def random_change(room, dice):
             beside = room.find(dice.choice(["table1", "table2"])).pose.position_m
             at = (beside[0] + dice.uniform(-0.8, 0.8), beside[1], dice.choice([0.0, TOP, TOP + 0.02]))
             return move(room, name, at, carry=dice.random() < 0.4, yaw=dice.choice([None, 1.0]))
+
+
+def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
+    say(room, "cup1", "isOn", "table2")
+    before = room.all_believed(), set(room.inferred())
+    for names in (("cup1",), ("table2",), ("cup1", "table2")):
+        tried = Transaction(id=f"dry {names}", source="operator", remove=names)
+        effects = trials.of(room, lambda wanted=tried: room.commit(wanted))
+        assert "table2 supports cup1" not in effects.trial.lost
+        after = room.all_believed(), set(room.inferred())
+        assert set(after[0].aside) == set(before[0].aside)
+        assert set(after[0].come) == set(before[0].come)
+        assert after[1] == before[1]

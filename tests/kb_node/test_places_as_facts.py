@@ -5,16 +5,21 @@ import random
 import pytest
 
 from nodes.kb_node import undo
-from nodes.kb_node.answers import answers, trials
+from nodes.kb_node.answers import answers, questions, trials
+from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.answers.whereabouts import Now
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
-from schemas.bridge import TakeBack
+from schemas import errors
+from schemas.bridge import Entities, TakeBack
+from schemas.commands import Explain, Get, Relations, Watch
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
+from schemas.relations import Where
 
 TBOX = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
@@ -55,6 +60,19 @@ def test_a_thing_that_is_added_is_somewhere(flat):
     assert on("cup9", "coffee_table1") in set(flat.inferred("cup9"))
     assert on("cup9", "coffee_table1") not in commit.inserted
     assert flat.believed_of(commit).come
+
+
+def test_what_comes_into_a_crowd_is_told_so(flat):
+    assert flat.places.crowds() == ()
+    pose = Pose(position_m=(3.95, 0.55, 0.42))
+    cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
+    commit = flat.commit(Transaction(id="cups", source="operator", add=cups))
+    (note,) = commit.notes
+    assert note.endswith("what they are on or inside is looked for among the 100 largest")
+    assert flat.places.crowds() == (note,)
+    assert {on(f"cup{k}", "coffee_table1") for k in range(50, 250)} <= set(flat.inferred())
+    elsewhere = flat.commit(moved(flat, "apple1", (8.2, 2.2, 0.74)))
+    assert elsewhere.notes == ()
 
 
 def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
@@ -104,14 +122,27 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
 
 def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     before = state(flat)
-
-    def full(*_, **__):
-        raise OSError("full")
-
-    monkeypatch.setattr(flat._journal, "append", full)
+    monkeypatch.setattr(flat._journal, "append", _full)
     with pytest.raises(OSError, match="full"):
         flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
     assert state(flat) == before
+
+
+def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch):
+    before = state(flat)
+    for name in ("milk1", "counter1", "kitchen1"):
+        removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
+        trials.of(flat, lambda wanted=removal: flat.commit(wanted))
+        assert state(flat) == before
+        with monkeypatch.context() as patched:
+            patched.setattr(flat._journal, "append", _full)
+            with pytest.raises(OSError, match="full"):
+                flat.commit(removal)
+        assert state(flat) == before
+
+
+def _full(*_, **__):
+    raise OSError("full")
 
 
 def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
@@ -127,3 +158,62 @@ def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
     barred.commit(moved(barred, "milk1", (2.0, 2.0, 0.0)))
     assert len(list(answers.withheld(barred))) == len(told) - 1
     journal.close()
+
+
+ONLY_SHELVES = b"""
+dm:Counter owl:disjointWith dm:Shelf .
+dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allValuesFrom dm:Shelf ] .
+"""
+
+
+@pytest.fixture
+def choosy(flat):
+    """The flat with a TBox by which milk is on shelves only, and the commit that let it hold."""
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
+    flat.follow_places()
+    commit = flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox)
+    return flat, commit
+
+
+def test_all_questions_agree_with_what_is_withheld(choosy):
+    semantic_map, _ = choosy
+    now = Now(semantic_map)
+    assert not semantic_map.reasoner.holds(on("milk1", "counter1"))
+    there = now.entities(Entities(where=Where(on="counter1")))
+    assert "milk1" not in {entity.name for entity in there}
+    assert there
+    watching = StandingPlaces(semantic_map, lambda _: None).watch(Watch(id="w", on="counter1"))
+    assert watching.rows == tuple((v.iri(entity.iri),) for entity in there)
+    milk = now.entity(Get(name="milk1", where=True))
+    assert "isOn" not in {relation.relation for relation in milk.whereabouts}
+    assert ["milk1 is on counter1 (measured) would contradict" in text for text in milk.withheld] == [True]
+    (told,) = [r for r in now.relations(Relations(name="milk1")) if r.relation == "isOn"]
+    assert told.text.endswith("so it is no fact (for the reason see: semmap check)")
+    question = Explain(name="milk1", predicate="isOn", value="counter1")
+    with pytest.raises(errors.Refused, match=r"measured.* would contradict the map"):
+        now.explained(question, questions.of_explain(semantic_map, question))
+
+
+def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
+    semantic_map, commit = choosy
+    (note,) = [note for note in commit.notes if "milk1 is on counter1" in note]
+    assert "counter1 (measured)" in note
+    away = semantic_map.commit(moved(semantic_map, "milk1", (2.0, 2.0, 0.0)))
+    assert not away.notes
+    assert not semantic_map.beliefs.withheld
+    there = (8.2, 0.3, 0.9)
+    tried = trials.of(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
+    back = semantic_map.commit(moved(semantic_map, "milk1", there))
+    assert back.notes == tried.notes == (note,)
+    assert not semantic_map.commit(moved(semantic_map, "milk1", (8.21, 0.3, 0.9))).notes
+
+
+def test_a_standing_question_follows_what_is_withheld(choosy):
+    semantic_map, _ = choosy
+    news = []
+    standing = StandingPlaces(semantic_map, news.append)
+    standing.watch(Watch(id="w", on="counter1"))
+    milk = v.iri(semantic_map.entity("milk1").iri)
+    semantic_map.replace_tbox(Transaction(id="plain", source="operator"), TBOX)
+    standing.follow(semantic_map.seq, ())
+    assert [told.rows.appeared for told in news] == [((milk,),)]

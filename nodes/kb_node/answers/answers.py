@@ -12,12 +12,10 @@ from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.relations import said
 from nodes.kb_node.relations.beside import MIRRORED, Beside
 from nodes.kb_node.relations.derived import Derived
 from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.rules import COMPUTED
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
@@ -93,17 +91,12 @@ def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> It
                 yield fact
 
 
-def withheld(semantic_map: SemanticMap) -> Iterator[str]:
-    """The facts about places that would contradict the map, and how, a sentence each."""
-    words = semantic_map.reasoner.words
-    for fact, found in sorted(semantic_map.beliefs.withheld.items()):
-        clause = sentences.said(fact, words)
-        measured = [
-            triple for triple in found.support if triple[1] in COMPUTED and not semantic_map.has(triple)
-        ]
-        seen = "asserted" if semantic_map.has(fact) else "measured"
-        reason = sentences.as_measured(found.text, measured, words)
-        yield f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
+def withheld(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[str]:
+    """The facts about places, or one entity's, that would contradict the map, and how, a sentence each."""
+    beliefs = semantic_map.beliefs
+    for fact in sorted(beliefs.withheld):
+        if entity is None or v.iri(entity.iri) == fact[0]:
+            yield beliefs.told(fact)
 
 
 class Picture(NamedTuple):

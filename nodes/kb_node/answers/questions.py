@@ -136,8 +136,8 @@ def _entailed(reasoner: Reasoner, asked: Asked) -> Explanation | None:
     return None if found is None else _told(reasoner, found)
 
 
-def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
-    """Whether it could hold; the reasoner is as before.
+def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str | None = None) -> Possible:
+    """Whether it could hold; the reasoner is as before. `against` is what geometry says of it, a clause.
 
     Raises:
         NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
@@ -162,6 +162,8 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Possible:
     if measured:
         seen = " and ".join(said(fact, reasoner.words) for fact in measured)
         text += f", although by their poses {seen}"
+    elif against is not None:
+        text += f", but as things are, {against}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
     return Possible(possible=True, text=text)

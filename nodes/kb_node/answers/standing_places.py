@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from nodes.kb_node.answers import asked_terms
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.selection import Meant, chosen, require_whole, resolved
 from nodes.kb_node.relations.solids import solid_of
 from nodes.kb_node.relations.space import Space
@@ -51,6 +52,8 @@ class StandingPlaces:
         self._known: dict[str, Entity] = {}
         """While there is one: the entities as they were when it was last looked at them."""
         self._touched: set[str] = set()
+        self._left_out: frozenset[Fact] = frozenset()
+        """What was measured and withheld then."""
 
     def watch(self, command: Watch) -> Watching:
         """Begin one. Raises UnknownName, UnknownClass, NameTaken, BadRequest, Refused for too many."""
@@ -67,6 +70,7 @@ class StandingPlaces:
             class_name = v.local_name(asked_terms.class_(self._map, command.class_))
         if not self._standing:
             self._known = {entity.name: entity for entity in self._map.entities()}
+            self._left_out = self._map.beliefs.left_out
         self._standing[name] = standing = _Standing(
             watch=name,
             class_name=class_name,
@@ -107,6 +111,9 @@ class StandingPlaces:
         if not self._standing:
             return
         self._touched.update(names)
+        left_out = self._map.beliefs.left_out
+        self._touched.update(fact[0] for fact in left_out ^ self._left_out)
+        self._left_out = left_out
         if seq < self._map.seq or not self._touched:
             return
         self.drop_expired()
@@ -165,7 +172,7 @@ class StandingPlaces:
         class_name = standing.class_name
         candidates = [e for e in found if e is not None and (class_name is None or class_name in e.types)]
         space: Space = self._map.places.space()
-        there = chosen(space, candidates, standing.where, standing.meant)
+        there = chosen(space, candidates, standing.where, standing.meant, self._map.beliefs.left_out)
         return {entity.name: (v.iri(entity.iri),) for entity in there}
 
     def _meant(self, where: Where) -> Meant:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from typing import Final
 
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
+from nodes.kb_node.relations.phrases import SPOKEN
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.relations.said import denied, fact_of
+from nodes.kb_node.relations.said import PROPERTIES, denial, denied, fact_of
 from nodes.kb_node.relations.selection import only_meant, selected
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.telling import SPOKEN, explained, relations, whereabouts
+from nodes.kb_node.relations.telling import explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from ontology import vocabulary as v
@@ -19,8 +22,14 @@ from schemas import errors
 from schemas.bridge import Entities
 from schemas.commands import Explain, Get, Relations
 from schemas.entities import Entity
-from schemas.explanations import Explanation, Triple
-from schemas.relations import Described, Relation
+from schemas.explanations import Explanation, Term, Triple
+from schemas.relations import Described, Relation, RelationName
+
+_MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
+    **{v.dm(name): (name, False) for name in SPOKEN},
+    **PROPERTIES,
+}
+"""The properties that `explain` has measured; of the inverse ones the object is the thing."""
 
 
 class Now:
@@ -34,7 +43,11 @@ class Now:
         found = answers.entities_of(self._map, query.class_)
         if query.where is None:
             return found
-        return tuple(selected(self._map.places.space(), found, query.where, self._map.entities()))
+        return tuple(
+            selected(
+                self._map.places.space(), found, query.where, self._map.entities(), self._map.beliefs.left_out
+            )
+        )
 
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
@@ -43,7 +56,10 @@ class Now:
             return Described.of(entity)
         space = self._map.places.space()
         wrong = denied(space, answers.said_of_place(self._map, entity))
-        return Described.of(entity, tuple(whereabouts(space, entity.name)), tuple(wrong))
+        left_out = self._map.beliefs.left_out
+        there = (r for r in whereabouts(space, entity.name) if _fact(r) not in left_out)
+        withheld = tuple(answers.withheld(self._map, entity))
+        return Described.of(entity, tuple(there), tuple(wrong), withheld)
 
     def denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
@@ -53,7 +69,30 @@ class Now:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
-        return tuple(relations(self._map.places.space(), named))
+        left_out = self._map.beliefs.left_out
+        found = relations(self._map.places.space(), named)
+        return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
+
+    def measured(self, query: Explain) -> Explanation | None:
+        """What was measured of a relation that the TBox has no property for; None of any other.
+
+        Raises Refused when it does not hold, UnknownName.
+        """
+        relation = next((name for name in SPOKEN if name == query.predicate), None)
+        if relation is None or self._map.classes.property_names.find(relation) is not None:
+            return None
+        if query.negated:
+            raise errors.BadRequest(f"the TBox has no property '{relation}', so nothing can exclude it")
+        space = self._map.places.space()
+        ends = [self._map.entity(word).name for word in (query.name, query.value)]
+        for name in ends:
+            if name not in space.solids:
+                raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
+        seen = explained(space, ends[0], relation, ends[1])
+        assert seen is not None
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
 
     def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
@@ -62,17 +101,22 @@ class Now:
         """
         if query.negated:
             return None
-        space = self._map.places.space()
-        seen = None
-        if query.predicate in SPOKEN:
-            seen = explained(space, query.name, query.predicate, query.value)
+        seen = self._seen(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
         if found is None:
+            if (
+                withheld := next((t for t in asked.triples if t in self._map.beliefs.withheld), None)
+            ) is not None:
+                raise errors.Refused(f"it does not hold: {self._map.beliefs.told(withheld)}")
             if seen is not None and not seen.holds:
-                raise errors.Refused(seen.text)
+                is_said = self._map.has(asked.triples[0]) and self.against(asked.triples[0]) is not None
+                aside = "; it was asserted, but is left out of what holds as long as it is not so"
+                raise errors.Refused(seen.text + (aside if is_said else ""))
             return None if seen is None else self._measured(seen)
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
             return structs.replace(found, text=self._told(found.conclusion))
+        if seen is not None and seen.relation == "touches" and not seen.holds:
+            seen = None
         if seen is not None:
             link = "; and" if seen.holds else "; but as it stands"
             return structs.replace(found, text=f"{found.text.rstrip('.')}{link} {seen.text}")
@@ -81,6 +125,27 @@ class Now:
             return found
         return structs.replace(found, text=f"{found.text.rstrip('.')}; measured: {'; '.join(told)}")
 
+    def against(self, triple: Triple) -> str | None:
+        """What geometry says against a fact about a place, as a clause; None where it says nothing."""
+        if (fact := fact_of(triple)) is None:
+            return None
+        found = denial(self._map.places.space(), fact)
+        return None if found is None else found.text.partition("; ")[2]
+
+    def _seen(self, triple: Triple) -> Relation | None:
+        """What is measured of a relation of two entities, or of its inverse; None for any other triple."""
+        s, p, o = triple
+        if p not in _MEASURED or o.startswith('"'):
+            return None
+        relation, is_inverse = _MEASURED[p]
+        ends = [v.entity_name(s), v.entity_name(o)]
+        for name, iri in zip(ends, (s, o), strict=True):
+            if (entity := self._map.find(name)) is None or v.iri(entity.iri) != iri:
+                return None
+        if is_inverse:
+            ends.reverse()
+        return explained(self._map.places.space(), ends[0], relation, ends[1])
+
     def _measured(self, seen: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))
         return Explanation(
@@ -88,12 +153,15 @@ class Now:
         )
 
     def _told(self, fact: Triple) -> str:
-        """What was measured of a computed fact, and since which commit things are where they are."""
+        """What was measured of a computed fact, and since which commit both are where they are.
+
+        The fact may be younger: what was on the way between them, or around both, may have gone since.
+        """
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
         seen = explained(self._map.places.space(), name, COMPUTED[fact[1]], other)
         ends = self._map.entity(name), self._map.entity(other)
         since = max(p.commit for end in ends for p in (end.pose_provenance, end.shape_provenance))
-        return v.spoken(fact) if seen is None else f"{seen.text} (commit {since})"
+        return v.spoken(fact) if seen is None else f"{seen.text} (placed so since commit {since})"
 
 
 class Then:
@@ -131,6 +199,16 @@ class Then:
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
+
+
+def _fact(relation: Relation) -> Fact:
+    return (relation.subject, relation.relation, relation.object)
+
+
+def _as_left_out(relation: Relation) -> Relation:
+    """A relation that is measured and withheld."""
+    note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
+    return structs.replace(relation, text=f"{relation.text}; {note}")
 
 
 def _named(

@@ -261,6 +261,11 @@ class Reasoner:
         """What is asserted and does not hold."""
         return iter(self._aside)
 
+    @property
+    def sets_aside(self) -> bool:
+        """Whether anything is set aside."""
+        return bool(self._aside)
+
     def held(self) -> Held:
         """All that is `given`, for a reasoner elsewhere: `Reasoner.of`."""
         return Held(list(self._engine.asserted(None, None, None)), list(self.computed()))

@@ -85,10 +85,17 @@ def attached(space: Space, solid: Solid, other: Solid) -> Measure | None:
 def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
     """What a thing hangs on."""
     margin = space.limits.attached_m
+    if not solid.is_measured:
+        return
+    highest = solid.bottom - space.limits.gap_m
     found = [
         other
-        for other in space.around(solid, margin)
-        if (made := _against(space, solid, other)) and made.holds
+        for other in space.counted_around(solid, margin)
+        if other.top > solid.bottom
+        and other.bottom < highest
+        and not other.is_place
+        and (made := _against(space, solid, other))
+        and made.holds
     ]
     if found and not _is_borne(space, solid):
         yield from sorted(found, key=lambda other: other.name)

@@ -10,10 +10,11 @@ from typing import Final
 
 from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.arrangement import next_to
+from nodes.kb_node.relations.forms import Bounds
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.place_facts import Changed, Fact
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.solids import Bounds, Solid
+from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from schemas.entities import Entity
 from schemas.relations import RelationName
@@ -121,6 +122,7 @@ class Beside:
             names[entity.name] = None
             moved += filter(None, (space.solids.get(entity.name),))
             moved += filter(None, (space.put(entity),))
+        moved += space.shifted()
         if not (self._whole or self._some):
             return Changed(set(), set())
         with space.remembering():

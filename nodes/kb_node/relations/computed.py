@@ -6,8 +6,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Set
 from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.place_facts import Fact, Facts
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.relations.said import denial, fact_of
+from nodes.kb_node.relations.said import PROPERTIES, denial, fact_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from ontology import vocabulary as v
 from schemas.entities import Entity
@@ -47,7 +48,7 @@ class Computed:
     def begin(self, known: Known, said: Iterable[Triple]) -> Step:
         """All facts are new, and so is all that is said of places."""
         self._was_flat = self.facts.space.is_flat
-        denied = {t for t in self._take_up((), filter(_is_of_place, said)) if self._is_so_no_more(t, known)}
+        denied = {t for t in self._take_up((), _of_places(said)) if self._is_so_no_more(t, known)}
         self.denied |= denied
         return Step(set(self._triples(self.facts, known)), set(), denied, set())
 
@@ -66,18 +67,20 @@ class Computed:
         now = {entity.name: entity for entity in changed}
         reborn = [e.name for e in changed if (was := before(e.name)) is not None and was.iri != e.iri]
         old = self.facts.update((), reborn) if reborn else None
-        gone, come = self.facts.update(changed, removed)
+        shifted = self.facts.shifted if reborn else frozenset()
+        gone, come = self.facts.update([e for e in changed if not _stays(before(e.name), e)], removed)
         if old is not None:
             gone, come = gone | old.gone, come | old.come
+        shifted |= self.facts.shifted
 
         def as_it_is(name: str) -> Entity | None:
             return now.get(name) or before(name)
 
         went = set(self._triples(gone, before))
         came = set(self._triples(come, as_it_is))
-        retracted, inserted = list(filter(_is_of_place, retracted)), list(filter(_is_of_place, inserted))
+        retracted, inserted = _of_places(retracted), _of_places(inserted)
         came.update(triple for triple in retracted if self._still_holds(triple, as_it_is))
-        touched = {*removed, *now}
+        touched = {*removed, *now, *shifted}
         newly, no_longer = self._judge(touched, gone | come, retracted, inserted, as_it_is)
         return Step(came - went, went - came, newly, no_longer)
 
@@ -145,8 +148,8 @@ class Computed:
         return denial(self.facts.space, fact) is not None
 
 
-def _is_of_place(triple: Triple) -> bool:
-    return fact_of(triple) is not None
+def _of_places(triples: Iterable[Triple]) -> list[Triple]:
+    return [triple for triple in triples if triple[1] in PROPERTIES and fact_of(triple) is not None]
 
 
 def _are(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term]) -> bool:
@@ -156,3 +159,8 @@ def _are(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term])
 
 def _names(triple: Triple) -> tuple[str, str]:
     return v.entity_name(triple[0]), v.entity_name(triple[2])
+
+
+def _stays(was: Entity | None, now: Entity) -> bool:
+    """Whether nothing that relations depend on is otherwise: a reference changed, or a property."""
+    return was is not None and Placed.of(was) == Placed.of(now)

@@ -30,7 +30,7 @@ DEEPEST_M = 0.005
 """What is further inside a flat top than this may be nearer to one of its sides."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Convex:
     """A convex part in the map [m], and the box along the axes around it."""
 
@@ -64,6 +64,15 @@ class Convex:
         if len(upright) != 1 or self.points or any(abs(v[2]) > _LEVEL for v in self.round):
             return False
         return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
+
+    @lazily
+    def is_square(self) -> bool:
+        """Whether it is a box along the axes."""
+        return (
+            self.has_flat_top
+            and not self.round
+            and sum(abs(x) > _LEVEL for v in self.straight for x in v) == 3
+        )
 
     @lazily
     def shadow(self) -> tuple[Point, ...]:
@@ -102,6 +111,52 @@ class Convex:
             px, py, _ = max(self.points, key=lambda point: nx * point[0] + ny * point[1])
             x, y = x + px, y + py
         return x, y
+
+
+@dataclass(eq=False)
+class _Moved(Convex):
+    """Like another one, elsewhere."""
+
+    like: Convex
+    x: float
+    y: float
+
+    @lazily
+    def lowest(self) -> Point:
+        x, y = self.like.lowest
+        return self.x + x, self.y + y
+
+    @property
+    def has_flat_top(self) -> bool:
+        return self.like.has_flat_top
+
+    @property
+    def is_square(self) -> bool:
+        return self.like.is_square
+
+    @lazily
+    def shadow(self) -> tuple[Point, ...]:
+        own_x, own_y = self.x, self.y
+        return tuple([(own_x + x, own_y + y) for x, y in self.like.shadow])
+
+
+def moved(part: Convex, by: Vector) -> Convex:
+    """The part elsewhere."""
+    x, y, z = by
+    cx, cy, cz = part.centre
+    x0, y0, z0 = part.low
+    x1, y1, z1 = part.high
+    return _Moved(
+        (x + cx, y + cy, z + cz),
+        part.straight,
+        part.round,
+        part.points,
+        (x + x0, y + y0, z + z0),
+        (x + x1, y + y1, z + z1),
+        part,
+        x,
+        y,
+    )
 
 
 _LEVEL = 1e-6
@@ -145,11 +200,12 @@ def convex(
 
 def over_flat_top(upper: Convex, lower: Convex) -> bool:
     """Whether the lowest point of one is over the flat, level top of the other: then they meet upright."""
-    return (
-        upper.low[2] >= lower.high[2] - DEEPEST_M
-        and lower.has_flat_top
-        and contains(lower.shadow, upper.lowest)
-    )
+    if upper.low[2] < lower.high[2] - DEEPEST_M or not lower.has_flat_top:
+        return False
+    if not lower.is_square:
+        return contains(lower.shadow, upper.lowest)
+    x, y = upper.lowest
+    return lower.low[0] <= x <= lower.high[0] and lower.low[1] <= y <= lower.high[1]
 
 
 def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
@@ -157,6 +213,8 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
 
     Of what is further apart than `most` only that is known.
     """
+    if one.is_square and other.is_square:
+        return _between_boxes(one, other)
     offset = np.subtract(one.centre, other.centre)
     straight = np.array([*one.straight, *other.straight]).reshape(-1, 3).T
     rounds = [np.array(r).T for r in (one.round, other.round) if r]
@@ -187,6 +245,26 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
         if distances[best] > distance:
             normal, distance = tried[best], float(distances[best])
     return Contact(distance, (float(normal[0]), float(normal[1]), float(normal[2])))
+
+
+def _between_boxes(one: Convex, other: Convex) -> Contact:
+    """The same of two boxes along the axes: from corner to corner, or along the axis that separates best."""
+    apart = [
+        max(low - its_high, its_low - high)
+        for low, high, its_low, its_high in zip(one.low, one.high, other.low, other.high, strict=True)
+    ]
+    least = max(apart)
+    if least > 0.0:
+        reach = [max(along, 0.0) for along in apart]
+        distance = length = math.hypot(*reach)
+    else:
+        reach = [float(axis == apart.index(least)) for axis in range(3)]
+        distance, length = least, 1.0
+    x, y, z = (
+        math.copysign(along / length, here - there)
+        for along, here, there in zip(reach, one.centre, other.centre, strict=True)
+    )
+    return Contact(distance, (x, y, z))
 
 
 def _exact_normals(one: Convex, other: Convex) -> Floats:

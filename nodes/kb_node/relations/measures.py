@@ -10,8 +10,9 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from nodes.kb_node.relations.convex import contact, over_flat_top
+from nodes.kb_node.relations.forms import LOWEST_M, Bounds
 from nodes.kb_node.relations.polygons import area, clipped, contains, covers, distance, hull
-from nodes.kb_node.relations.solids import LOWEST_M, Bounds, Solid
+from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.thresholds import Thresholds
 from ontology.model_shapes import Interior
 
@@ -43,10 +44,8 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     None where they do not, or where the one's base is nowhere over the other. It does not hold of what only
     leans there, along a steeper normal.
     """
-    if upper is lower or not overlap(upper.bounds, lower.bounds):
-        return None
     reach = limits.gap_m + _ROUNDING
-    if upper.bottom - lower.top > reach:
+    if upper is lower or upper.bottom - lower.top > reach or not overlap(upper.bounds, lower.bounds):
         return None
     # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
     most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
@@ -64,7 +63,10 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
                 continue
             if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
                 pairs.append((least, part, other))
-    pairs.sort(key=_least)
+    if not pairs:
+        return None
+    if len(pairs) > 1:
+        pairs.sort(key=_least)
     best: Measure | None = None
     leaning: Measure | None = None
     for least, part, other in pairs:
@@ -87,7 +89,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     if not (is_flat and upper.is_upright):
         return best
     share = _covered(upper, lower, best.height_m)
-    return best._replace(share=share) if share > 0.0 else None
+    return Measure(True, best.gap_m, share, best.height_m, most) if share > 0.0 else None
 
 
 def _least(pair: tuple[float, object, object]) -> float:
@@ -96,8 +98,12 @@ def _least(pair: tuple[float, object, object]) -> float:
 
 def _covered(upper: Solid, lower: Solid, height: float) -> float:
     """The share of a base that is over flat tops at a height."""
+    bearing = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    for part in bearing:
+        if part.is_square and _is_amid(upper.bounds, (*part.low[:2], *part.high[:2])):
+            return 1.0
     base = upper.base
-    tops = [p.shadow for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    tops = [part.shadow for part in bearing]
     for top in tops:
         if covers(top, base):
             return 1.0
@@ -194,7 +200,9 @@ def within(solid: Solid, place: Solid, limits: Thresholds) -> Measure | None:
         share = float(contains(place.outline, solid.position[:2]))
     elif not overlap(solid.bounds, place.bounds):
         share = 0.0
-    elif covers(place.outline, solid.outline):
+    elif (place.form.is_square and _is_amid(solid.bounds, place.bounds)) or covers(
+        place.outline, solid.outline
+    ):
         share = 1.0
     else:
         share = area(clipped(solid.outline, place.outline)) / max(area(solid.outline), 1e-9)
@@ -232,6 +240,11 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
         return None
     height = min(ceilings)
     return Measure(share >= limits.beneath_share, height - lower.top, share, height, limits.beneath_share)
+
+
+def _is_amid(one: Bounds, other: Bounds) -> bool:
+    """Whether one rectangle along the axes is within another."""
+    return one[0] >= other[0] and one[1] >= other[1] and one[2] <= other[2] and one[3] <= other[3]
 
 
 def overlap(one: Bounds, other: Bounds, margin_m: float = 0.0) -> bool:

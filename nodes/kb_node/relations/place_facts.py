@@ -11,6 +11,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
+from nodes.kb_node.relations import crowds
 from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.relations.rules import RULES, About, Rule
 from nodes.kb_node.relations.solids import Solid
@@ -41,6 +42,8 @@ class Facts:
         self.space = Space(limits=limits)
         self._kept = [_Kept(rule) for rule in rules]
         self._in_turn: Iterator[Solid] = iter(())
+        self.shifted: frozenset[str] = frozenset()
+        """Who came to count in a crowd by the last update, or does not any more, because of others."""
 
     def __iter__(self) -> Iterator[Fact]:
         """All that hold."""
@@ -81,6 +84,7 @@ class Facts:
             for entity in some:
                 self.space.put(entity)
             yield
+        self.space.shifted()
         for kept in self._kept:
             for names in parts(tuple(self.space.solids), _STEP, _nothing):
                 kept.work_out(self.space, names, set(), set())
@@ -97,6 +101,11 @@ class Facts:
         if forgot < count:
             self._in_turn = iter(tuple(self.space.solids.values()))
 
+    def _counted(self, name: str) -> Solid | None:
+        """One that others look at."""
+        solid = self.space.solids.get(name)
+        return solid if solid is not None and self.space.counts(solid) else None
+
     def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
         space = self.space
@@ -105,17 +114,21 @@ class Facts:
         fresh: list[Solid] = []
         for name in removed:
             moved[name] = None
-            left += filter(None, (space.solids.get(name),))
+            left += filter(None, (self._counted(name),))
             space.take(name)
         for entity in changed:
             moved[entity.name] = None
-            left += filter(None, (space.solids.get(entity.name),))
+            left += filter(None, (self._counted(entity.name),))
             fresh += filter(None, (space.put(entity),))
+        shifted = space.shifted()
+        fresh = [*filter(space.counts, fresh), *shifted]
+        moved.update((solid.name, None) for solid in shifted)
         gone: set[Fact] = set()
         come: set[Fact] = set()
         for kept in self._kept:
             kept.update(space, moved, left, fresh, gone, come)
         self._forget(8 * len(moved))
+        self.shifted = frozenset(solid.name for solid in shifted)
         return Changed(gone, come)
 
 
@@ -153,7 +166,11 @@ class _Kept:
             concerned.update(dict.fromkeys(self.about.get(name, ())))
             concerned[name] = None
         if not concerned.keys() >= space.solids.keys():
-            for solid in (*fresh, *left) if self.rule.when_gone else fresh:
+            others: Sequence[Solid] = (*fresh, *left) if self.rule.when_gone else tuple(fresh)
+            if len(others) > crowds.MOST:
+                beside, others = space.by_crowds(others, self.rule.margin_m(space.limits))
+                concerned.update((solid.name, None) for solid in beside)
+            for solid in others:
                 self._add_whom_it_concerns(space, solid, concerned)
         self.work_out(space, concerned, gone, come)
 

@@ -62,7 +62,9 @@ def _attachments(space: Space, solid: Solid) -> Iterator[About]:
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
     """Whether the other may hang on the solid, or not do so any more because that bears it."""
-    return solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m
+    if solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m:
+        return True
+    return _may_bear(space, solid, other)
 
 
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:

@@ -7,10 +7,11 @@ from typing import Final
 
 from nodes.kb_node.entities.alignments import shipped
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.phrases import SPOKEN, metres, why
 from nodes.kb_node.relations.place_facts import Fact
+from nodes.kb_node.relations.polygons import distance
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.telling import SPOKEN, metres, why
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 from schemas.relations import Relation, RelationName
@@ -52,7 +53,7 @@ def denial(space: Space, said: Fact) -> Relation | None:
     """Why a fact does not hold as things stand; None where geometry agrees, or cannot tell.
 
     It cannot where a position or a size is missing, or the whole map is flat. It does not deny that what
-    hangs is on a wall, nor what is a matter of a few centimetres.
+    hangs is on a wall, nor what is a matter of a few centimetres, nor what is on what in a crowd.
     """
     name, relation, other_name = said
     solid, other = space.solids.get(name), space.solids.get(other_name)
@@ -83,6 +84,8 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         return why(relation, solid, other, made) if apart < limits.touch_m else _stands_off(solid, apart)
     if other.is_place or solid.is_place or not solid.is_measured or space.is_flat:
         return None
+    if space.is_crowded(solid) and distance(solid.outline, other.outline) <= limits.gap_m:
+        return None  # it may be borne by what is not looked at
     if other in _bearers(space, solid):
         return None
     apart = measures.gap(solid, other)
@@ -96,7 +99,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     if not other.supports or not (is_borne or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may hang or lean there
     made = measures.over(solid, other, limits)
-    return "it is over no surface of it" if made is None else why(relation, solid, other, made)
+    return f"it is over no surface of {other.name}" if made is None else why(relation, solid, other, made)
 
 
 def _bearers(space: Space, solid: Solid) -> set[Solid]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence, Set
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.place_facts import Fact
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from schemas import errors, wording
@@ -24,14 +25,19 @@ class Meant(NamedTuple):
 
 
 def selected(
-    space: Space, entities: Sequence[Entity], where: Where, everyone: Iterable[Entity]
+    space: Space,
+    entities: Sequence[Entity],
+    where: Where,
+    everyone: Iterable[Entity],
+    left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
     """Those of `entities` that are where it is asked; the nearest first, if that is asked.
 
-    `everyone` is who may be meant by a word. Raises UnknownName for a word that means nobody, BadRequest.
+    `everyone` is who may be meant by a word; what is `left_out` does not count.
+    Raises UnknownName for a word that means nobody, BadRequest.
     """
     require_whole(where)
-    return chosen(space, entities, where, resolved(where, tuple(everyone)))
+    return chosen(space, entities, where, resolved(where, tuple(everyone)), left_out)
 
 
 def require_whole(where: Where) -> None:
@@ -42,15 +48,21 @@ def require_whole(where: Where) -> None:
         raise errors.BadRequest("--nearest N and --to NAME go together: the N nearest to NAME")
 
 
-def chosen(space: Space, entities: Sequence[Entity], where: Where, those: Meant) -> list[Entity]:
-    """Those of `entities` that are where it is asked."""
+def chosen(
+    space: Space,
+    entities: Sequence[Entity],
+    where: Where,
+    those: Meant,
+    left_out: Set[Fact] = frozenset(),
+) -> list[Entity]:
+    """Those of `entities` that are where it is asked; what is `left_out` does not count."""
     found = [entity for entity in entities if entity.name in space.solids]
     if those.on is not None:
         carriers = those.on
-        found = [e for e in found if _is_on(space, space.solids[e.name], carriers)]
+        found = [e for e in found if _is_on(space, space.solids[e.name], carriers, left_out)]
     if those.in_ is not None:
         holders = those.in_
-        found = [e for e in found if _is_in(space, space.solids[e.name], holders)]
+        found = [e for e in found if _is_in(space, space.solids[e.name], holders, left_out)]
     if those.near is not None:
         others = [space.solids[name] for name in those.near if name in space.solids]
         is_near = _within(where.within) if where.within is not None else _is_near(space)
@@ -90,34 +102,36 @@ def only_meant(everyone: Sequence[Entity], word: str) -> str:
     return names[0]
 
 
-def _is_on(space: Space, solid: Solid, carriers: Set[str]) -> bool:
-    """On one of them, or on what is on one of them."""
+def _is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:
+    """On one of them, or on or inside what is on one of them, and so on: SPARQL's (isOn|isInside)*/isOn."""
     seen, waiting = {solid}, [solid]
     while waiting:
         upper = waiting.pop()
         container, supports, _ = space.whereabouts(upper)
-        bearers = [other for other, _ in supports]
-        if container is not None and upper is not solid:
-            bearers.append(container[0])
-        if any(bearer.name in carriers for bearer in bearers):
+        if left_out:
+            supports = tuple(s for s in supports if (upper.name, "isOn", s[0].name) not in left_out)
+            if container is not None and (upper.name, "isInside", container[0].name) in left_out:
+                container = None
+        if any(bearer.name in carriers for bearer, _ in supports):
             return True
-        if container is not None:
-            bearers.append(container[0])
-        waiting += [bearer for bearer in bearers if bearer not in seen]
-        seen.update(bearers)
+        below = [bearer for bearer, _ in (*filter(None, (container,)), *supports) if bearer not in seen]
+        waiting += below
+        seen.update(below)
     return False
 
 
-def _is_in(space: Space, solid: Solid, holders: Set[str]) -> bool:
+def _is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) -> bool:
     """In one of these places, or inside one of these containers, or inside what is inside one."""
     for name in holders:
         other = space.solids.get(name)
         if other is not None and other.is_place and other is not solid:
             made = measures.within(solid, other, space.limits)
-            if made is not None and made.holds:
+            if made is not None and made.holds and (solid.name, "isLocatedIn", name) not in left_out:
                 return True
     seen = {solid.name}
     while (container := space.whereabouts(solid).container) is not None and container[0].name not in seen:
+        if (solid.name, "isInside", container[0].name) in left_out:
+            return False
         solid = container[0]
         if solid.name in holders:
             return True

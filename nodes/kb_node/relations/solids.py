@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from typing import Final
 
-from nodes.kb_node.relations.convex import Convex, convex
-from nodes.kb_node.relations.fitting import fitted
+from nodes.kb_node.relations.convex import Convex, moved
+from nodes.kb_node.relations.forms import Bounds, Form, Matrix, form_of
 from nodes.kb_node.relations.lazily import lazily
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.polygons import Point, area, hull
-from ontology.model_shapes import Interior, ModelShape, own_size_m
+from nodes.kb_node.relations.polygons import Point
+from ontology.model_shapes import Interior, own_size_m
 from schemas.entities import Entity, Size, Vector
 
-UPRIGHT = math.cos(math.radians(15.0))
-"""A thing that leans more has no level surfaces."""
 SAMPLES = 5
 """Points along each axis that stand for a volume."""
-LEVEL = math.cos(math.radians(0.2))
-LOWEST_M = 0.01
-"""Parts that end this near to the lowest point are what a thing stands on."""
-_BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
-"""Of what nobody measured."""
-
-Matrix = tuple[Vector, Vector, Vector]
-Bounds = tuple[float, float, float, float]
-"""Least x and y, greatest x and y [m]."""
+_WORKED_OUT = ("outline", "base", "centre", "supports", "parts", "samples")
 
 
 @dataclass(frozen=True)
@@ -39,58 +28,60 @@ class Support:
     fill: float
 
 
-_WORKED_OUT = ("corners", "outline", "base", "centre", "supports", "parts", "samples", "footprint")
-
-
-@dataclass(frozen=True, eq=False)
 class Solid:
-    """A thing or place in the map: position [m] of its bottom centre, rotation (map from body), extent [m].
+    """A thing or place in the map: position [m] of its bottom centre, and its form as it is turned there.
 
     `is_measured`: somebody gave it a size, or its model has one. What is not is a point, and claims nothing
     but where its position is.
     """
 
-    name: str
-    position: Vector
-    rotation: Matrix
-    size: Size
-    shape: ModelShape
-    """As it is at this size, in its own frame."""
-    is_place: bool
-    is_measured: bool
+    def __init__(self, name: str, position: Vector, form: Form, is_place: bool, is_measured: bool) -> None:
+        self.name: Final = name
+        self.position: Final = position
+        self.form: Final = form
+        self.is_place: Final = is_place
+        self.is_measured: Final = is_measured
+        form.users += 1
+        self.is_level: Final = form.is_level
+        """Whether it leans by less than a fifth of a degree."""
+        x, y, z = position
+        low_x, low_y, high_x, high_y = form.bounds
+        self.bounds: Final[Bounds] = (x + low_x, y + low_y, x + high_x, y + high_y)
+        """Least x and y, greatest x and y [m]."""
+        self.bottom: Final = z + (form.bottom if is_measured and not is_place else form.lowest_corner)
+        """Its lowest point [m]."""
+        self.top: Final = z + form.top
+        """Its highest point [m], that of its box."""
+
+    @property
+    def rotation(self) -> Matrix:
+        """Map from body."""
+        return self.form.rotation
+
+    @property
+    def size(self) -> Size:
+        """Along its own axes [m]."""
+        return self.form.size
 
     @property
     def is_upright(self) -> bool:
         """Whether its z axis is up, within 15 degrees."""
-        return self.rotation[2][2] >= UPRIGHT
+        return self.form.is_upright
 
     @property
-    def is_level(self) -> bool:
-        """Whether it leans by less than a fifth of a degree."""
-        return self.rotation[2][2] >= LEVEL
+    def volume(self) -> float:
+        """Of its box [m^3]."""
+        return self.form.volume
 
-    @lazily
-    def corners(self) -> tuple[Vector, ...]:
-        """The eight corners, map frame [m]; the four of its base first."""
-        x, y, z = self.size
-        return tuple(
-            self.to_map((sx * x / 2, sy * y / 2, level))
-            for level in (0.0, z)
-            for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        )
+    @property
+    def footprint(self) -> float:
+        """Of its shadow [m^2]."""
+        return self.form.footprint
 
-    @lazily
-    def bottom(self) -> float:
-        """Its lowest point [m]."""
-        if not self.parts:
-            return min(corner[2] for corner in self.corners)
-        return min([part.low[2] for part in self.parts])
-
-    @lazily
-    def top(self) -> float:
-        """Its highest point [m], that of its box."""
-        (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
-        return self.position[2] + max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
+    @property
+    def hollows(self) -> tuple[Interior, ...]:
+        """Its interiors, in its own frame."""
+        return self.form.shape.interiors if self.is_measured else ()
 
     @lazily
     def lowest_top(self) -> float:
@@ -100,40 +91,19 @@ class Solid:
     @lazily
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
-        if not self.is_level:
-            return hull([(x, y) for x, y, _ in self.corners])
-        (a, b, _), (d, e, _), _ = self.rotation
-        x, y, _ = self.size
         px, py, _ = self.position
-        ax, ay, bx, by = a * x / 2, d * x / 2, b * y / 2, e * y / 2
-        return [
-            (px - ax - bx, py - ay - by),
-            (px + ax - bx, py + ay - by),
-            (px + ax + bx, py + ay + by),
-            (px - ax + bx, py - ay + by),
-        ]
+        return [(px + x, py + y) for x, y in self.form.outline]
 
     @lazily
     def base(self) -> Sequence[Point]:
         """What it stands on: the outline of its lowest parts."""
-        parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
-        return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
+        px, py, _ = self.position
+        return [(px + x, py + y) for x, y in self.form.base] if self.parts else []
 
     @lazily
     def centre(self) -> Vector:
         """The middle of its box, map frame [m]."""
         return self.to_map((0.0, 0.0, self.size[2] / 2))
-
-    @lazily
-    def bounds(self) -> Bounds:
-        """Least x and y, greatest x and y [m]."""
-        (a, b, c), (d, e, f), _ = self.rotation
-        x, y, z = self.size
-        px, py, _ = self.position
-        px, py = px + c * z / 2, py + f * z / 2
-        half_x = (abs(a) * x + abs(b) * y + abs(c) * z) / 2
-        half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
-        return px - half_x, py - half_y, px + half_x, py + half_y
 
     @lazily
     def supports(self) -> tuple[Support, ...]:
@@ -154,59 +124,34 @@ class Solid:
                 ),
                 surface.fill,
             )
-            for surface in self.shape.surfaces
+            for surface in self.form.shape.surfaces
         )
-
-    @property
-    def hollows(self) -> tuple[Interior, ...]:
-        """Its interiors, in its own frame."""
-        return self.shape.interiors if self.is_measured else ()
 
     @lazily
     def parts(self) -> tuple[Convex, ...]:
         """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
         if self.is_place or not self.is_measured:
             return ()
-        (a, b, c), (d, e, f), (g, h, i) = self.rotation
-
-        def turned(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
-            return tuple(
-                (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z) for x, y, z in vectors
-            )
-
-        return tuple(
-            convex(self.to_map(part.centre), turned(part.straight), turned(part.round), turned(part.points))
-            for part in self.shape.parts
-        )
+        return tuple([moved(part, self.position) for part in self.form.parts])
 
     def forget(self) -> None:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
         for name in _WORKED_OUT:
             self.__dict__.pop(name, None)
+        if self.form.users == 1:
+            self.form.forget()
 
     def to_map(self, point: Vector) -> Vector:
         """A point of its own frame in the map's."""
-        x, y, z = point
-        (a, b, c), (d, e, f), (g, h, i) = self.rotation
         px, py, pz = self.position
-        return (px + a * x + b * y + c * z, py + d * x + e * y + f * z, pz + g * x + h * y + i * z)
+        x, y, z = self.form.turned(point)
+        return px + x, py + y, pz + z
 
     def to_own(self, point: Vector) -> Vector:
         """A point of the map in its own frame."""
         x, y, z = (p - o for p, o in zip(point, self.position, strict=True))
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
-
-    @lazily
-    def volume(self) -> float:
-        """Of its box [m^3]."""
-        x, y, z = self.size
-        return x * y * z
-
-    @lazily
-    def footprint(self) -> float:
-        """Of its shadow [m^2]."""
-        return area(self.outline)
 
     @lazily
     def samples(self) -> list[Vector]:
@@ -220,25 +165,11 @@ class Solid:
 
 def solid_of(entity: Entity | Placed) -> Solid | None:
     """The solid of an entity; None without a position."""
-    if entity.pose is None:
+    pose = entity.pose
+    if pose is None:
         return None
-    size = entity.size_m or (None if entity.place else own_size_m(entity.model) if entity.model else None)
-    return Solid(
-        name=entity.name,
-        position=entity.pose.position_m,
-        rotation=_rotation(entity.pose.orientation_wxyz),
-        size=size or (0.02, 0.02, 0.02),
-        shape=_BOX if size is None or entity.place else fitted(entity.model, size),
-        is_place=entity.place,
-        is_measured=size is not None,
-    )
-
-
-@lru_cache(maxsize=4096)
-def _rotation(wxyz: tuple[float, float, float, float]) -> Matrix:
-    w, x, y, z = wxyz
-    return (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
+    is_place, model = entity.place, entity.model
+    size = entity.size_m or (None if is_place else own_size_m(model) if model else None)
+    known_as = None if size is None or is_place else model
+    form = form_of(known_as, size or (0.02, 0.02, 0.02), pose.orientation_wxyz)
+    return Solid(entity.name, pose.position_m, form, is_place, size is not None)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
 from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.forms import Bounds
 from nodes.kb_node.relations.grid import Grid
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.solids import Bounds, Solid, solid_of
+from nodes.kb_node.relations.solids import Solid, solid_of
 from nodes.kb_node.relations.thresholds import Thresholds
 from schemas.entities import Entity
 
@@ -80,6 +81,16 @@ class Space:
             for solid in before:
                 self._add(solid)
             self._raised |= raised
+            self.shifted()
+
+    def shifted(self) -> list[Solid]:
+        """Who came to count, or does not count any more, since this was asked last."""
+        grid = self._grid
+        if not grid.shifted:
+            return []
+        found = list(grid.shifted)
+        grid.shifted.clear()
+        return found
 
     def _add(self, solid: Solid) -> None:
         self.solids[solid.name] = solid
@@ -88,6 +99,26 @@ class Space:
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
         return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
+
+    def counted_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+        """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
+        return [other for other in self._grid.counted_around(solid.bounds, margin_m) if other is not solid]
+
+    def counts(self, solid: Solid) -> bool:
+        """Whether others look at it."""
+        return self._grid.counts(solid)
+
+    def is_crowded(self, solid: Solid) -> bool:
+        """Whether there is more around it than is looked at."""
+        return self._grid.is_crowded(solid)
+
+    def by_crowds(self, solids: Iterable[Solid], margin_m: float) -> tuple[dict[Solid, None], list[Solid]]:
+        """Of some: who may be beside those that are very many in one spot, and the others of them."""
+        return self._grid.by_crowds(solids, margin_m)
+
+    def crowds(self, names: Collection[str] | None = None) -> list[str]:
+        """Where not all count, a sentence each, the most crowded first; with `names`, where one is."""
+        return self._grid.told_crowds(names)
 
     def within(self, bounds: Bounds) -> list[Solid]:
         """Whose bounds meet these."""
@@ -116,7 +147,7 @@ class Space:
         place: Found | None = None
         below: list[Found] = []
         least = solid.bottom - limits.gap_m - 1e-6
-        for other in self.around(solid):
+        for other in self.counted_around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):

@@ -42,4 +42,5 @@ class Surroundings:
             else:
                 self._space.put(entity)
         self._touched.clear()
+        self._space.shifted()
         return self._space

@@ -12,6 +12,8 @@ from nodes.kb_node.relations import measures
 from nodes.kb_node.relations.arrangement import attached, between
 from nodes.kb_node.relations.beside import beside, is_apart
 from nodes.kb_node.relations.measures import Measure
+from nodes.kb_node.relations.phrases import SIDES, metres, spoken, why
+from nodes.kb_node.relations.reasons import why_not
 from nodes.kb_node.relations.solids import Solid
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.viewing import View, own_sides, seen, sides
@@ -89,48 +91,83 @@ def whereabouts(space: Space, name: str) -> Iterator[Relation]:
         return
     container, supports, place = space.whereabouts(solid)
     if container is not None:
-        yield _told("isInside", solid, *container)
+        yield _told(space, "isInside", solid, *container)
     for support in supports:
-        yield _told("isOn", solid, *support)
+        yield _told(space, "isOn", solid, *support)
     if place is not None:
-        yield _told("isLocatedIn", solid, *place)
+        yield _told(space, "isLocatedIn", solid, *place)
 
 
 def relations_between(space: Space, name: str, other_name: str) -> Iterator[Relation]:
     """All that can be measured of a pair, also what does not hold."""
     solid, other = _solid(space, name), _solid(space, other_name)
+    if solid is other:
+        raise errors.BadRequest(f"{name} is in no relation to itself; name two different things")
     wanted: tuple[RelationName, ...] = ("isLocatedIn",) if other.is_place else ("isOn", "isInside")
-    for relation in wanted:
-        measure = measured(space, relation, solid, other)
-        if measure is not None:
-            told = _told(relation, solid, other, measure)
-            if relation == "isOn" and not measure.holds:
-                told = structs.replace(told, text=told.text + _rather(space, solid, other))
-            yield told
-        elif relation == "isOn":
-            text = f"{name} is not on {other_name}: it is over no surface of that"
-            yield Relation(
-                relation="isOn", subject=name, object=other_name, holds=False, share=0.0, text=text
-            )
-    yield from _beside(space, solid, other)
+    found = [
+        _told(space, relation, solid, other, measure)
+        for relation in wanted
+        if (measure := measured(space, relation, solid, other)) is not None
+    ]
+    if not other.is_place and not any(relation.relation == "isOn" for relation in found):
+        found.insert(0, _denied(space, "isOn", solid, other))
+    found += _beside(space, solid, other)
+    if not other.is_place and not any(relation.relation == "touches" for relation in found):
+        found += filter(None, (_touches_by_the_way(space, solid, other),))
+    yield from found
     if not (solid.is_place or other.is_place):
         yield from (_between(third, solid, other) for third in between(space, solid, other))
 
 
-def _rather(space: Space, solid: Solid, other: Solid) -> str:
-    """What a thing is inside or on, as a clause that says why it is not on another."""
-    container, supports, _ = space.whereabouts(solid)
-    if container is not None:
-        return f"; it is inside {container[0].name}"
-    names = [bearer.name for bearer, _ in supports if bearer is not other]
-    return f"; it is on {' and '.join(names)}" if names else ""
+def _touches_by_the_way(space: Space, solid: Solid, other: Solid) -> Relation | None:
+    """What is on a thing or attached to it touches it, within what a pose is worth; else None."""
+    for one, two in ((solid, other), (other, solid)):
+        borne: tuple[tuple[RelationName, Measure | None], ...] = (
+            ("isOn", measured(space, "isOn", one, two)),
+            ("isAttachedTo", attached(space, one, two)),
+        )
+        for relation, made in borne:
+            if made is not None and made.holds:
+                told = _told(space, relation, one, two, made)
+                text = f"{solid.name} touches {other.name}, because {told.text}"
+                return structs.replace(
+                    told, relation="touches", subject=solid.name, object=other.name, share=1.0, text=text
+                )
+    return None
 
 
-def explained(space: Space, name: str, relation: str, other: str) -> Relation | None:
-    """Whether a relation holds of two, and why or why not; None for what geometry does not tell."""
-    if name not in space.solids or other not in space.solids:
+def _denied(space: Space, relation: RelationName, solid: Solid, other: Solid) -> Relation:
+    return Relation(
+        relation=relation,
+        subject=solid.name,
+        object=other.name,
+        holds=False,
+        gap_m=round(measures.gap(solid, other), 4),
+        share=0.0,
+        text=f"{solid.name} {spoken(relation, False)} {other.name}: {why_not(space, relation, solid, other)}",
+    )
+
+
+def explained(space: Space, name: str, relation: RelationName, other_name: str) -> Relation | None:
+    """Whether a relation holds of two, and why or why not, as measured; None where one has no position.
+
+    What depends on who looks is seen from the other one, by its own front.
+    """
+    solid, other = space.solids.get(name), space.solids.get(other_name)
+    if solid is None or other is None:
         return None
-    return next((r for r in relations_between(space, name, other) if r.relation == relation), None)
+    found: Iterable[Relation] = ()
+    if solid is not other:
+        depends_on_who_looks = relation in (*SIDES, "isVisibleFrom")
+        found = (
+            as_seen(space, name, View.of(other), other)
+            if depends_on_who_looks
+            else relations_between(space, name, other_name)
+        )
+    for told in found:
+        if told.relation == relation and told.object == other_name:
+            return told
+    return _denied(space, relation, solid, other)
 
 
 def measured(space: Space, relation: RelationName, solid: Solid, other: Solid) -> Measure | None:
@@ -168,7 +205,7 @@ def as_seen(space: Space, name: str, view: View, viewer: Solid | None) -> Iterat
             subject=name,
             object=other.name,
             gap_m=round(by_m, 4),
-            text=f"{name} {SPOKEN[relation]} {other.name}, by {metres(by_m)} from centre to centre",
+            text=f"{name} {spoken(relation)} {other.name}, by {metres(by_m)} from centre to centre",
         )
     share, blocker = seen(space, solid, view, viewer)
     reason = f"{share:.0%} of the lines of sight reach it" + (f"; {blocker} is in the way" if blocker else "")
@@ -184,34 +221,15 @@ def as_seen(space: Space, name: str, view: View, viewer: Solid | None) -> Iterat
     )
 
 
-SPOKEN: dict[RelationName, str] = {
-    "isOn": "is on",
-    "isInside": "is inside",
-    "isLocatedIn": "is in",
-    "isAttachedTo": "is attached to",
-    "touches": "touches",
-    "isUnder": "is under",
-    "isAbove": "is above",
-    "isNear": "is near",
-    "isNextTo": "is next to",
-    "isLeftOf": "is left of",
-    "isRightOf": "is right of",
-    "isInFrontOf": "is in front of",
-    "isBehind": "is behind",
-    "isBetween": "is between",
-    "isVisibleFrom": "is visible from",
-}
-
-
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     if is_apart(space, solid, other) and (made := attached(space, solid, other)) is not None:
-        yield _told("isAttachedTo", solid, other, made)
+        yield _told(space, "isAttachedTo", solid, other, made)
     for relation, measure in beside(space, solid, other):
-        yield _told(relation, solid, other, measure)
+        yield _told(space, relation, solid, other, measure)
 
 
-def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:
-    says = SPOKEN[relation] if measure.holds else SPOKEN[relation].replace("is ", "is not ", 1)
+def _told(space: Space, relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:
+    reason = why(relation, solid, other, measure) if measure.holds else why_not(space, relation, solid, other)
     return Relation(
         relation=relation,
         subject=solid.name,
@@ -219,49 +237,8 @@ def _told(relation: RelationName, solid: Solid, other: Solid, measure: Measure) 
         holds=measure.holds,
         gap_m=round(measure.gap_m, 4),
         share=round(measure.share, 4),
-        text=f"{solid.name} {says} {other.name}: {why(relation, solid, other, measure)}",
+        text=f"{solid.name} {spoken(relation, measure.holds)} {other.name}: {reason}",
     )
-
-
-def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
-    """The measurement behind a relation, whether it holds or not, as a clause."""
-    match relation:
-        case "isOn":
-            where = "above" if made.gap_m >= 0.0 else "below"
-            return (
-                f"its bottom is {metres(abs(made.gap_m))} {where} a surface of {other.name},"
-                f" at {metres(made.height_m)},"
-                f" and {made.share:.0%} of its base is over it"
-            )
-        case "isInside":
-            return f"{made.share:.0%} of its volume is within a hollow of {other.name}"
-        case "isLocatedIn":
-            part = f"{made.share:.0%} of its footprint" if solid.is_measured else "its position"
-            inside = "is" if made.share > 0.0 else "is not"
-            return f"{part} {inside} within {other.name}"
-        case "isUnder":
-            return f"its top is {metres(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
-        case "isAbove":
-            return f"it is {metres(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
-        case "isAttachedTo":
-            return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
-        case "touches":
-            return f"they are {metres(max(0.0, made.gap_m))} apart"
-        case "isNextTo" if made.share == 0.0:
-            return f"they are {metres(made.gap_m)} apart, but stand on different things"
-        case "isNextTo":
-            nothing = "nothing is" if made.holds else "something is"
-            return f"they are {metres(made.gap_m)} apart, stand on the same, and {nothing} between them"
-    return (
-        f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
-    )
-
-
-def metres(value: float) -> str:
-    """A length as a person reads it."""
-    if abs(value) < 0.01:
-        return f"{1000.0 * value:.1f} mm"
-    return f"{100.0 * value:.1f} cm" if abs(value) < 1.0 else f"{value:.2f} m"
 
 
 def _solid(space: Space, name: str) -> Solid:

@@ -42,7 +42,7 @@ def test_neighbours():
 def test_of_a_pair_what_does_not_hold_is_told_too():
     other = told("cup1", other="cup2")
     assert not other["isOn", "cup2"].holds
-    assert "it is over no surface of that" in other["isOn", "cup2"].text
+    assert "it is over no surface of cup2" in other["isOn", "cup2"].text
     assert not told("cup1", other="corner1")["isLocatedIn", "corner1"].holds
 
 
@@ -54,7 +54,7 @@ def test_why_milk_is_not_on_the_fridge_whose_board_it_stands_on():
     assert found.keys() == {"isOn", "isInside", "touches"}
     assert found["isInside"].holds
     assert not found["isOn"].holds
-    assert found["isOn"].text.endswith("; it is inside fridge1")
+    assert "it is inside fridge1" in found["isOn"].text
 
 
 def test_directions_are_the_viewer_s():

@@ -73,7 +73,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "pose": pose_text(e.pose),
         "size": (_size(e) or "unknown") + own_size,
         **({"where": ", ".join(map(_whereabouts, e.whereabouts))} if e.whereabouts else {}),
-        **({"but": "; ".join(r.text for r in e.denied)} if e.denied else {}),
+        **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),

@@ -94,7 +94,7 @@ def check(client: Client, engine: Any) -> None:
     checked = client.check(engine)
     say(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
     print_lines(f"  note: {relation.text}" for relation in checked.denied)
-    print_lines(f"  note: {text}" for text in checked.withheld)
+    print_lines(f"  note: {text}" for text in (*checked.withheld, *checked.crowds))
     if not checked.consistent:
         sys.exit(errors.Inconsistent.exit_status)
 

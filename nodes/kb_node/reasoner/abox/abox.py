@@ -100,7 +100,7 @@ class ABox:
         if group.is_wide:
             yield from self._among_all(node, group)
             return
-        for member in self.members(node):
+        for member in self.members(node) if self.equals else (node,):
             for edge in store.out.among(member, group.out):
                 yield edge, member, store.object[edge]
             for edge in store.into.among(member, group.into):
@@ -134,6 +134,9 @@ class ABox:
     def find(self, one: int, role: Role, other: int) -> int:
         """An edge that implies a role between two nodes or their equals, or NONE."""
         group, store = self.steps.group(role), self.store
+        if not self.equals and not group.is_wide:
+            edge = store.edge_of(one, group.out, other)
+            return store.edge_of(other, group.into, one) if edge == NONE else edge
         if group.is_wide or len(self.members(one)) * len(self.members(other)) > MANY:
             there = self.related(other, Group(group.into, group.out))
             for (edge, _, end), (back, _, start) in zip(self.related(one, group), there, strict=False):

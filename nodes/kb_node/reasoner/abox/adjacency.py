@@ -6,7 +6,7 @@ So a room with ten thousand parts is asked for its walls without looking at the 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 NONE: Final = -1
@@ -147,10 +147,13 @@ class Adjacency:
             yield edge
             edge = self.after[edge]
 
-    def among(self, node: int, predicates: tuple[int, ...]) -> Iterator[int]:
+    def among(self, node: int, predicates: tuple[int, ...]) -> Iterable[int]:
         """The edges of a node with one of some predicates, predicate by predicate."""
         if not predicates or self.heads[node] == NONE:
-            return
+            return ()
+        return self._among(node, predicates)
+
+    def _among(self, node: int, predicates: tuple[int, ...]) -> Iterator[int]:
         firsts, after = self.firsts(node), self.after
         for predicate in predicates:
             edge = firsts.get(predicate, NONE)

@@ -108,11 +108,12 @@ class Retraction:
     def _whose_classes(self, edge: tuple[int, int, int]) -> Iterator[int]:
         """The ends of an edge that may have classes because of it, beyond those that they were given.
 
-        So a room that loses a cup need not be asked about all else that is in it.
+        So a room that loses a cup need not be asked about all else that is in it. Of ends that were reset
+        nobody knows any more what they had said of each other.
         """
         s, p, o = edge
         subject, object_ = self._store.kind[s], self._store.kind[o]
-        if p <= DIFFERENT:
+        if p <= DIFFERENT or s in self._reset or o in self._reset:
             yield from (s, o)
             return
         step = self._abox.steps.step

@@ -314,12 +314,14 @@ class Store:
         """The first edge of two with one of some predicates, or NONE."""
         if not predicates or self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
             return NONE
-        leaving, entering = self.out.firsts(subject), self.into.firsts(object_)
+        leaving = self.out.firsts(subject)
         for p in predicates:
-            if p in leaving and p in entering:
-                edge = self._edge(subject, object_, leaving[p], entering[p])
-                if edge != NONE:
-                    return edge
+            if p in leaving:
+                entering = self.into.first(object_, p)
+                if entering != NONE:
+                    edge = self._edge(subject, object_, leaving[p], entering)
+                    if edge != NONE:
+                        return edge
         return NONE
 
     def _edge(self, subject: int, object_: int, leaving: int, entering: int) -> int:

@@ -62,6 +62,8 @@ def entails(reasoner: Reasoner, graph: Iterable[Triple], effort: Effort | None =
     try:
         if stated.follows():
             return True
+        if effort is not None and not effort.anew:  # names for all that must exist are too many to try
+            return False
         return stated.prover.with_witnesses(stated.individuals(), stated.follows)
     except Unreadable:
         return False

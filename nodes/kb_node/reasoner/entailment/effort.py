@@ -32,10 +32,15 @@ class Effort:
         """Whether it keeps what it looks at."""
         return self._seen is not None
 
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is up."""
+        return time.monotonic() >= self._until_s
+
     def may_suppose(self) -> bool:
         """Whether one more supposition is allowed."""
         self._left -= 1
-        return self._left >= 0 and time.monotonic() < self._until_s
+        return self._left >= 0 and not self.is_over
 
     def note(self, triples: Iterable[Triple]) -> None:
         """Asserted triples that a proof may rest on."""

@@ -21,7 +21,9 @@ _NEAR = 2
 """Steps from what a question names to the facts that may matter."""
 _FACTS = 2000
 """Facts that are looked at, at most; with fewer a proof may be missed, but none is wrong."""
-PATIENCE_S = 5.0
+_SMALL = 5000
+"""Triples that can be worked out anew in a second, for suppositions of the schema."""
+PATIENCE_S = 2.0
 """How long a proof is looked for, and then again how long it is made smaller."""
 
 
@@ -56,10 +58,11 @@ def why_entailed(
     The proof is by refutation, generic individuals and names for what must exist, so it has no steps; its
     support is minimal unless making it smaller takes too long.
     """
-    if not entails(reasoner, [triple], Effort(patience_s)):
+    anew = len(reasoner) <= _SMALL
+    if not entails(reasoner, [triple], Effort(patience_s, anew=anew)):
         return None
     known = set(reasoner.asserted())
-    effort = Effort(patience_s, traced=True)
+    effort = Effort(patience_s, traced=True, anew=anew)
     entails(reasoner, [triple], effort)
     support = [one for one in effort.seen if one in known]
     if not _suffice(support, triple):

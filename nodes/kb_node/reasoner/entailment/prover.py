@@ -159,7 +159,7 @@ class Prover:
 
     def member(self, x: Term, expression: Expression) -> bool:
         """Whether x is in a class."""
-        if self._depth >= _DEEPEST:
+        if self._depth >= _DEEPEST or self._effort.is_over:
             return False
         self._depth += 1
         try:
@@ -313,11 +313,13 @@ class Prover:
             individuals = list(dict.fromkeys([*self._individuals(), *mentioned]))
             try:
                 for _ in range(2):
+                    if self._effort.is_over:
+                        break
                     new = list(self._must_exist(individuals))
                     stack.enter_context(self._reasoner.supposing(new, anew=self._effort.anew))
                     individuals = [
                         term for term in {s: 0 for t in new for s in (t[0], t[2])} if term[0] != '"'
-                    ]
+                    ][:_INDIVIDUALS]
             except Inconsistent as found:
                 self._effort.note(found.explanation.support)
                 return True
@@ -363,6 +365,8 @@ class Prover:
         wanted = list(self._existential()) if wanted is None else wanted
         reflexive = self._reflexive()
         for x in individuals:
+            if self._effort.is_over:  # fewer suppositions are sound, too
+                return
             for node, expression in wanted:
                 if (node == THING or self.holds((x, TYPE, node))) and not self._is_met(x, expression):
                     alternatives = self.given(x, expression)

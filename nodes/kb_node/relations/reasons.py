@@ -1,0 +1,215 @@
+"""Why a relation does not hold of two things: what was measured, and what it would take."""
+
+from __future__ import annotations
+
+from nodes.kb_node.relations import measures
+from nodes.kb_node.relations.arrangement import attached, between, next_to
+from nodes.kb_node.relations.phrases import SIDES, height_over, metres, spoken, why
+from nodes.kb_node.relations.polygons import distance
+from nodes.kb_node.relations.solids import Solid
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.viewing import own_sides
+from schemas.relations import RelationName
+
+_OF_SIZES = frozenset({"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches"})
+"""The relations of which nothing can be said where a size is not known."""
+
+
+def why_not(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str:
+    """Why a relation that was found not to hold does not, as a clause."""
+    if solid is other:
+        return "nothing is so of itself"
+    if relation == "isLocatedIn":
+        return _why_not_in(space, solid, other)
+    if relation == "isBetween":
+        return "that takes two others; relations of a thing lists what it is between"
+    if relation in SIDES:
+        found = [spoken(side.relation).removeprefix("is ") for side in own_sides(solid, other)]
+        where = f"it is {' and '.join(found)} it" if found else "it is neither beside it nor before it"
+        return f"by the front of {other.name}, {where}"
+    for one in (solid, other):
+        if one.is_place:
+            return f"{one.name} is a place, and that is said of things only"
+    for one in (solid, other):
+        if relation in _OF_SIZES and not one.is_measured:
+            return f"the size of {one.name} is not known"
+    match relation:
+        case "isOn":
+            return _why_not_on(space, solid, other)
+        case "isInside":
+            return _why_not_inside(space, solid, other)
+        case "isAttachedTo":
+            return _why_not_attached(space, solid, other)
+        case "touches":
+            return _why_not_touching(space, solid, other)
+    if relation != "isNextTo" and (rests := _rests(space, solid, other)):
+        return rests
+    match relation:
+        case "isUnder":
+            return _why_not_beneath(space, solid, other)
+        case "isAbove":
+            return _why_not_beneath(space, other, solid)
+        case "isNextTo":
+            return _why_not_next_to(space, solid, other)
+    made = measures.near(solid, other, space.limits)
+    return "they are apart" if made is None else why("isNear", solid, other, made)
+
+
+def _rests(space: Space, solid: Solid, other: Solid) -> str | None:
+    """That one is on or inside the other, as a clause; None where it is not."""
+    for upper, lower, subject, object_ in (
+        (solid, other, "it", other.name),
+        (other, solid, other.name, "it"),
+    ):
+        container, supports, _ = space.whereabouts(upper)
+        if container is not None and container[0] is lower:
+            return f"{subject} is inside {object_}"
+        if any(bearer is lower for bearer, _ in supports):
+            return f"{subject} is on {object_}"
+    return None
+
+
+def stance(space: Space, solid: Solid) -> str:
+    """What a thing is inside or on, as a predicate: "is inside bowl1", "stands on nothing known"."""
+    container, supports, place = space.whereabouts(solid)
+    if container is not None:
+        return f"is inside {container[0].name}"
+    if supports:
+        return f"is on {' and '.join(bearer.name for bearer, _ in supports)}"
+    if place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m:
+        return f"is on the floor of {place[0].name}"
+    return "is on nothing that is known"
+
+
+def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
+    if (by := _by_way_of(space, solid, other)) is not None:
+        return by
+    limits = space.limits
+    if not other.supports:
+        return f"{other.name} has no surface to stand on; it {stance(space, solid)}"
+    made = measures.over(solid, other, limits)
+    if made is None:
+        apart = measures.gap(solid, other)
+        where = f"{metres(apart)} apart" if apart > 0.0 else "one beside or within the other"
+        return f"it is over no surface of {other.name} (they are {where}); it {stance(space, solid)}"
+    where = f"its bottom is {height_over(made.gap_m)} the nearest surface of {other.name}"
+    if abs(made.gap_m) > limits.gap_m:
+        return f"{where}, at {metres(made.height_m)} (on is up to {metres(limits.gap_m)})"
+    if made.share < limits.base_share:
+        return f"{where}, but only {made.share:.0%} of its base is over that; it {stance(space, solid)}"
+    return f"{where}, but it {stance(space, solid)}"
+
+
+def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
+    """That it is borne by the other through what is between them, or is inside it; None where it is not."""
+    container, supports, _ = space.whereabouts(solid)
+    if container is not None and container[0] is other:
+        return f"it is inside {other.name}, and what is inside a thing is not also on it"
+    first = [bearer for bearer, _ in (*filter(None, (container,)), *supports)]
+    seen = {solid, *first}
+    for bearer in first:
+        chain, waiting = [bearer], [bearer]
+        while waiting:
+            upper = waiting.pop()
+            container, supports, _ = space.whereabouts(upper)
+            below = [lower for lower, _ in (*filter(None, (container,)), *supports)]
+            if other in below:
+                chain = [bearer] if upper is bearer else [bearer, upper]
+                return f"it {_clause(space, solid, chain, other)}"
+            waiting += [lower for lower in below if lower not in seen]
+            seen.update(below)
+    return None
+
+
+def _clause(space: Space, solid: Solid, chain: list[Solid], other: Solid) -> str:
+    first, last = chain[0], chain[-1]
+    text = f"is {_how(space, solid, first)} {first.name}, which"
+    if last is not first:
+        text += f" is borne by {last.name}, which"
+    return f"{text} is {_how(space, last, other)} {other.name}"
+
+
+def _how(space: Space, solid: Solid, bearer: Solid) -> str:
+    container = space.whereabouts(solid).container
+    return "inside" if container is not None and container[0] is bearer else "on"
+
+
+def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:
+    if not other.hollows:
+        return f"{other.name} has no hollow that is known"
+    if solid.volume >= other.volume:
+        return f"it is as large as {other.name}, or larger"
+    made = measures.inside(solid, other, space.limits)
+    if made is None or made.share == 0.0:
+        apart = measures.gap(solid, other)
+        return f"none of its volume is within a hollow of {other.name}; they are {metres(apart)} apart"
+    if not made.holds:
+        least = f"inside is from {space.limits.inside_share:.0%} on"
+        return f"{why('isInside', solid, other, made)} ({least})"
+    return f"it {stance(space, solid)}, which is the smaller hollow"
+
+
+def _why_not_in(space: Space, solid: Solid, other: Solid) -> str:
+    if not other.is_place:
+        return f"{other.name} is not a place"
+    if solid.is_place:
+        return "it is a place itself, and places are in one another only where that is asserted"
+    if not other.is_measured:
+        return f"the extent of {other.name} is not known"
+    made = measures.within(solid, other, space.limits)
+    apart = measures.gap(solid, other)
+    if made is None or apart > space.limits.touch_m:
+        return f"it is {metres(apart)} from it"
+    if made.share == 0.0:
+        return f"nothing of its footprint is within {other.name}"
+    if not made.holds:
+        return f"{why('isLocatedIn', solid, other, made)} (in is from {made.limit:.0%} on)"
+    return why("isLocatedIn", solid, other, made)
+
+
+def _why_not_attached(space: Space, solid: Solid, other: Solid) -> str:
+    bears = stance(space, solid)
+    if "nothing" not in bears:
+        return f"it {bears}, so it does not hang"
+    made = attached(space, solid, other)
+    if made is None:
+        return f"it does not hang beside {other.name}; they are {metres(measures.gap(solid, other))} apart"
+    limit = metres(space.limits.attached_m)
+    if made.gap_m > made.limit:
+        return f"it is {metres(made.gap_m)} from the side of {other.name} (attached is up to {limit})"
+    return f"only {made.share:.0%} of its height is against {other.name}"
+
+
+def _why_not_touching(space: Space, solid: Solid, other: Solid) -> str:
+    apart, limit = measures.gap(solid, other), metres(space.limits.contact_m)
+    if apart > space.limits.contact_m:
+        return f"they are {metres(apart)} apart (touching is up to {limit})"
+    return f"no part of one is within {limit} of a part of the other, although their boxes are"
+
+
+def _why_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
+    limits = space.limits
+    made = measures.beneath(lower, upper, limits)
+    if made is not None:
+        return (
+            f"{upper.name} is over only {made.share:.0%} of the smaller footprint of the two"
+            f" (under is from {limits.beneath_share:.0%} on)"
+        )
+    apart = distance(lower.outline, upper.outline)
+    if apart > 0.0:
+        return f"seen from above, they are {metres(apart)} apart"
+    return f"nothing of {upper.name} is above the top of {lower.name}, at {metres(lower.top)}"
+
+
+def _why_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
+    near = measures.near(solid, other, space.limits)
+    if rests := _rests(space, solid, other):
+        return rests
+    if near is None or not near.holds:
+        return "they are apart" if near is None else why("isNear", solid, other, near)
+    made = next_to(space, solid, other)
+    apart = f"they are {metres(near.gap_m)} apart"
+    if made is not None and made.share == 0.0:
+        return f"{apart}, but {solid.name} {stance(space, solid)} and {other.name} {stance(space, other)}"
+    names = [third.name for third in between(space, solid, other)]
+    return f"{apart}, but between them {'is' if len(names) == 1 else 'are'} {' and '.join(names)}"

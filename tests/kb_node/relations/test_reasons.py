@@ -1,0 +1,94 @@
+"""Why a relation does not hold, for each that there is."""
+
+import pytest
+
+from nodes.kb_node.relations.phrases import SPOKEN
+from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.telling import explained, relations
+from schemas import errors
+from schemas.commands import Relations
+from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+
+FRIDGE = thing("fridge1", (2.0, -2.0, 0.0))
+TRAY = thing("tray1", (0.0, 0.0, TOP))
+MAP = [
+    ROOM,
+    CORNER,
+    TABLE,
+    FRIDGE,
+    TRAY,
+    thing("plate1", (-TRAY.size_m[0] / 2 - 0.15, 0.0, TOP)),
+    thing("cup1", (0.0, 0.0, TOP + 0.03)),
+    thing("cup2", (0.2, 0.4, TOP + 0.02)),
+    thing("cup3", (0.3, 0.0, TOP + 0.3)),
+    thing("bowl1", (0.0, -0.4, TOP)),
+    thing("apple1", (0.0, -0.4, TOP + 0.02)),
+    thing("milk1", (2.0, -2.0, 0.867), "carton"),
+    thing("box1", (0.0, 0.0, 0.0)),
+    thing("shelf1", (-2.0, 0.0, 0.0), "bookshelf"),
+    thing("thing1", (1.0, 1.0, 0.0), "unheard of"),
+]
+
+
+def told(name, relation, other):
+    return explained(Space(MAP), name, relation, other)
+
+
+@pytest.mark.parametrize(
+    ("name", "relation", "other", "reason"),
+    [
+        ("apple1", "isOn", "table1", "it is inside bowl1, which is on table1"),
+        ("cup1", "isOn", "table1", "it is on tray1, which is on table1"),
+        ("milk1", "isOn", "fridge1", "it is inside fridge1, and what is inside a thing is not also on it"),
+        ("cup1", "isOn", "cup2", "it is over no surface of cup2"),
+        ("cup3", "isOn", "table1", "cm above the nearest surface of table1"),
+        ("box1", "isOn", "table1", "cm below the nearest surface of table1"),
+        ("cup1", "isOn", "kitchen1", "kitchen1 is a place"),
+        ("thing1", "isOn", "table1", "the size of thing1 is not known"),
+        ("apple1", "isInside", "table1", "table1 has no hollow"),
+        ("cup1", "isInside", "bowl1", "none of its volume is within a hollow of bowl1"),
+        ("cup1", "isLocatedIn", "table1", "table1 is not a place"),
+        ("cup1", "isLocatedIn", "corner1", "m from it"),
+        ("cup1", "isAttachedTo", "table1", "it is on tray1, so it does not hang"),
+        ("cup1", "touches", "cup2", "apart (touching is up to 1.5 mm)"),
+        ("cup1", "isUnder", "table1", "nothing of table1 is above the top of cup1"),
+        ("cup1", "isUnder", "shelf1", "seen from above, they are"),
+        ("table1", "isAbove", "cup1", "nothing of table1 is above the top of cup1"),
+        ("cup2", "isUnder", "table1", "it is on table1"),
+        ("cup1", "isNear", "shelf1", "near is up to"),
+        ("cup1", "isNextTo", "shelf1", "near is up to"),
+        ("plate1", "isNextTo", "cup1", "but plate1 is on table1 and cup1 is on tray1"),
+        ("cup1", "isLeftOf", "shelf1", "by the front of shelf1, it is in front of it"),
+        ("shelf1", "isVisibleFrom", "cup1", "0% of the lines of sight reach it"),
+        ("cup1", "isOn", "cup1", "nothing is so of itself"),
+    ],
+)
+def test_why_not(name, relation, other, reason):
+    found = told(name, relation, other)
+    assert not found.holds
+    assert reason in found.text
+    assert found.text.startswith(f"{name} ")
+
+
+@pytest.mark.parametrize("relation", SPOKEN)
+def test_there_is_a_reason_for_each_relation(relation):
+    for other in ("table1", "kitchen1", "apple1", "thing1", "cup1"):
+        found = told("cup1", relation, other)
+        assert found.relation == relation
+        assert found.text
+
+
+def test_what_is_on_a_thing_touches_it_whoever_is_asked():
+    """Within what a pose is worth: the cup is 2 cm above the table in the map."""
+    assert told("cup2", "touches", "table1").text.startswith(
+        "cup2 touches table1, because cup2 is on table1:"
+    )
+    assert told("table1", "touches", "cup2").holds
+    pair = relations(Space(MAP), Relations(name="table1", other="cup2"))
+    assert "touches" in {relation.relation for relation in pair if relation.holds}
+    assert not told("apple1", "touches", "table1").holds
+
+
+def test_no_pair_of_one():
+    with pytest.raises(errors.BadRequest, match="name two different things"):
+        list(relations(Space(MAP), Relations(name="cup1", other="cup1")))
