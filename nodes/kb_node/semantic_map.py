@@ -430,7 +430,7 @@ class SemanticMap:
                 for other in load:
                     draft.edit(self._entities[other.name], other)
                 if load or transaction.source == "operator":
-                    notes.append(wording.carried(one.name, [other.name for other in load]))
+                    notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from itertools import combinations
+from itertools import combinations, islice
 
 from msgspec import structs
 
 from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.arrangement import attached, between
+from nodes.kb_node.relations.arrangement import attached, attachments, between
 from nodes.kb_node.relations.beside import beside, is_apart
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.phrases import SIDES, metres, spoken, why
@@ -23,6 +23,10 @@ from schemas.relations import Relation, RelationName
 
 _ABOUT_BETWEEN = 8
 """So many neighbours are looked at for what a thing is between."""
+_MOST_BETWEEN = 2
+"""So many pairs, the closest, are told of all that a thing is between."""
+_MOST_SIDES = 4
+"""Of so many neighbours, the nearest, it is told on which side of them a thing is."""
 
 
 def relations(space: Space, query: Relations) -> Iterator[Relation]:
@@ -37,12 +41,16 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
     else:
         yield from relations_of(space, query.name)
     if query.viewer == query.name:
-        raise errors.BadRequest(f"{query.name} cannot be seen from itself; --from takes another entity")
+        raise errors.BadRequest(
+            f"{query.name} cannot be seen from itself; the viewer (--from) must be another entity"
+        )
     viewer = None if query.viewer is None else space.solids[query.viewer]
     if viewer is not None or query.viewpoint is not None:
         view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
-        for relation in as_seen(space, query.name, view, viewer):
-            if query.other in (None, relation.object) or relation.relation == "isVisibleFrom":
+        found = list(as_seen(space, query.name, view, viewer))
+        told = {query.other} if query.other is not None else _nearest(space, query.name, found, query.viewer)
+        for relation in found:
+            if relation.object in told or relation.relation == "isVisibleFrom":
                 yield relation
 
 
@@ -59,9 +67,17 @@ def relations_of(space: Space, name: str) -> Iterator[Relation]:
         if other.name not in told:
             yield from _special(relation for relation in _beside(space, solid, other) if relation.holds)
     near = [other for other in beside if other.name not in told and not other.is_place][:_ABOUT_BETWEEN]
-    for one, other in combinations(near, 2):
-        if solid in between(space, one, other):
-            yield _between(solid, one, other)
+    pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
+    amid = (pair for pair in pairs if solid in between(space, *pair))
+    yield from (_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
+
+
+def _nearest(space: Space, name: str, sides: Iterable[Relation], viewer: str | None) -> set[str]:
+    """The viewer, and those next of which it is told on which side of them a thing is."""
+    others = {side.object for side in sides if side.object in space.solids and side.object != viewer}
+    solid = space.solids[name]
+    near = sorted(others, key=lambda other: (measures.gap(solid, space.solids[other]), other))
+    return {*near[:_MOST_SIDES], *filter(None, (viewer,))}
 
 
 def _special(relations: Iterable[Relation]) -> Iterator[Relation]:
@@ -86,7 +102,7 @@ def _between(solid: Solid, one: Solid, other: Solid) -> Relation:
 
 
 def whereabouts(space: Space, name: str) -> Iterator[Relation]:
-    """What a thing is inside, on and in; nothing for one without a position."""
+    """What a thing is inside, on, attached to and in; nothing for one without a position."""
     if (solid := space.solids.get(name)) is None:
         return
     container, supports, place = space.whereabouts(solid)
@@ -94,6 +110,9 @@ def whereabouts(space: Space, name: str) -> Iterator[Relation]:
         yield _told(space, "isInside", solid, *container)
     for support in supports:
         yield _told(space, "isOn", solid, *support)
+    for other in () if solid.is_place else attachments(space, solid):
+        if (made := attached(space, solid, other)) is not None:
+            yield _told(space, "isAttachedTo", solid, other, made)
     if place is not None:
         yield _told(space, "isLocatedIn", solid, *place)
 
