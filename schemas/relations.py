@@ -21,8 +21,9 @@ class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """`subject` is on, in, near ... `object`, worked out from their poses, sizes and shapes.
 
     `gap_m` is the distance that counts for the relation [m], `share` the part of the base, volume or
-    footprint that it is about (0 to 1), or of the lines of sight; `text` says both in one sentence. `holds`
-    is False only where a pair was asked for, and of what a viewer cannot see.
+    footprint that it is about (0 to 1), or of the lines of sight; of left, right, in front and behind `gap_m`
+    is how far apart the centres are in that direction. `text` says both in one sentence. `holds` is
+    False only where a pair was asked for, and of what a viewer cannot see.
     """
 
     relation: RelationName

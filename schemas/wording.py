@@ -39,8 +39,10 @@ def few(names: Collection[str], most: int = 10) -> str:
     return f"{', '.join(rest)} and {last}" if rest else last
 
 
-def carried(name: str, load: Collection[str]) -> str:
-    """What a thing carried along."""
+def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:
+    """What a thing carried along; `left` is what was to stay."""
+    if not load and left:
+        return f"{name} carried nothing along; {few(left)} was to be left"
     if not load:
         return f"nothing stands on {name} or is inside it"
     return f"{name} carried {few(load)} along"

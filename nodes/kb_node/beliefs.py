@@ -144,13 +144,11 @@ class Beliefs:
     def _aside_about(self, asserted: Iterable[Triple]) -> list[Triple]:
         """What is set aside of those that triples are about, of those that this is about, and so on."""
         waiting = {term for s, _, o in asserted for term in (s, o)}
-        left = sorted(self._reasoner.set_aside())
-        found: list[Triple] = []
+        found: set[Triple] = set()
         while waiting:
-            joined = [t for t in left if t[0] in waiting or t[2] in waiting]
-            left = [t for t in left if t[0] not in waiting and t[2] not in waiting]
+            joined = self._reasoner.set_aside_about(waiting) - found
             waiting = {term for s, _, o in joined for term in (s, o)}
-            found += joined
+            found |= joined
         return sorted(found)
 
     def _is_given_back(self, triple: Triple, asserted: Set[Triple], gone: list[Triple]) -> bool:

@@ -24,6 +24,7 @@ from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
 from nodes.kb_node.sparql.triples.large_map import LargeMap
@@ -103,6 +104,7 @@ class KnowledgeBase:
             NewsStand(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.all_believed,
+            lambda: Surrounded(placed=self.map.placed(), limits=self.map.classes.limits),
         )
         self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)

@@ -19,6 +19,7 @@ from nodes.kb_node.places import Places, at_most
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
@@ -211,6 +212,10 @@ class SemanticMap:
         """What is computed and what is set aside."""
         self.believe_places()
         return self.beliefs.all()
+
+    def placed(self) -> tuple[Placed, ...]:
+        """Where everything is."""
+        return tuple(map(Placed.of, self._entities.values()))
 
     def believed_of(self, commit: Commit) -> Believed:
         """What a commit changed of that; it is told once."""
@@ -425,7 +430,7 @@ class SemanticMap:
                 for other in load:
                     draft.edit(self._entities[other.name], other)
                 if load or transaction.source == "operator":
-                    notes.append(wording.carried(one.name, [other.name for other in load]))
+                    notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
         for new in self.steadily(add):
             draft.add(new)
         spelled_out = structs.replace(
@@ -563,11 +568,12 @@ class SemanticMap:
         self._change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not self._follows:
             return
-        after = {entity.name: entity for entity in commit.changed}
+        after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
+        after.update((entity.name, entity) for entity in commit.changed)
         self.beliefs.follow(
             changed=[entity for entity in before.values() if entity is not None],
             removed=[name for name, entity in before.items() if entity is None],
-            before=lambda name: after.get(name) or self._entities.get(name),
+            before=lambda name: after[name] if name in after else self._entities.get(name),
             retracted=commit.inserted,
             inserted=commit.retracted,
         )

@@ -427,3 +427,16 @@ def random_change(room, dice):
             beside = room.find(dice.choice(["table1", "table2"])).pose.position_m
             at = (beside[0] + dice.uniform(-0.8, 0.8), beside[1], dice.choice([0.0, TOP, TOP + 0.02]))
             return move(room, name, at, carry=dice.random() < 0.4, yaw=dice.choice([None, 1.0]))
+
+
+def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
+    say(room, "cup1", "isOn", "table2")
+    before = room.all_believed(), set(room.inferred())
+    for names in (("cup1",), ("table2",), ("cup1", "table2")):
+        tried = Transaction(id=f"dry {names}", source="operator", remove=names)
+        effects = trials.of(room, lambda wanted=tried: room.commit(wanted))
+        assert "table2 supports cup1" not in effects.trial.lost
+        after = room.all_believed(), set(room.inferred())
+        assert set(after[0].aside) == set(before[0].aside)
+        assert set(after[0].come) == set(before[0].come)
+        assert after[1] == before[1]

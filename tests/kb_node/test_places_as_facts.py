@@ -122,14 +122,27 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
 
 def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     before = state(flat)
-
-    def full(*_, **__):
-        raise OSError("full")
-
-    monkeypatch.setattr(flat._journal, "append", full)
+    monkeypatch.setattr(flat._journal, "append", _full)
     with pytest.raises(OSError, match="full"):
         flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
     assert state(flat) == before
+
+
+def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch):
+    before = state(flat)
+    for name in ("milk1", "counter1", "kitchen1"):
+        removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
+        trials.of(flat, lambda wanted=removal: flat.commit(wanted))
+        assert state(flat) == before
+        with monkeypatch.context() as patched:
+            patched.setattr(flat._journal, "append", _full)
+            with pytest.raises(OSError, match="full"):
+                flat.commit(removal)
+        assert state(flat) == before
+
+
+def _full(*_, **__):
+    raise OSError("full")
 
 
 def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):

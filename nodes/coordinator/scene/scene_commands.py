@@ -64,7 +64,7 @@ class Running:
             self._door.hands.let_go(command, [name for name in along if name not in reply.failed])
             text = _let_go(command, reply.bodies[0])
             if command.carry:
-                text = f"{text}; {wording.carried(command.name, tuple(along))}"
+                text = f"{text}; {wording.carried(command.name, tuple(along), command.leave)}"
             return Moved(name=command.name, text=text)
 
         return then(self._ask(order), moved)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -13,7 +13,10 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.relations import said
+from nodes.kb_node.relations.beside import MIRRORED, Beside
+from nodes.kb_node.relations.derived import Derived
 from nodes.kb_node.relations.place_facts import Fact
+from nodes.kb_node.relations.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -21,7 +24,7 @@ from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.commands import RdfFormat
 from schemas.entities import Entity
-from schemas.explanations import Triple
+from schemas.explanations import Term, Triple
 from schemas.replies import Checked, Document, Inferred
 
 
@@ -32,8 +35,37 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
 
 def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
     """What follows that was not said, without what is true of everything or of nameless classes."""
-    triples = tuple(worth_saying(semantic_map.inferred(name)))
+    triples = tuple(worth_saying(_with_pairs(semantic_map, name)))
     return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
+
+
+def _with_pairs(semantic_map: SemanticMap, name: str | None) -> Iterator[Triple]:
+    """What follows about one or all, with the relations that are measured on demand."""
+    measured = set(_pairs(semantic_map)(semantic_map.places.space(), name))
+    by_subject: dict[Term, list[Triple]] = {}
+    for triple in measured:
+        if not semantic_map.reasoner.holds(triple):
+            by_subject.setdefault(triple[0], []).append(triple)
+    entities = semantic_map.entities() if name is None else [semantic_map.entity(name)]
+    for entity in entities:
+        yield from semantic_map.inferred(entity.name)
+        yield from sorted(by_subject.get(v.iri(entity.iri), ()))
+
+
+def _pairs(semantic_map: SemanticMap) -> Callable[[Space, str | None], Iterator[Triple]]:
+    """Measures pairs, with the names that the map has for them now."""
+    derived = Derived(semantic_map.tbox)
+    iris = {entity.name: v.iri(entity.iri) for entity in semantic_map.entities()}
+
+    def measured(space: Space, name: str | None) -> Iterator[Triple]:
+        if not derived.sources:
+            return
+        pairs = Beside(space)
+        found = pairs.ask(MIRRORED, ()) if name is None else pairs.ask((), [name])
+        for fact in found.come:
+            yield from derived.triples(fact, iris)
+
+    return measured
 
 
 def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
@@ -74,6 +106,8 @@ class Picture(NamedTuple):
     written: list[Triple]
     seq: int
     prefixes: Prefixes = MappingProxyType(v.PREFIXES)
+    measured: Callable[[], Iterable[Triple]] = tuple
+    """What is measured of pairs: worked out beside the map, because it takes as long as there are things."""
 
 
 def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
@@ -90,7 +124,11 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
             following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
     written = abox + following
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
-    return Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
+    made = Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
+    if not inferred:
+        return made
+    pairs, placed, limits = _pairs(semantic_map), semantic_map.placed(), semantic_map.classes.limits
+    return made._replace(measured=lambda: pairs(Space(placed, limits), None))
 
 
 def export(picture: Picture, syntax: RdfFormat) -> Document:
@@ -98,10 +136,13 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     checked = check(picture.asserted, "semmap")
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
+    written = picture.written
+    if measured := set(picture.measured()).difference(written):
+        written = [*written, *measured]
     return Document(
-        content=rdf.serialise(picture.written, syntax, picture.prefixes),
+        content=rdf.serialise(written, syntax, picture.prefixes),
         media_type=rdf.MEDIA_TYPES[syntax],
-        triples=len(picture.written),
+        triples=len(written),
         seq=picture.seq,
     )
 

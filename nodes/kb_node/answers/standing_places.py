@@ -9,7 +9,13 @@ from dataclasses import dataclass
 
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.selection import Meant, chosen, require_whole, resolved
+from nodes.kb_node.relations.selection import (
+    Meant,
+    chosen,
+    require_possible,
+    require_whole,
+    resolved,
+)
 from nodes.kb_node.relations.solids import solid_of
 from nodes.kb_node.relations.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
@@ -68,6 +74,8 @@ class StandingPlaces:
         class_name = None
         if command.class_ is not None:
             class_name = v.local_name(asked_terms.class_(self._map, command.class_))
+        those = resolved(where, tuple(self._map.entities()))
+        require_possible(self._map.places.space(), those)
         if not self._standing:
             self._known = {entity.name: entity for entity in self._map.entities()}
             self._left_out = self._map.beliefs.left_out
@@ -77,7 +85,7 @@ class StandingPlaces:
             where=where,
             lease_s=command.lease,
             ends=time.monotonic() + command.lease,
-            meant=resolved(where, tuple(self._map.entities())),
+            meant=those,
             found={},
             seq=self._map.seq,
         )

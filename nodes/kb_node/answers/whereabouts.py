@@ -153,12 +153,15 @@ class Now:
         )
 
     def _told(self, fact: Triple) -> str:
-        """What was measured of a computed fact, and since which commit things are where they are."""
+        """What was measured of a computed fact, and since which commit both are where they are.
+
+        The fact may be younger: what was on the way between them, or around both, may have gone since.
+        """
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
         seen = explained(self._map.places.space(), name, COMPUTED[fact[1]], other)
         ends = self._map.entity(name), self._map.entity(other)
         since = max(p.commit for end in ends for p in (end.pose_provenance, end.shape_provenance))
-        return v.spoken(fact) if seen is None else f"{seen.text} (commit {since})"
+        return v.spoken(fact) if seen is None else f"{seen.text} (placed so since commit {since})"
 
 
 class Then:

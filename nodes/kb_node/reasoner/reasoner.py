@@ -266,6 +266,10 @@ class Reasoner:
         """Whether anything is set aside."""
         return bool(self._aside)
 
+    def set_aside_about(self, terms: Iterable[Term]) -> set[Triple]:
+        """What is set aside and has one of the terms as its subject or object."""
+        return self._aside.touching(terms)
+
     def held(self) -> Held:
         """All that is `given`, for a reasoner elsewhere: `Reasoner.of`."""
         return Held(list(self._engine.asserted(None, None, None)), list(self.computed()))

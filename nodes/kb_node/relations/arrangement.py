@@ -55,9 +55,12 @@ def between(space: Space, one: Solid, other: Solid) -> list[Solid]:
 def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
     strip = hull([*one.outline, *other.outline])
     low, high = max(one.bottom, other.bottom), min(one.top, other.top)
-    for third in space.around(one, measures.gap(one, other)):
+    apart = measures.gap(one, other)
+    for third in space.around(one, apart):
         if third is other or third.is_place or not third.is_measured:
             continue
+        if not measures.overlap(third.bounds, other.bounds, apart):
+            continue  # it is further from the other than the two are from one another
         if third.bottom >= high or third.top <= low + space.limits.contact_m:
             continue
         footprint = max(third.footprint, 1e-9)

@@ -231,7 +231,8 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     if not overlap(lower.bounds, upper.bounds):
         return None
     least = lower.top - limits.touch_m
-    ceilings = [support.height for support in upper.supports if support.height >= least]
+    above = lower.top + limits.contact_m  # a surface at the height of its own top is beside it
+    ceilings = [support.height for support in upper.supports if support.height > above]
     if upper.bottom >= least:
         ceilings.append(upper.bottom)
     smaller = max(min(lower.footprint, upper.footprint), 1e-9)

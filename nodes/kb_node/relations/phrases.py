@@ -28,6 +28,9 @@ SPOKEN: Final[dict[RelationName, str]] = {
 SIDES: Final[tuple[RelationName, ...]] = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
 """Those on which side of another a thing is."""
 
+_LEVEL_M = 0.00005
+"""What would be 0.0 mm."""
+
 
 def spoken(relation: RelationName, holds: bool = True) -> str:
     """A relation as a verb: "is on", "is not on", "does not touch"."""
@@ -45,7 +48,7 @@ def metres(value: float) -> str:
 
 def height_over(gap_m: float) -> str:
     """How far a bottom is above or below a surface, as an adverbial that "a surface" follows."""
-    if abs(gap_m) < 0.00005:
+    if abs(gap_m) < _LEVEL_M:
         return "level with"
     return f"{metres(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
 
@@ -71,7 +74,7 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
         case "isAttachedTo":
             return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
         case "touches":
-            return f"they are {metres(max(0.0, made.gap_m))} apart"
+            return f"they are {metres(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
         case "isNextTo":
             return f"they are {metres(made.gap_m)} apart, stand on the same, and nothing is between them"
     return (

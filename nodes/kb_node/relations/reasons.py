@@ -210,6 +210,9 @@ def _why_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
     made = next_to(space, solid, other)
     apart = f"they are {metres(near.gap_m)} apart"
     if made is not None and made.share == 0.0:
-        return f"{apart}, but {solid.name} {stance(space, solid)} and {other.name} {stance(space, other)}"
+        ours, theirs = stance(space, solid), stance(space, other)
+        if ours == theirs:
+            return f"{apart}, but neither stands on anything that is known"
+        return f"{apart}, but {solid.name} {ours} and {other.name} {theirs}"
     names = [third.name for third in between(space, solid, other)]
     return f"{apart}, but between them {'is' if len(names) == 1 else 'are'} {' and '.join(names)}"

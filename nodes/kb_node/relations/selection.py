@@ -34,18 +34,48 @@ def selected(
     """Those of `entities` that are where it is asked; the nearest first, if that is asked.
 
     `everyone` is who may be meant by a word; what is `left_out` does not count.
-    Raises UnknownName for a word that means nobody, BadRequest.
+    Raises UnknownName for a word that means nobody, BadRequest, Refused for what nothing can be on or in.
     """
     require_whole(where)
-    return chosen(space, entities, where, resolved(where, tuple(everyone)), left_out)
+    those = resolved(where, tuple(everyone))
+    require_possible(space, those)
+    return chosen(space, entities, where, those, left_out)
 
 
 def require_whole(where: Where) -> None:
     """Raises BadRequest for conditions that make no sense by themselves."""
     if where.within is not None and where.near is None and where.to is None:
-        raise errors.BadRequest("--within needs a thing to be within reach of: --near NAME")
+        raise errors.BadRequest(
+            "within (--within) goes with something to be within reach of: near (--near NAME)"
+        )
     if (where.nearest is None) != (where.to is None):
-        raise errors.BadRequest("--nearest N and --to NAME go together: the N nearest to NAME")
+        raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
+
+
+def require_possible(space: Space, those: Meant) -> None:
+    """Raises Refused where nothing can be on or in any of those that are meant, as far as is known."""
+    on = sorted(name for name in those.on or () if name in space.solids)
+    if on and all(space.solids[name].is_place for name in on):
+        raise errors.Refused(
+            f"{wording.few(on, 6)} {_is_a_place(on)}: things are in a place, and not on it; use in (--in)"
+        )
+    in_ = sorted(name for name in those.in_ or () if name in space.solids)
+    for name in in_:
+        solid = space.solids[name]
+        if solid.hollows or (solid.is_place and solid.is_measured):
+            return
+    if in_ and all(space.solids[name].is_place for name in in_):
+        raise errors.Refused(
+            f"the extent of {wording.few(in_, 6)} is not known, so neither is what is in there"
+        )
+    if in_:
+        raise errors.Refused(
+            f"nothing can be in {wording.few(in_, 6)}: that has no hollow that is known, and is no place"
+        )
+
+
+def _is_a_place(names: Sequence[str]) -> str:
+    return "is a place" if len(names) == 1 else "are places"
 
 
 def chosen(

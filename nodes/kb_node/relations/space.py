@@ -36,6 +36,7 @@ class Space:
         self._grid = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
+        self._remembered: dict[str, Whereabouts] | None = None
         for entity in entities:
             self.put(entity)
 
@@ -123,8 +124,24 @@ class Space:
         """Whose bounds meet these."""
         return self._grid.around(bounds)
 
+    @contextmanager
+    def remembering(self) -> Iterator[None]:
+        """Within, nothing changes, so that whereabouts need to be worked out once only."""
+        self._remembered = {}
+        try:
+            yield
+        finally:
+            self._remembered = None
+
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
+        if self._remembered is None:
+            return self._whereabouts(solid)
+        if (known := self._remembered.get(solid.name)) is None:
+            known = self._remembered[solid.name] = self._whereabouts(solid)
+        return known
+
+    def _whereabouts(self, solid: Solid) -> Whereabouts:
         limits = self.limits
         container: Found | None = None
         place: Found | None = None

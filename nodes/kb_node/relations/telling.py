@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from itertools import combinations
+from itertools import combinations, islice
 
 from msgspec import structs
 
 from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.arrangement import attached, between, next_to
+from nodes.kb_node.relations.arrangement import attached, attachments, between
+from nodes.kb_node.relations.beside import beside, is_apart
 from nodes.kb_node.relations.measures import Measure
 from nodes.kb_node.relations.phrases import SIDES, metres, spoken, why
 from nodes.kb_node.relations.reasons import why_not
@@ -22,6 +23,10 @@ from schemas.relations import Relation, RelationName
 
 _ABOUT_BETWEEN = 8
 """So many neighbours are looked at for what a thing is between."""
+_MOST_BETWEEN = 2
+"""So many pairs, the closest, are told of all that a thing is between."""
+_MOST_SIDES = 4
+"""Of so many neighbours, the nearest, it is told on which side of them a thing is."""
 
 
 def relations(space: Space, query: Relations) -> Iterator[Relation]:
@@ -36,12 +41,16 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
     else:
         yield from relations_of(space, query.name)
     if query.viewer == query.name:
-        raise errors.BadRequest(f"{query.name} cannot be seen from itself; --from takes another entity")
+        raise errors.BadRequest(
+            f"{query.name} cannot be seen from itself; the viewer (--from) must be another entity"
+        )
     viewer = None if query.viewer is None else space.solids[query.viewer]
     if viewer is not None or query.viewpoint is not None:
         view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
-        for relation in as_seen(space, query.name, view, viewer):
-            if query.other in (None, relation.object) or relation.relation == "isVisibleFrom":
+        found = list(as_seen(space, query.name, view, viewer))
+        told = {query.other} if query.other is not None else _nearest(space, query.name, found, query.viewer)
+        for relation in found:
+            if relation.object in told or relation.relation == "isVisibleFrom":
                 yield relation
 
 
@@ -58,9 +67,17 @@ def relations_of(space: Space, name: str) -> Iterator[Relation]:
         if other.name not in told:
             yield from _special(relation for relation in _beside(space, solid, other) if relation.holds)
     near = [other for other in beside if other.name not in told and not other.is_place][:_ABOUT_BETWEEN]
-    for one, other in combinations(near, 2):
-        if solid in between(space, one, other):
-            yield _between(solid, one, other)
+    pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
+    amid = (pair for pair in pairs if solid in between(space, *pair))
+    yield from (_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
+
+
+def _nearest(space: Space, name: str, sides: Iterable[Relation], viewer: str | None) -> set[str]:
+    """The viewer, and those next of which it is told on which side of them a thing is."""
+    others = {side.object for side in sides if side.object in space.solids and side.object != viewer}
+    solid = space.solids[name]
+    near = sorted(others, key=lambda other: (measures.gap(solid, space.solids[other]), other))
+    return {*near[:_MOST_SIDES], *filter(None, (viewer,))}
 
 
 def _special(relations: Iterable[Relation]) -> Iterator[Relation]:
@@ -85,7 +102,7 @@ def _between(solid: Solid, one: Solid, other: Solid) -> Relation:
 
 
 def whereabouts(space: Space, name: str) -> Iterator[Relation]:
-    """What a thing is inside, on and in; nothing for one without a position."""
+    """What a thing is inside, on, attached to and in; nothing for one without a position."""
     if (solid := space.solids.get(name)) is None:
         return
     container, supports, place = space.whereabouts(solid)
@@ -93,6 +110,9 @@ def whereabouts(space: Space, name: str) -> Iterator[Relation]:
         yield _told(space, "isInside", solid, *container)
     for support in supports:
         yield _told(space, "isOn", solid, *support)
+    for other in () if solid.is_place else attachments(space, solid):
+        if (made := attached(space, solid, other)) is not None:
+            yield _told(space, "isAttachedTo", solid, other, made)
     if place is not None:
         yield _told(space, "isLocatedIn", solid, *place)
 
@@ -221,29 +241,10 @@ def as_seen(space: Space, name: str, view: View, viewer: Solid | None) -> Iterat
 
 
 def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
-    limits = space.limits
-    bears = _is_with(space, other, solid) and solid.footprint >= other.footprint
-    if bears or _is_with(space, solid, other):
-        made = measures.touches(solid, other, limits)
-        yield from () if made is None else (_told(space, "touches", solid, other, made),)
-        return
-    found: tuple[tuple[RelationName, Measure | None], ...] = (
-        ("isAttachedTo", attached(space, solid, other)),
-        ("touches", None if other.is_place else measures.touches(solid, other, limits)),
-        ("isUnder", measures.beneath(solid, other, limits)),
-        ("isAbove", measures.beneath(other, solid, limits)),
-        ("isNextTo", next_to(space, solid, other)),
-        ("isNear", measures.near(solid, other, limits)),
-    )
-    for relation, measure in found:
-        if measure is not None:
-            yield _told(space, relation, solid, other, measure)
-
-
-def _is_with(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether a thing is on or inside another: then nobody says that it is near or under that."""
-    container, supports, _ = space.whereabouts(solid)
-    return other in (container and container[0], *(bearer for bearer, _ in supports))
+    if is_apart(space, solid, other) and (made := attached(space, solid, other)) is not None:
+        yield _told(space, "isAttachedTo", solid, other, made)
+    for relation, measure in beside(space, solid, other):
+        yield _told(space, relation, solid, other, measure)
 
 
 def _told(space: Space, relation: RelationName, solid: Solid, other: Solid, measure: Measure) -> Relation:

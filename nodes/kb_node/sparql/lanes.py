@@ -61,8 +61,8 @@ class Lanes:
         for lane in self._lanes:
             threading.Thread(target=self._listen, args=(lane,), name="sparql", daemon=True).start()
 
-    def ask(self, command: Sparql, seq: int) -> Future[SparqlResult]:
-        """The answer as of commit `seq` or later."""
+    def ask(self, command: Sparql, seq: int, demand: int = 0) -> Future[SparqlResult]:
+        """The answer as of commit `seq` or later, with what was demanded under that number."""
         question = Question(
             number=next(self._numbers),
             seq=seq,
@@ -70,6 +70,7 @@ class Lanes:
             inferred=command.inferred,
             limit=command.limit,
             timeout_s=command.timeout,
+            demand=demand,
         )
         query = _Query(question)
         with self._lock:

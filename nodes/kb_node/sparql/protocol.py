@@ -5,6 +5,8 @@ from __future__ import annotations
 from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.beliefs import UNCHANGED, Believed
+from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.relations.thresholds import Thresholds
 from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
@@ -12,6 +14,13 @@ from schemas.explanations import Triple
 from schemas.sparql import RowsChanged
 
 NOTHING = Raw(msgpack.encode(None))
+
+
+class Surrounded(Struct, frozen=True, kw_only=True, tag=True):
+    """Where everything is: what a question may need to have measured. Commits tell the rest from then on."""
+
+    placed: tuple[Placed, ...]
+    limits: Thresholds
 
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):
@@ -26,6 +35,7 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     infers: bool
     believed: Believed = UNCHANGED
     """What is computed, and what is set aside, if what follows is wanted."""
+    surrounded: Surrounded | None = None
 
 
 class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
@@ -46,6 +56,16 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
     delta: Delta
     believed: Believed = UNCHANGED
     """What it changes of what is computed and set aside, if what follows is wanted."""
+    placed: tuple[Placed, ...] = ()
+    """The entities that it changes, and the names of those that went, after `Surrounded`."""
+    removed: tuple[str, ...] = ()
+
+
+class Demanded(Struct, frozen=True, kw_only=True, tag=True):
+    """A query that may look at what has to be measured; what it needs is to be there under this number."""
+
+    demand: int
+    query: str
 
 
 class Asked(Struct, frozen=True, kw_only=True, tag=True):
@@ -93,6 +113,8 @@ class Question(Struct, frozen=True, kw_only=True):
     inferred: bool
     limit: int
     timeout_s: float
+    demand: int = 0
+    """What was measured under this number is needed, too; 0 for nothing."""
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
@@ -104,7 +126,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
     old: bool = False
 
 
-ToWorker = Load | LoadKept | Committed | Asked | Hire
+ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire
 FromWorker = Answered | Left | News
 
 to_worker = msgpack.Decoder(ToWorker)

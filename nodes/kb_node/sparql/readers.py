@@ -117,12 +117,13 @@ def _opened(dataset: Dataset, log: Log, fds: set[int]) -> Dataset:
 def _is_ready(question: Question, dataset: Dataset, log: Log, infers: bool) -> bool:
     """Whether the dataset is what is asked about, after the commits that have come."""
     wanted = max(question.seq, dataset.settled)
-    if dataset.seq < wanted:
+    if dataset.seq < wanted or dataset.demand < question.demand:
         for delta in log.news():
             dataset.apply(delta)
-            if delta.seq == wanted:
+            if dataset.seq >= wanted and dataset.demand >= question.demand:
                 break
-    return dataset.seq >= wanted and (infers or not question.inferred)
+    is_there = dataset.seq >= wanted and dataset.demand >= question.demand
+    return is_there and (infers or not question.inferred)
 
 
 def _answered(question: Question, dataset: Dataset) -> bytes:
@@ -139,7 +140,13 @@ def _answered(question: Question, dataset: Dataset) -> bytes:
 def _evaluate(question: Question, dataset: Dataset) -> Outcome:
     try:
         text.require_reading(question.query)
-        result = answer(question.query, dataset, inferred=question.inferred, limit=question.limit)
+        result = answer(
+            question.query,
+            dataset,
+            inferred=question.inferred,
+            limit=question.limit,
+            measured=question.demand > 0,
+        )
         return Outcome(number=question.number, result=Raw(msgpack.encode(result)))
     except errors.SemmapError as error:
         return Outcome(number=question.number, error=errors.to_message(error))

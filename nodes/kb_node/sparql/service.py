@@ -20,11 +20,26 @@ from typing import Any, overload
 from msgspec import msgpack
 
 from nodes.kb_node.beliefs import UNCHANGED, Believed
+from nodes.kb_node.relations.derived import Derived
+from nodes.kb_node.relations.placed import Placed
 from nodes.kb_node.sparql.lanes import Lanes
-from nodes.kb_node.sparql.protocol import Answered, Asked, Committed, Left, Load, LoadKept, News, from_worker
+from nodes.kb_node.sparql.protocol import (
+    Answered,
+    Asked,
+    Committed,
+    Demanded,
+    Left,
+    Load,
+    LoadKept,
+    News,
+    Surrounded,
+    from_worker,
+)
+from nodes.kb_node.sparql.queries.naming import may_name
 from nodes.kb_node.sparql.triples.dataset import Delta
 from nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
 from nodes.runtime.futures import settle
+from ontology import vocabulary as v
 from schemas import codec, errors
 from schemas.calls import Call, reply_type
 from schemas.commands import Renew, Sparql, Watch
@@ -45,10 +60,12 @@ class SparqlService:
         publish: Callable[[News], None],
         large_map: LargeMap | None = None,
         believed: Callable[[], Believed] = Believed,
+        surrounded: Callable[[], Surrounded] | None = None,
     ) -> None:
         """`asserted()` is what the map says now, `publish` gets the news.
 
-        `believed()` is what is computed besides, and what of the asserted is set aside.
+        `believed()` is what is computed besides, and what of the asserted is set aside; `surrounded()` is
+        where everything is, for queries about what has to be measured.
 
         With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
         other work: after a large commit at once, else when it is asked for the first time. What follows is
@@ -56,6 +73,12 @@ class SparqlService:
         """
         self._asserted = asserted
         self._believed = believed
+        self._surrounded = surrounded
+        self._measured: frozenset[str] = frozenset()
+        """The local names of the properties that have to be measured."""
+        self._measures = False
+        """Whether somebody has asked for any."""
+        self._demands = count(1)
         self._publish = publish
         self._large = large_map
         self._worker: _Worker | None = None
@@ -79,16 +102,32 @@ class SparqlService:
             if isinstance(command, Renew):
                 raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
             self._worker = _Worker(self._publish)
+            self._measures = False
             self._infers = command.inferred
             self._load()
         elif not isinstance(command, Renew) and command.inferred and not self._infers:
             self._infers = True
             self._load()
+        demand = 0 if isinstance(command, Renew) else self._demand(self._worker, command)
         if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
-            return self._worker.ask(command, seq)
+            return self._worker.ask(command, seq, demand)
         worker, future = self._worker, Future[Any]()
         self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
+
+    def _demand(self, worker: _Worker, command: Sparql | Watch) -> int:
+        """Have measured what a query may look at; the number under which that is done, 0 for nothing."""
+        query = command.query
+        if self._surrounded is None or not command.inferred or not self._measured or query is None:
+            return 0
+        if not may_name(query, self._measured):
+            return 0
+        if not self._measures:
+            self._measures = True
+            worker.send(self._surrounded())
+        demand = next(self._demands)
+        worker.send(Demanded(demand=demand, query=query))
+        return demand
 
     def foresee(self, commit_id: str, turtle: bytes, base: str) -> None:
         """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes."""
@@ -120,7 +159,12 @@ class SparqlService:
             self._load()
         else:
             self._worker.send(
-                Committed(delta=delta_of(commit), believed=believed if self._infers else UNCHANGED)
+                Committed(
+                    delta=delta_of(commit),
+                    believed=believed if self._infers else UNCHANGED,
+                    placed=tuple(map(Placed.of, commit.changed)) if self._measures else (),
+                    removed=tuple(gone.name for gone in commit.removed) if self._measures else (),
+                )
             )
 
     def _load(self) -> None:
@@ -157,7 +201,20 @@ class SparqlService:
     def _load_into_memory(self, worker: _Worker) -> None:
         believed = self._believed() if self._infers else UNCHANGED
         asserted = tuple(self._asserted())
-        worker.send(Load(seq=self._seq, asserted=asserted, infers=self._infers, believed=believed))
+        surrounded = None
+        if self._infers and self._surrounded is not None:
+            self._measured = frozenset(map(v.local_name, Derived(asserted).sources))
+            if self._measures:
+                surrounded = self._surrounded()
+        worker.send(
+            Load(
+                seq=self._seq,
+                asserted=asserted,
+                infers=self._infers,
+                believed=believed,
+                surrounded=surrounded,
+            )
+        )
         self._go_on()
 
     def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
@@ -212,12 +269,12 @@ class _Worker:
         if self.is_alive:
             self._outbox.put((connection or self._connection, message))
 
-    def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
-        """The reply, as of commit `seq` or later."""
+    def ask(self, command: Sparql | Watch | Renew, seq: int, demand: int = 0) -> Future[Any]:
+        """The reply, as of commit `seq` or later, with what was demanded under that number."""
         with self._lock:
             if self.is_alive:
                 if isinstance(command, Sparql):
-                    return self._lanes.ask(command, seq)
+                    return self._lanes.ask(command, seq, demand)
                 number, future = next(self._numbers), Future[Any]()
                 self._waiting[number] = (type(command), future)
                 self.send(Asked(number=number, command=command))

@@ -12,34 +12,45 @@ reasoner here, so that the node's thread only hands on its commits.
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, Final
 
-from msgspec import msgpack
+from msgspec import msgpack, structs
 
+from nodes.kb_node.relations.derived import Derived
 from nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
     Committed,
+    Demanded,
     FromWorker,
     Hire,
     Left,
     Load,
     LoadKept,
+    Surrounded,
     ToWorker,
     to_worker,
 )
+from nodes.kb_node.sparql.queries.evaluation import declared_in
+from nodes.kb_node.sparql.queries.text import query_prefixes
 from nodes.kb_node.sparql.readers import Reader
 from nodes.kb_node.sparql.standing_queries.lookout import Lookout
 from nodes.kb_node.sparql.triples.consequences import Consequences
-from nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
+from nodes.kb_node.sparql.triples.dataset import Dataset, Delta, KeptDataset
 from nodes.kb_node.sparql.triples.log import Log
+from nodes.kb_node.sparql.triples.measured import Measured, Needs, needs_of
 from schemas import errors
+from schemas.explanations import Triple
 
 BACKLOG: Final = 50_000
 """How many changed triples a reader may be behind."""
+
+IDLE_S: Final = 300.0
+"""After this time without a question about it, what was measured is forgotten."""
 
 
 class Worker:
@@ -50,6 +61,10 @@ class Worker:
         self._lanes = lanes
         self._dataset = Dataset(0, ())
         self._consequences: Consequences | None = None
+        self._derived = Derived()
+        self._measured: Measured | None = None
+        self._needed: dict[Needs, float] = {}
+        """By whom it was asked: until when it is kept [s, monotonic]."""
         self._log = Log()
         self._readers: dict[int, Reader] = {}
         self.lookout = Lookout(send, self._reader)
@@ -72,11 +87,17 @@ class Worker:
                 self.lookout.look_at_all(message.settled)
             case Committed():
                 self._follow(message)
+            case Surrounded():
+                self._measured = Measured(self._derived, self._dataset, message)
+            case Demanded():
+                self._needed[self._needs(message.query)] = time.monotonic() + IDLE_S
+                self._measure(message.demand)
             case Hire():
                 self._readers[message.lane] = self._reader(self._lanes[message.lane])
             case Asked():
                 try:
-                    self.lookout.handle(message.number, message.command, self._dataset.seq)
+                    dataset = self._dataset
+                    self.lookout.handle(message.number, message.command, dataset.seq, dataset.demand)
                 except errors.SemmapError as error:
                     self._send(Answered(number=message.number, error=errors.to_message(error)))
 
@@ -97,10 +118,17 @@ class Worker:
 
     def _load(self, load: Load) -> None:
         """Begin anew; the standing queries go on, with a look at what has changed for them."""
+        demand = self._dataset.demand
         self._dataset = Dataset(load.seq, load.asserted)
+        self._dataset.demand = demand
         self._consequences = (
             Consequences(load.asserted, self._dataset, load.believed) if load.infers else None
         )
+        self._derived = Derived(load.asserted if load.infers else ())
+        self._measured = None
+        if load.surrounded is not None:
+            self._measured = Measured(self._derived, self._dataset, load.surrounded)
+            self._measure(demand)
         self._begin_log()
         self.lookout.look_at_all(load.seq)
 
@@ -108,9 +136,38 @@ class Worker:
         delta = committed.delta
         if self._consequences is not None:
             delta = self._consequences.after(delta, committed.believed)
+        self._dataset.apply(delta)
+        if self._measured is not None:
+            gone, come = self._measured.after(delta, committed.placed, committed.removed)
+            self._dataset.apply(Delta(seq=delta.seq, unmeasured=gone, measured=come))
+            delta = structs.replace(delta, unmeasured=gone, measured=come)
+        self._log.append(delta)
+        self.lookout.follow(delta)
+        self._begin_log_if_long()
+        if any(until < time.monotonic() for until in self._needed.values()):
+            self._needed = {n: until for n, until in self._needed.items() if until >= time.monotonic()}
+            self._measure(self._dataset.demand)
+
+    def _needs(self, query: str) -> Needs:
+        # rdflib's parser takes long to load, and few queries need it
+        from nodes.kb_node.sparql.queries.footprint import patterns_of
+
+        known = tuple(sorted(query_prefixes(declared_in(self._dataset)).items()))
+        return needs_of(patterns_of(query, known), self._derived)
+
+    def _measure(self, demand: int) -> None:
+        """Let the dataset have what is needed now, under that number."""
+        gone: tuple[Triple, ...] = ()
+        come: tuple[Triple, ...] = ()
+        if self._measured is not None:
+            standing = map(self._needs, self.lookout.inferred_queries)
+            gone, come = self._measured.need(Needs.together((*self._needed, *standing)))
+        delta = Delta(seq=self._dataset.seq, unmeasured=gone, measured=come, demand=demand)
         self._log.append(delta)
         self._dataset.apply(delta)
-        self.lookout.follow(delta)
+        self._begin_log_if_long()
+
+    def _begin_log_if_long(self) -> None:
         if self._log.size > BACKLOG:
             if isinstance(self._dataset, KeptDataset):
                 self._dataset.renew(self._log.everything())

@@ -103,3 +103,20 @@ def test_what_follows_is_the_same_on_both_engines(furnished):
     assert set(general[0].triples) == set(compiled[0].triples)
     assert general[0].text == compiled[0].text
     assert set(general[1].written) == set(compiled[1].written)
+
+
+def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
+    near = {t[2] for t in answers.infer(flat, "milk1").triples if t[1] == v.dm("isNear")}
+    assert v.entity_iri("stove1") in near
+    assert v.entity_iri("counter1") not in near  # on which it stands
+    of_stove = answers.infer(flat, "stove1").triples
+    assert (v.entity_iri("stove1"), v.dm("isNear"), v.entity_iri("milk1")) in of_stove
+    assert len(set(of_stove)) == len(of_stove)
+    picture = answers.picture(flat, inferred=True)
+    exported = rdf.parse(answers.export(picture, "turtle").content, "export")
+    everything = set(answers.infer(flat, None).triples)
+    for name in ("isNear", "isNextTo", "touches", "isUnder", "isAbove"):
+        found = {t for t in exported if t[1] == v.dm(name)}
+        assert found == {t for t in everything if t[1] == v.dm(name)} != set()
+    plain = rdf.parse(answers.export(answers.picture(flat, inferred=False), "turtle").content, "export")
+    assert not any(p == v.dm("isNear") for _, p, _ in plain)

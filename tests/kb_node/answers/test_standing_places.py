@@ -140,7 +140,7 @@ def test_an_end(room):
     [
         ({"on": "tabel1"}, errors.UnknownName, "did you mean table1"),
         ({"on": "table1", "class_": "Cupp"}, errors.UnknownClass, "unknown class 'Cupp'"),
-        ({"within": 1.0}, errors.BadRequest, "--near NAME"),
+        ({"within": 1.0}, errors.BadRequest, "near NAME"),
     ],
 )
 def test_bad_questions(room, wanted, error, text):

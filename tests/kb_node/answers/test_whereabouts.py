@@ -52,6 +52,12 @@ def test_list_says_of_on_what_a_path_says_in_sparql(flat):
     assert listed == {v.entity_name(s) for s in all_on}
 
 
+def test_the_commit_is_that_of_the_poses(flat):
+    entity = flat.entity("milk1")
+    told = explained(flat, "milk1", "isOn", "counter1").text
+    assert told.endswith(f"(placed so since commit {entity.pose_provenance.commit})")
+
+
 def test_why_not_says_by_what_way(flat):
     text = refused(flat, "apple1", "isOn", "table1")
     assert text == "apple1 is not on table1: it is inside bowl1, which is on table1"

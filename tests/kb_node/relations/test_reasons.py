@@ -92,3 +92,15 @@ def test_what_is_on_a_thing_touches_it_whoever_is_asked():
 def test_no_pair_of_one():
     with pytest.raises(errors.BadRequest, match="name two different things"):
         list(relations(Space(MAP), Relations(name="cup1", other="cup1")))
+
+
+def test_of_two_that_hang_neither_stands():
+    hanging = [thing(f"cup{n}", (0.09 * n, 3.0, 1.4 + 0.06 * n)) for n in (1, 2)]
+    found = explained(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
+    assert "neither stands on anything that is known" in found.text
+
+
+def test_no_length_of_nothing():
+    assert explained(Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1").text == (
+        "cup1 touches table1: they meet"
+    )

@@ -70,3 +70,21 @@ def test_a_word_that_means_one_only():
 def test_what_does_not_go_alone(where):
     with pytest.raises(errors.BadRequest, match="--"):
         names(**where)
+
+
+@pytest.mark.parametrize(
+    ("where", "reason"),
+    [
+        ({"on": "kitchen1"}, "kitchen1 is a place: things are in a place, and not on it"),
+        ({"in_": "table1"}, "nothing can be in table1"),
+    ],
+)
+def test_what_nothing_can_be_on_or_in(where, reason):
+    with pytest.raises(errors.Refused, match=reason):
+        names(**where)
+
+
+def test_a_place_of_unknown_extent():
+    nowhere = thing("k1", (0.0, 0.0, 0.0), place=True)
+    with pytest.raises(errors.Refused, match="the extent of k1 is not known"):
+        selected(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])

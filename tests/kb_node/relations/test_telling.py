@@ -1,7 +1,7 @@
 import pytest
 
 from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.telling import relations
+from nodes.kb_node.relations.telling import relations, whereabouts
 from schemas import errors
 from schemas.commands import Relations
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
@@ -76,3 +76,27 @@ def test_who_is_nowhere():
 def test_nothing_is_seen_from_itself():
     with pytest.raises(errors.BadRequest, match="cannot be seen from itself"):
         told("cup1", viewer="cup1")
+
+
+def test_twins_in_one_place_are_neither_under_nor_above_one_another():
+    space = Space([ROOM, TABLE, *(thing(f"cup{n}", (0.0, 0.0, TOP)) for n in (1, 2))])
+    found = {r.relation for r in relations(space, Relations(name="cup1", other="cup2")) if r.holds}
+    assert found.isdisjoint({"isUnder", "isAbove"})
+
+
+def test_of_many_neighbours_the_nearest_are_told():
+    crowd = [thing(f"cup{n}", (0.2 * (n % 5) - 0.4, 0.2 * (n // 5) - 0.3, TOP)) for n in range(20)]
+    found = list(relations(Space([ROOM, TABLE, *crowd]), Relations(name="cup7", viewpoint=(-3, 0, 0, 0))))
+    sides = {r.object for r in found if r.relation in ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")}
+    assert 1 <= len(sides) <= 4
+    assert sum(r.relation == "isBetween" for r in found) <= 2
+    assert sum(r.relation == "isVisibleFrom" for r in found) == 1
+
+
+def test_what_hangs_is_attached_to_something_where_it_is():
+    wall = thing("wall1", (0.0, -2.95, 0.0), "wall", size=(6.0, 0.1, 2.5))
+    picture = thing("picture1", (0.0, -2.88, 1.5), "picture", size=(0.5, 0.04, 0.4))
+    assert [r.relation for r in whereabouts(Space([ROOM, wall, picture]), "picture1")] == [
+        "isAttachedTo",
+        "isLocatedIn",
+    ]

@@ -14,7 +14,7 @@ _FEW = 6
 
 
 def history_table(commits: Iterable[LoggedCommit]) -> Table:
-    """One row a commit."""
+    """One row a commit, and one a note on it."""
     columns = ("commit", "time", "by", "why", "sure", "what")
     rows = table(*columns, fold=("by", "why", "what"))
     rows.columns[0].justify = "right"
@@ -27,6 +27,8 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
             "" if c.confidence is None else f"{c.confidence:.2f}",
             _what(c),
         )
+        for note in c.notes:
+            rows.add("", "", "", "", "", f"note: {note}")
     return rows
 
 
@@ -41,8 +43,7 @@ def _what(commit: LoggedCommit) -> str:
         said.append(f"{touched - len(said)} more" if said else wording.entities(touched))
     if commit.tbox:
         said.append("another TBox")
-    what = ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
-    return "; ".join((what, *commit.notes))
+    return ", ".join(said) or f"+{commit.inserted} -{commit.retracted} triples"
 
 
 def sighting_card(s: Sighting) -> Table:

@@ -8,7 +8,7 @@ from typing import Final
 import pyoxigraph as ox
 
 from nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
-from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, Dataset
+from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
 from ontology import prefixes
 from ontology import vocabulary as v
 from schemas import errors
@@ -19,17 +19,24 @@ _PREFERRED_PREFIX: Final = ox.NamedNode(v.bare(prefixes.PREFERRED_PREFIX))
 _SPO: Final = ("subject", "predicate", "object")
 
 
-def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> SparqlResult:
+def answer(
+    query: str, dataset: Dataset, *, inferred: bool, limit: int, measured: bool = False
+) -> SparqlResult:
     """The answer over what is asserted or, with `inferred`, over all that is so, asserted or not.
+
+    With `measured` that is also what was measured for the query.
 
     Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
     """
-    known = query_prefixes(_declared_in(dataset))
+    known = query_prefixes(declared_in(dataset))
+    graphs = dataset.asserted_graphs()
+    if inferred:
+        graphs = [ASSERTED, INFERRED, MEASURED] if measured else [ASSERTED, INFERRED]
     try:
         found = dataset.store.query(
             query,
             prefixes=known,
-            default_graph=[ASSERTED, INFERRED] if inferred else dataset.asserted_graphs(),
+            default_graph=graphs,
             named_graphs=[],
         )
         if isinstance(found, ox.QueryBoolean):
@@ -46,7 +53,7 @@ def answer(query: str, dataset: Dataset, *, inferred: bool, limit: int) -> Sparq
     return SparqlResult(kind="select", variables=variables, rows=rows, seq=dataset.seq)
 
 
-def _declared_in(dataset: Dataset) -> dict[str, str]:
+def declared_in(dataset: Dataset) -> dict[str, str]:
     """The prefixes of the TBox's own namespaces."""
     said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
     declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)

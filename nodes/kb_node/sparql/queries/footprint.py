@@ -5,9 +5,10 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-from rdflib import RDF, BNode, URIRef, Variable
+from rdflib import BNode, URIRef, Variable
 from rdflib.paths import AlternativePath, InvPath, MulPath, Path, SequencePath
 from rdflib.plugins.sparql import prepareQuery
 from rdflib.plugins.sparql.parserutils import CompValue
@@ -17,6 +18,9 @@ from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 
 logging.getLogger("rdflib").setLevel(logging.ERROR)
+
+
+Pattern = tuple[Term | None, Term | None, Term | None]
 
 
 class _Anything(Exception):
@@ -46,18 +50,34 @@ def footprint(query: str) -> Footprint:
     `owl:` and other prefixes are those of `text.PREFIXES`. A type pattern with a class counts for that class
     only. A path that may have no steps relates every term to itself, so any triple matters to it.
     """
-    try:
-        algebra = prepareQuery(query, initNs=PREFIXES).algebra
-        patterns = set(_patterns(algebra))
-    except Exception:  # rdflib reads less than Oxigraph, and fails in many ways on what it does not read
+    patterns = patterns_of(query)
+    if patterns is None or any(p is None for _, p, _ in patterns):
         return Footprint()
-    predicates = frozenset(p for p, _ in patterns if p != v.RDF_TYPE)
-    classes = [o for p, o in patterns if p == v.RDF_TYPE]
+    predicates = frozenset(p for _, p, _ in patterns if p is not None and p != v.RDF_TYPE)
+    classes = [o for _, p, o in patterns if p == v.RDF_TYPE]
     return Footprint(predicates, None if None in classes else frozenset(filter(None, classes)))
 
 
-def _patterns(node: Any) -> Iterator[tuple[Term, Term | None]]:
-    """Predicate and object (None for any) of every triple pattern below a node of the algebra."""
+@lru_cache(maxsize=1000)
+def patterns_of(query: str, prefixes: tuple[tuple[str, str], ...] = ()) -> frozenset[Pattern] | None:
+    """The triple patterns of a query, None in them standing for anything; None where they cannot be told.
+
+    A resource that is described counts as the subject and as the object of anything. `prefixes` are known
+    besides those of `text.PREFIXES`.
+    """
+    try:
+        prepared = prepareQuery(query, initNs={**dict(prefixes), **PREFIXES})
+        patterns = set(_patterns(prepared.algebra))
+        if prepared.algebra.name == "DescribeQuery":
+            for described in prepared.algebra["PV"]:
+                patterns |= {(_known(described), None, None), (None, None, _known(described))}
+    except Exception:  # rdflib reads less than Oxigraph, and fails in many ways on what it does not read
+        return None
+    return frozenset(patterns)
+
+
+def _patterns(node: Any) -> Iterator[Pattern]:
+    """Every triple pattern below a node of the algebra."""
     if isinstance(node, CompValue):
         for key, child in node.items():
             if key == "triples":
@@ -70,11 +90,14 @@ def _patterns(node: Any) -> Iterator[tuple[Term, Term | None]]:
             yield from _patterns(child)
 
 
-def _of_pattern(s: Any, p: Any, o: Any) -> Iterator[tuple[Term, Term | None]]:
+def _known(node: Any) -> Term | None:
+    return None if isinstance(node, Variable | BNode) else str(node.n3())
+
+
+def _of_pattern(s: Any, p: Any, o: Any) -> Iterator[Pattern]:
     match p:
-        case URIRef():
-            known = p == RDF.type and not isinstance(o, Variable | BNode)
-            yield (p.n3(), o.n3() if known else None)
+        case URIRef() | Variable():
+            yield (_known(s), _known(p), _known(o))
         case InvPath():
             yield from _of_pattern(o, p.arg, s)
         case SequencePath():

@@ -89,14 +89,22 @@ class Lookout:
         soonest = min((standing.ends for standing in self._standing.values()), default=math.inf)
         return None if soonest == math.inf else max(0.0, soonest - time.monotonic())
 
+    @property
+    def inferred_queries(self) -> Iterator[str]:
+        """Those that look at what follows."""
+        return (standing.query for standing in self._standing.values() if standing.inferred)
+
     # What comes in
 
-    def handle(self, number: int, command: Watch | Renew, seq: int) -> None:
-        """A command, at commit `seq`. Raises UnknownName, NameTaken, Refused, and as `text` does."""
+    def handle(self, number: int, command: Watch | Renew, seq: int, demand: int = 0) -> None:
+        """A command, at commit `seq`, with all that was demanded until then measured.
+
+        Raises UnknownName, NameTaken, Refused, and as `text` does.
+        """
         self._seq = seq
         if isinstance(command, Watch):
             text.require_select(command.query or "")
-            self._looks.append(Look(self._admit(command), since=seq, seq=seq, number=number))
+            self._looks.append(Look(self._admit(command, demand), since=seq, seq=seq, number=number))
             return
         if command.watch not in self._standing:
             raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
@@ -152,13 +160,13 @@ class Lookout:
 
     # Standing queries
 
-    def _admit(self, command: Watch) -> Standing:
+    def _admit(self, command: Watch, demand: int) -> Standing:
         name = command.watch or f"q{uuid.uuid4().hex[:12]}"
         if name in self._standing:
             raise errors.NameTaken(f"there is a standing query '{name}' already")
         if len(self._standing) >= STANDING:
             raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
-        self._standing[name] = Standing.of(command, name)
+        self._standing[name] = Standing.of(command, name, demand)
         return self._standing[name]
 
     def _drop(self, standing: Standing, error: errors.SemmapError | None = None) -> None:
@@ -190,6 +198,7 @@ class Lookout:
             inferred=look.standing.inferred,
             limit=ROWS,
             timeout_s=TIMEOUT_S,
+            demand=look.standing.demand,
         )
         with suppress(OSError):  # if the reader is dead, `_result` tells
             self._on_duty.lane.send_bytes(msgpack.encode(question))

@@ -25,11 +25,13 @@ class Standing:
     inferred: bool
     lease_s: float
     looks_at: Footprint
+    demand: int = 0
+    """What was measured under this number it needs; 0 for nothing."""
     ends: float = math.inf
     rows: Counter[Row] = field(default_factory=Counter)
 
     @classmethod
-    def of(cls, command: Watch, name: str) -> Standing:
+    def of(cls, command: Watch, name: str, demand: int) -> Standing:
         """The one that a command asks for, without its rows."""
         # rdflib's parser takes longer to load than all else that the first look-up waits for
         from nodes.kb_node.sparql.queries.footprint import footprint
@@ -41,6 +43,7 @@ class Standing:
             inferred=command.inferred,
             lease_s=command.lease,
             looks_at=footprint(command.query),
+            demand=demand if command.inferred else 0,
         )
 
     def is_touched(self, delta: Delta) -> bool:

@@ -23,6 +23,8 @@ ASSERTED = ox.DefaultGraph()
 INFERRED = ox.NamedNode("urn:semmap:inferred")
 DENIED = ox.NamedNode("urn:semmap:denied")
 """What is asserted of where things are and is not so."""
+MEASURED = ox.NamedNode("urn:semmap:measured")
+"""What is measured because somebody asked for it, and is neither asserted nor follows otherwise."""
 _TYPE = v.bare(v.RDF_TYPE)
 
 
@@ -38,6 +40,10 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
     """Asserted, but denied by the present poses."""
     undenied: tuple[Triple, ...] = ()
     """No longer denied, or no longer asserted."""
+    unmeasured: tuple[Triple, ...] = ()
+    measured: tuple[Triple, ...] = ()
+    demand: int = 0
+    """Of a question: what that needs is measured from here on."""
 
     @property
     def asserted(self) -> tuple[Triple, ...]:
@@ -46,8 +52,16 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
 
     @property
     def everything(self) -> tuple[Triple, ...]:
-        """What was asserted, retracted, or follows or is denied now or no longer."""
-        return self.asserted + self.no_longer_inferred + self.newly_inferred + self.denied + self.undenied
+        """What was asserted, retracted, or follows, is denied or measured now or no longer."""
+        return (
+            self.asserted
+            + self.no_longer_inferred
+            + self.newly_inferred
+            + self.denied
+            + self.undenied
+            + self.unmeasured
+            + self.measured
+        )
 
 
 class Dataset:
@@ -60,6 +74,8 @@ class Dataset:
     """Before that commit it is no map yet."""
     denials = 0
     """How much is denied."""
+    demand = 0
+    """The last question for which something was measured."""
 
     def __init__(self, seq: int, asserted: Iterable[Triple], store: ox.Store | None = None) -> None:
         """`store` may hold others already."""
@@ -90,7 +106,11 @@ class Dataset:
             self.store.remove(quad)
         self.store.extend(quads(delta.newly_inferred, INFERRED))
         self.deny(delta.denied)
+        for quad in quads(delta.unmeasured, MEASURED):
+            self.store.remove(quad)
+        self.store.extend(quads(delta.measured, MEASURED))
         self.seq = delta.seq
+        self.demand = max(self.demand, delta.demand)
 
     def deny(self, triples: Collection[Triple]) -> None:
         """What is asserted is not so."""
@@ -144,6 +164,16 @@ class Dataset:
         """Whether a relation of two individuals is among what follows."""
         s, p, o = triple
         return ox.Quad(_subject(s), ox.NamedNode(p[1:-1]), _subject(o), INFERRED) in self.store
+
+    def holds_unmeasured(self, triple: Triple) -> bool:
+        """Whether a relation of two individuals is asserted or follows."""
+        s, p, o = _subject(triple[0]), ox.NamedNode(triple[1][1:-1]), _subject(triple[2])
+        return any(ox.Quad(s, p, o, graph) in self.store for graph in (ASSERTED, INFERRED))
+
+    def is_measured(self, triple: Triple) -> bool:
+        """Whether a relation of two individuals is among what is measured."""
+        s, p, o = triple
+        return ox.Quad(_subject(s), ox.NamedNode(p[1:-1]), _subject(o), MEASURED) in self.store
 
     def neighbours(self, individual: Term) -> set[Term]:
         """The individuals that this one is related to, either way, by anything but its class."""

@@ -67,3 +67,16 @@ def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():
     assert re.fullmatch(
         r"not incremental: the meaning of OWL's own vocabulary .*, about \d+ ms a change", said
     )
+
+
+def test_that_nothing_is_computed_of_places_is_told():
+    """Of a TBox that has some of the properties, those are facts."""
+    lab = [
+        t for t in home.TBOX if v.local_name(t[0]) not in {"isOn", "isInside", "isLocatedIn", "isAttachedTo"}
+    ]
+    assert notes_of(lab) == (
+        "the TBox has none of isAttachedTo, isInside, isLocatedIn, isOn, so where things are is measured when"
+        " asked for, and not a fact",
+    )
+    on = (v.dm("isOn"), v.RDF_TYPE, "<http://www.w3.org/2002/07/owl#ObjectProperty>")
+    assert notes_of([*lab, on]) == ()
