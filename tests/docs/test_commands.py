@@ -38,6 +38,7 @@ EXPECTED = {
     "semmap load demo/nonsense.ttl": 1,
     "semmap undo 17": 1,  # there is no such commit in the map that this is run on
     "semmap set door1 isOpen false --if-is yes": 1,  # it is shut already
+    "semmap explain apple1 isOn table1": 1,  # it is in a bowl
 }
 """Exit status of those that are printed because they are refused."""
 
