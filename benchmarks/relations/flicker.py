@@ -10,7 +10,7 @@ import random
 from msgspec import structs
 
 from benchmarks.relations.situations import TABLE, on_table, place, tall, thing
-from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from nodes.perception_node.tracking.map_updates import additions, update_of

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.relations.situations import SITUATIONS, Said, Situation
-from nodes.kb_node.relations.solids import Solid, solid_of
+from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.sim_node.models.library import build
 from nodes.sim_node.models.parts import Colour, Part, Role, ball, box
 from nodes.sim_node.physics.build import add_part

@@ -15,11 +15,11 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.said import PROPERTIES, fact_of
-from nodes.kb_node.relations.solids import Solid, solid_of
-from nodes.kb_node.relations.thresholds import Thresholds
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from ontology.model_shapes import shapes

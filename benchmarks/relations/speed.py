@@ -8,7 +8,7 @@ import time
 
 from msgspec import structs
 
-from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.facts.place_facts import Facts
 from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Provenance, Size, Vector
 

@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import structs
 
 from benchmarks.perception.tracking import CAMERAS, TABLE_M, ObedientMap, things_on_a_table
-from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.perception_node.config import TrackingConfig
 from nodes.perception_node.pipeline import look, shipped
 from nodes.perception_node.tracking.association import associate

@@ -15,11 +15,11 @@ from nodes.kb_node.progress import parts
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from nodes.kb_node.reasoner.explain import sentences
 from nodes.kb_node.reasoner.explanations import Explanation
-from nodes.kb_node.relations.computed import Computed, Known, Step
-from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.relations.said import PROPERTIES, fact_of
-from nodes.kb_node.relations.thresholds import Thresholds
+from nodes.kb_node.relations.facts.computed import Computed, Known, Step
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.facts.rules import COMPUTED
+from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology import vocabulary as v
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple

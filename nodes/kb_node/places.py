@@ -16,12 +16,12 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.preconditions import subjects
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.carrying import Loads
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.said import denial, fact_of
-from nodes.kb_node.relations.sayings import Sayings, of_places
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.facts.said import denial, fact_of
+from nodes.kb_node.relations.facts.sayings import Sayings, of_places
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.relations.surroundings import Surroundings
-from nodes.kb_node.relations.thresholds import Thresholds
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import errors, wording

@@ -18,8 +18,8 @@ from nodes.kb_node.entities.fast_reading import Patterns
 from nodes.kb_node.places import Places, at_most
 from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten

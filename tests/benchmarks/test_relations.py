@@ -7,8 +7,8 @@ from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
 from benchmarks.table import Row
 from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.said import PROPERTIES, fact_of
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from ontology import FLAT_TTL
 
 

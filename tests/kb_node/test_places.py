@@ -7,8 +7,8 @@ import pytest
 
 from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.said import denial
-from nodes.kb_node.relations.sayings import Sayings
+from nodes.kb_node.relations.facts.said import denial
+from nodes.kb_node.relations.facts.sayings import Sayings
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.undo import undo
 from ontology import vocabulary as v

@@ -12,11 +12,11 @@ from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.relations import said
-from nodes.kb_node.relations.beside import MIRRORED, Beside
-from nodes.kb_node.relations.derived import Derived
-from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts import said
+from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
+from nodes.kb_node.relations.facts.derived import Derived
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from ontology import prefixes
 from ontology import vocabulary as v

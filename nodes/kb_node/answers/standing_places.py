@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from nodes.kb_node.answers import asked_terms
-from nodes.kb_node.relations.place_facts import Fact
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.geometry.solids import solid_of
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.selection import (
     Meant,
     chosen,
@@ -16,8 +18,6 @@ from nodes.kb_node.relations.selection import (
     require_whole,
     resolved,
 )
-from nodes.kb_node.relations.solids import solid_of
-from nodes.kb_node.relations.space import Space
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.protocol import News
 from ontology import vocabulary as v

@@ -8,12 +8,12 @@ from typing import Final
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
-from nodes.kb_node.relations.phrases import SPOKEN
-from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.rules import COMPUTED
-from nodes.kb_node.relations.said import PROPERTIES, denial, denied, fact_of
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.facts.rules import COMPUTED
+from nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
+from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.selection import only_meant, selected
-from nodes.kb_node.relations.space import Space
 from nodes.kb_node.relations.telling import explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past

@@ -13,7 +13,7 @@ from nodes.kb_node.entities.alignments import Alignment
 from nodes.kb_node.entities.property_names import PropertyNames
 from nodes.kb_node.entities.property_table import PropertyTable
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.relations import thresholds
+from nodes.kb_node.relations.measuring import thresholds
 from ontology import prefixes, stars
 from ontology import vocabulary as v
 from ontology.name_index import Named, NameIndex

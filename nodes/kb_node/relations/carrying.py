@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.solids import Solid
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring.space import Space
 
 
 class Bearer(NamedTuple):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.arrangement import attached, between, next_to
-from nodes.kb_node.relations.phrases import SIDES, height_over, metres, spoken, why
-from nodes.kb_node.relations.polygons import distance
-from nodes.kb_node.relations.solids import Solid
-from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.viewing import own_sides
+from nodes.kb_node.relations.geometry.polygons import distance
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.arrangement import attached, between, next_to
+from nodes.kb_node.relations.measuring.phrases import SIDES, height_over, metres, spoken, why
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.viewing import own_sides
 from schemas.relations import RelationName
 
 _OF_SIZES = frozenset({"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches"})

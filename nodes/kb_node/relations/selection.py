@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Sequence, Set
 from typing import NamedTuple
 
-from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.place_facts import Fact
-from nodes.kb_node.relations.solids import Solid
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.space import Space
 from schemas import errors, wording
 from schemas.entities import Entity
 from schemas.relations import Where

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.thresholds import Thresholds
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from schemas.entities import Entity
 
 

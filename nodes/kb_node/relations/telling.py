@@ -8,15 +8,15 @@ from itertools import combinations, islice
 
 from msgspec import structs
 
-from nodes.kb_node.relations import measures
-from nodes.kb_node.relations.arrangement import attached, attachments, between
-from nodes.kb_node.relations.beside import beside, is_apart
-from nodes.kb_node.relations.measures import Measure
-from nodes.kb_node.relations.phrases import SIDES, metres, spoken, why
+from nodes.kb_node.relations.facts.beside import beside, is_apart
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.arrangement import attached, attachments, between
+from nodes.kb_node.relations.measuring.measures import Measure
+from nodes.kb_node.relations.measuring.phrases import SIDES, metres, spoken, why
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.viewing import View, own_sides, seen, sides
 from nodes.kb_node.relations.reasons import why_not
-from nodes.kb_node.relations.solids import Solid
-from nodes.kb_node.relations.space import Space
-from nodes.kb_node.relations.viewing import View, own_sides, seen, sides
 from schemas import errors
 from schemas.commands import Relations
 from schemas.relations import Relation, RelationName

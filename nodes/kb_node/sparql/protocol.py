@@ -5,8 +5,8 @@ from __future__ import annotations
 from msgspec import Raw, Struct, msgpack
 
 from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.thresholds import Thresholds
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.triples.dataset import Delta
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage

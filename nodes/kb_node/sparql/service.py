@@ -20,8 +20,8 @@ from typing import Any, overload
 from msgspec import msgpack
 
 from nodes.kb_node.beliefs import UNCHANGED, Believed
-from nodes.kb_node.relations.derived import Derived
-from nodes.kb_node.relations.placed import Placed
+from nodes.kb_node.relations.facts.derived import Derived
+from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.sparql.lanes import Lanes
 from nodes.kb_node.sparql.protocol import (
     Answered,

@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from msgspec import msgpack, structs
 
-from nodes.kb_node.relations.derived import Derived
+from nodes.kb_node.relations.facts.derived import Derived
 from nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,

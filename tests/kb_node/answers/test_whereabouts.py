@@ -4,7 +4,7 @@ import pytest
 
 from nodes.kb_node.answers import questions, whereabouts
 from nodes.kb_node.documents import rdf
-from nodes.kb_node.relations.phrases import SPOKEN
+from nodes.kb_node.relations.measuring.phrases import SPOKEN
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nodes.kb_node.relations.carrying import Loads
-from nodes.kb_node.relations.place_facts import Facts
+from nodes.kb_node.relations.facts.place_facts import Facts
 from schemas.entities import Pose, carried, orientation_from_yaw
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 

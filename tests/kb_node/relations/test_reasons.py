@@ -2,8 +2,8 @@
 
 import pytest
 
-from nodes.kb_node.relations.phrases import SPOKEN
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.telling import explained, relations
 from schemas import errors
 from schemas.commands import Relations

@@ -1,7 +1,7 @@
 import pytest
 
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.selection import meant, only_meant, selected
-from nodes.kb_node.relations.space import Space
 from schemas import errors
 from schemas.relations import Where
 from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing

@@ -3,8 +3,8 @@
 import pytest
 
 from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
-from nodes.kb_node.relations.place_facts import Facts
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.telling import relations
 from schemas.commands import Relations
 

@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.telling import relations, whereabouts
 from schemas import errors
 from schemas.commands import Relations

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from nodes.kb_node.relations.beside import beside
+from nodes.kb_node.relations.facts.beside import beside
 from nodes.kb_node.relations.telling import explained
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService

@@ -13,7 +13,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.profile import outside_rl
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.relations.rules import COMPUTED
+from nodes.kb_node.relations.facts.rules import COMPUTED
 from ontology import HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import wording

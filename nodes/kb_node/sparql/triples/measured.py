@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from nodes.kb_node.relations.beside import MIRRORED, Beside
-from nodes.kb_node.relations.derived import Derived
-from nodes.kb_node.relations.place_facts import Changed, Fact
-from nodes.kb_node.relations.placed import Placed
-from nodes.kb_node.relations.space import Space
+from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
+from nodes.kb_node.relations.facts.derived import Derived
+from nodes.kb_node.relations.facts.place_facts import Changed, Fact
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from ontology import vocabulary as v

@@ -1,0 +1,234 @@
+"""Relations of two things that are beside one another, measured when somebody asks for them.
+
+They are too many to be kept for all at each commit: fifty things in a room are near to most of one another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Set
+from typing import Final
+
+from nodes.kb_node.relations.facts.place_facts import Changed, Fact
+from nodes.kb_node.relations.geometry.forms import Bounds
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.arrangement import next_to
+from nodes.kb_node.relations.measuring.measures import Measure
+from nodes.kb_node.relations.measuring.space import Space
+from schemas.entities import Entity
+from schemas.relations import RelationName
+
+MIRRORED: Final[dict[RelationName, RelationName]] = {
+    "touches": "touches",
+    "isUnder": "isAbove",
+    "isAbove": "isUnder",
+    "isNextTo": "isNextTo",
+    "isNear": "isNear",
+}
+"""The relations that are measured here, and what they are when seen from the other thing."""
+_MEASURES: Final[dict[RelationName, Callable[[Space, Solid, Solid], Measure | None]]] = {
+    "touches": lambda space, one, other: (
+        None if other.is_place else measures.touches(one, other, space.limits)
+    ),
+    "isUnder": lambda space, one, other: measures.beneath(one, other, space.limits),
+    "isAbove": lambda space, one, other: measures.beneath(other, one, space.limits),
+    "isNextTo": next_to,
+    "isNear": lambda space, one, other: measures.near(one, other, space.limits),
+}
+_ALL: Final = frozenset(MIRRORED)
+_Stance = tuple[str | None, frozenset[str]]
+"""What a thing is inside, and what it is on."""
+
+
+def beside(
+    space: Space, solid: Solid, other: Solid, wanted: Set[RelationName] = _ALL
+) -> Iterator[tuple[RelationName, Measure]]:
+    """What is measured of a pair. Nobody says that a thing is near or under what it is on or inside."""
+    if is_apart(space, solid, other):
+        names: Iterable[RelationName] = (name for name in MIRRORED if name in wanted)
+    else:
+        names = ("touches",) if "touches" in wanted else ()
+    for name in names:
+        made = _MEASURES[name](space, solid, other)
+        if made is not None:
+            yield name, made
+
+
+def is_apart(space: Space, solid: Solid, other: Solid) -> bool:
+    """Whether a thing is neither on or inside another, nor bears or holds it and is larger."""
+    bears = _is_with(space, other, solid) and solid.footprint >= other.footprint
+    return not (bears or _is_with(space, solid, other))
+
+
+def _is_with(space: Space, solid: Solid, other: Solid) -> bool:
+    container, supports, _ = space.whereabouts(solid)
+    return other in (container and container[0], *(bearer for bearer, _ in supports))
+
+
+class Beside:
+    """What holds of the pairs that somebody asks about, kept in step with a map.
+
+    A fact is told of a pair once, from the one whose name comes first; the other has the mirrored one.
+    """
+
+    def __init__(self, space: Space) -> None:
+        """It has the space to itself: no one else changes it."""
+        self.space = space
+        self._whole: frozenset[RelationName] = frozenset()
+        self._some: frozenset[str] = frozenset()
+        self._pairs: dict[str, dict[str, tuple[RelationName, ...]]] = {}
+        """By either name."""
+        self._stances: dict[str, _Stance] = {}
+
+    def ask(self, whole: Iterable[RelationName], some: Iterable[str]) -> Changed:
+        """From now on keep these relations of all things, and all relations of these things."""
+        whole, some = frozenset(whole), frozenset(some)
+        whole |= {MIRRORED[relation] for relation in whole}
+        more, others = whole - self._whole, some - self._some
+        is_less = not (whole >= self._whole and some >= self._some)
+        self._whole, self._some = whole, some
+        if not (whole or some):
+            self._stances.clear()
+        gone, come = self._work_out(others)
+        if is_less:
+            for name, there in list(self._pairs.items()):
+                for other, known in list(there.items()):
+                    if name < other and not (name in some or other in some):
+                        now = tuple(relation for relation in known if relation in whole)
+                        self._replace((name, other), now, gone, come)
+        if more:
+            come |= self._work_out(self.space.solids, more=more).come
+        return Changed(gone, come)
+
+    def holds(self, name: str, relation: RelationName, other: str) -> bool:
+        """Whether it holds of a pair, in either order."""
+        if other < name:
+            name, other, relation = other, name, MIRRORED[relation]
+        return relation in self._pairs.get(name, {}).get(other, ())
+
+    def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
+        """Some entities came or are otherwise now, others went."""
+        space, moved = self.space, list[Solid]()
+        if not self._stances and (self._whole or self._some):
+            with space.remembering():
+                self._stances = {n: self._stance(s) for n, s in space.solids.items() if not s.is_place}
+        names: dict[str, None] = {}
+        for name in removed:
+            names[name] = None
+            moved += filter(None, (space.solids.get(name),))
+            space.take(name)
+        for entity in changed:
+            names[entity.name] = None
+            moved += filter(None, (space.solids.get(entity.name),))
+            moved += filter(None, (space.put(entity),))
+        moved += space.shifted()
+        if not (self._whole or self._some):
+            return Changed(set(), set())
+        with space.remembering():
+            for solid in moved:
+                for other in space.around(solid):
+                    if not other.is_place and self._stances.get(other.name) != self._stance(other):
+                        names[other.name] = None
+            for name in names:
+                now = space.solids.get(name)
+                if now is None or now.is_place:
+                    self._stances.pop(name, None)
+                else:
+                    self._stances[name] = self._stance(now)
+        return self._work_out(names, moved)
+
+    def _stance(self, solid: Solid) -> _Stance:
+        container, supports, _ = self.space.whereabouts(solid)
+        return container and container[0].name, frozenset(bearer.name for bearer, _ in supports)
+
+    def _work_out(
+        self, names: Iterable[str], moved: Iterable[Solid] = (), more: Set[RelationName] = frozenset()
+    ) -> Changed:
+        """All pairs of some, and those that what moved was or is between.
+
+        With `more` only these relations are measured; the pairs keep those that are known.
+        """
+        gone, come = set[Fact](), set[Fact]()
+        done = set[tuple[str, str]]()
+        space = self.space
+        with space.remembering():
+            for name in tuple(names):
+                solid = space.solids.get(name)
+                others = dict.fromkeys(self._pairs.get(name, ()))
+                if solid is not None and not solid.is_place:
+                    for near in space.around(solid, space.limits.near_most_m):
+                        if not near.is_place:
+                            others[near.name] = None
+                for other in others:
+                    pair = (name, other) if name < other else (other, name)
+                    if pair not in done:
+                        done.add(pair)
+                        now = self._of_pair(*pair, more)
+                        if more:
+                            known = self._pairs.get(pair[0], {}).get(pair[1], ())
+                            now = tuple(r for r in MIRRORED if r in now or r in known)
+                        self._replace(pair, now, gone, come)
+            for pair in self._joined_over(moved):
+                if pair not in done:
+                    done.add(pair)
+                    self._replace(pair, self._of_pair(*pair), gone, come)
+        return Changed(gone, come)
+
+    def _joined_over(self, moved: Iterable[Solid]) -> Iterator[tuple[str, str]]:
+        """The pairs that these solids may be or have been between."""
+        space = self.space
+        if "isNextTo" not in self._whole and not self._some:
+            return
+        for solid in moved:
+            if solid.is_place:
+                continue
+            ends = [e for e in space.around(solid, space.limits.near_most_m) if not e.is_place]
+            for at, one in enumerate(ends):
+                for other in ends[at + 1 :]:
+                    if measures.overlap(solid.bounds, _both(one.bounds, other.bounds)):
+                        yield (one.name, other.name) if one.name < other.name else (other.name, one.name)
+
+    def _of_pair(
+        self, name: str, other_name: str, more: Set[RelationName] = frozenset()
+    ) -> tuple[RelationName, ...]:
+        solid, other = self.space.solids.get(name), self.space.solids.get(other_name)
+        if solid is None or other is None or solid.is_place or other.is_place:
+            return ()
+        wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
+        if not wanted:
+            return ()
+        # Of a small thing that bears a larger one only its own side is told.
+        one, two = (solid, other) if is_apart(self.space, solid, other) else (other, solid)
+        found = {relation for relation, made in beside(self.space, one, two, wanted) if made.holds}
+        if one is other:
+            found = {MIRRORED[relation] for relation in found}
+        return tuple(relation for relation in MIRRORED if relation in found)
+
+    def _replace(
+        self,
+        pair: tuple[str, str],
+        now: tuple[RelationName, ...],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        name, other = pair
+        before = self._pairs.get(name, {}).get(other, ())
+        if now == before:
+            return
+        gone.update((name, relation, other) for relation in before if relation not in now)
+        come.update((name, relation, other) for relation in now if relation not in before)
+        for one, two in (pair, (other, name)):
+            there = self._pairs.setdefault(one, {})
+            if now:
+                there[two] = now
+            else:
+                there.pop(two, None)
+                if not there:
+                    del self._pairs[one]
+
+
+def _both(one: Bounds, other: Bounds) -> Bounds:
+    return (
+        min(one[0], other[0]), min(one[1], other[1]), max(one[2], other[2]), max(one[3], other[3]),
+    )  # fmt: skip

@@ -1,0 +1,221 @@
+"""Which relations hold in a map, kept in step with it for whoever a change concerns.
+
+What is kept is a function of the poses alone (`rules`), so that a restart, another order of commits and a
+past moment give the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
+from typing import NamedTuple
+
+from nodes.kb_node.progress import parts
+from nodes.kb_node.relations.facts.rules import RULES, About, Rule
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from schemas.entities import Entity
+from schemas.relations import RelationName
+
+Fact = tuple[str, RelationName, str]
+"""Name, relation, name: ("cup1", "isOn", "table1")."""
+_STEP = 500
+"""Entities."""
+_BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
+"""Along these `upward` goes."""
+
+
+class Changed(NamedTuple):
+    """Which facts no longer hold, and which do now."""
+
+    gone: set[Fact]
+    come: set[Fact]
+
+
+class Facts:
+    """The facts that hold in a map, by their subject, and whom else they speak of."""
+
+    def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
+        self.space = Space(limits=limits)
+        self._kept = [_Kept(rule) for rule in rules]
+        self._in_turn: Iterator[Solid] = iter(())
+        self.shifted: frozenset[str] = frozenset()
+        """Who came to count in a crowd by the last update, or does not any more, because of others."""
+
+    def __iter__(self) -> Iterator[Fact]:
+        """All that hold."""
+        for kept in self._kept:
+            yield from kept.all()
+
+    def holds(self, fact: Fact) -> bool:
+        """Whether one of them does."""
+        name, relation, other = fact
+        return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
+
+    def of(self, name: str) -> Iterator[About]:
+        """What holds of a thing; of what it is on and inside, what counts most comes first."""
+        for kept in self._kept:
+            yield from kept.of.get(name, ())
+
+    def about(self, name: str) -> set[str]:
+        """Of whom a fact holds that speaks of a thing."""
+        return {other for kept in self._kept for other in kept.about.get(name, ())}
+
+    def upward(self, names: Iterable[str]) -> set[str]:
+        """These things, what is on, inside or in them, and what is on or inside that."""
+        found = set(names)
+        waiting = list(found)
+        bearing = [kept for kept in self._kept if not _BEARING.isdisjoint(kept.rule.relations)]
+        while waiting:
+            name = waiting.pop()
+            for kept in bearing:
+                for above in kept.about.get(name, ()):
+                    if above not in found:
+                        found.add(above)
+                        waiting.append(above)
+        return found
+
+    def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
+        """Begin with these, in steps of some tens of milliseconds."""
+        for some in parts(entities, _STEP, _nothing):
+            for entity in some:
+                self.space.put(entity)
+            yield
+        self.space.shifted()
+        for kept in self._kept:
+            for names in parts(tuple(self.space.solids), _STEP, _nothing):
+                kept.work_out(self.space, names, set(), set())
+                yield
+        for solid in self.space.solids.values():
+            solid.forget()
+
+    def _forget(self, count: int) -> None:
+        """Let the next solids, in turn, forget what can be worked out again."""
+        forgot = 0
+        for solid in islice(self._in_turn, count):
+            solid.forget()
+            forgot += 1
+        if forgot < count:
+            self._in_turn = iter(tuple(self.space.solids.values()))
+
+    def _counted(self, name: str) -> Solid | None:
+        """One that others look at."""
+        solid = self.space.solids.get(name)
+        return solid if solid is not None and self.space.counts(solid) else None
+
+    def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
+        """Some entities came or are otherwise now, others went."""
+        space = self.space
+        moved: dict[str, None] = {}
+        left: list[Solid] = []
+        fresh: list[Solid] = []
+        for name in removed:
+            moved[name] = None
+            left += filter(None, (self._counted(name),))
+            space.take(name)
+        for entity in changed:
+            moved[entity.name] = None
+            left += filter(None, (self._counted(entity.name),))
+            fresh += filter(None, (space.put(entity),))
+        shifted = space.shifted()
+        fresh = [*filter(space.counts, fresh), *shifted]
+        moved.update((solid.name, None) for solid in shifted)
+        gone: set[Fact] = set()
+        come: set[Fact] = set()
+        for kept in self._kept:
+            kept.update(space, moved, left, fresh, gone, come)
+        self._forget(8 * len(moved))
+        self.shifted = frozenset(solid.name for solid in shifted)
+        return Changed(gone, come)
+
+
+def _nothing() -> None:
+    pass
+
+
+class _Kept:
+    """The facts of one rule."""
+
+    def __init__(self, rule: Rule) -> None:
+        self.rule = rule
+        self.of: dict[str, tuple[About, ...]] = {}
+        """What holds of a thing."""
+        self.about: dict[str, dict[str, None]] = {}
+        """Of whom a fact holds that speaks of a thing."""
+
+    def all(self) -> Iterator[Fact]:
+        for name, found in self.of.items():
+            for relation, other in found:
+                yield name, relation, other
+
+    def update(
+        self,
+        space: Space,
+        moved: Iterable[str],
+        left: Iterable[Solid],
+        fresh: Iterable[Solid],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        """Work out again what may be otherwise, and add what is to `gone` and `come`."""
+        concerned: dict[str, None] = {}
+        for name in moved:
+            concerned.update(dict.fromkeys(self.about.get(name, ())))
+            concerned[name] = None
+        if not concerned.keys() >= space.solids.keys():
+            others: Sequence[Solid] = (*fresh, *left) if self.rule.when_gone else tuple(fresh)
+            if len(others) > crowds.MOST:
+                beside, others = space.by_crowds(others, self.rule.margin_m(space.limits))
+                concerned.update((solid.name, None) for solid in beside)
+            for solid in others:
+                self._add_whom_it_concerns(space, solid, concerned)
+        self.work_out(space, concerned, gone, come)
+
+    def work_out(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
+        """Work out the facts of some, and add what is otherwise to `gone` and `come`."""
+        for name in names:
+            before = self.of.get(name, ())
+            now = self._work_out(space, name)
+            if now != before:
+                self._replace(name, before, now, gone, come)
+
+    def _add_whom_it_concerns(self, space: Space, solid: Solid, found: dict[str, None]) -> None:
+        concerns = self.rule.concerns
+        for other in space.around(solid, self.rule.margin_m(space.limits)):
+            if other.name not in found and not other.is_place and concerns(space, solid, other):
+                found[other.name] = None
+
+    def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
+        solid = space.solids.get(name)
+        if solid is None or solid.is_place:
+            return ()
+        return tuple(self.rule.facts(space, solid))
+
+    def _replace(
+        self,
+        name: str,
+        before: tuple[About, ...],
+        now: tuple[About, ...],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        if now:
+            self.of[name] = now
+        else:
+            del self.of[name]
+        others = {other for _, other in now}
+        for relation, other in before:
+            if (relation, other) not in now:
+                gone.add((name, relation, other))
+            if other not in others:
+                about = self.about.get(other, {})
+                about.pop(name, None)
+                if not about:
+                    self.about.pop(other, None)
+        for relation, other in now:
+            if (relation, other) not in before:
+                come.add((name, relation, other))
+                self.about.setdefault(other, {})[name] = None

@@ -1,0 +1,89 @@
+"""Which relations are kept as facts of the map: a table, one row for those that are worked out together.
+
+A further relation is a further row. What a row yields must be a function of the solids around a thing alone,
+so that a restart, another order of commits and a past moment give the same facts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Final, NamedTuple
+
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring.arrangement import attachments
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from ontology import vocabulary as v
+from schemas.explanations import Term
+from schemas.relations import RelationName
+
+About = tuple[RelationName, str]
+"""What a fact says of its subject: ("isOn", "table1")."""
+
+
+_ROUNDING = 1e-6
+"""What is asked for here may be asked for in vain."""
+
+
+class Rule(NamedTuple):
+    """How some relations are worked out, and when they have to be worked out again."""
+
+    relations: tuple[RelationName, ...]
+    """Each is a property of its name in the namespace of the household TBox."""
+    facts: Callable[[Space, Solid], Iterator[About]]
+    """What holds of a thing. It is not asked of places."""
+    concerns: Callable[[Space, Solid, Solid], bool]
+    """Whether something may come to hold of the second because of the first, who is new there.
+
+    It must be quick, and may say yes too often. It is asked of those whose bounds are within the margin. What
+    speaks of somebody who went, or changed, is worked out again in any case.
+    """
+    margin_m: Callable[[Thresholds], float] = lambda limits: 0.0
+    """Between the bounds of two whom the relations may join [m]."""
+    when_gone: bool = False
+    """Whether something may come to hold, or cease to, because of somebody who went and of whom it does not
+    speak (nothing is between two things any more). Then `concerns` is asked of the first as it was, too."""
+
+
+def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
+    container, supports, place = space.whereabouts(solid)
+    if container is not None:
+        yield "isInside", container[0].name
+    for support, _ in supports:
+        yield "isOn", support.name
+    if place is not None:
+        yield "isLocatedIn", place[0].name
+
+
+def _attachments(space: Space, solid: Solid) -> Iterator[About]:
+    for other in attachments(space, solid):
+        yield "isAttachedTo", other.name
+
+
+def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
+    """Whether the other may hang on the solid, or not do so any more because that bears it."""
+    if solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m:
+        return True
+    return _may_bear(space, solid, other)
+
+
+def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
+    """Whether the other may be on the solid, inside it or in it."""
+    if solid.is_place:
+        return True
+    limits = space.limits
+    gap = limits.gap_m + _ROUNDING
+    if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
+        return False
+    if not (other.is_level and solid.is_level) or (solid.hollows and other.volume < solid.volume):
+        return True
+    return other.bottom >= max(solid.bottom - limits.contact_m, solid.lowest_top - gap)
+
+
+RULES: Final[tuple[Rule, ...]] = (
+    Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear, when_gone=True),
+    Rule(("isAttachedTo",), _attachments, _may_hold, lambda limits: limits.attached_m, when_gone=True),
+)
+
+COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}
+"""The properties that are computed, where a TBox has them."""

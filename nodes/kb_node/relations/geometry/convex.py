@@ -1,0 +1,305 @@
+"""Convex parts in the map, how far apart two of them are, and which way.
+
+Box, ball, cylinder and capsule are one and the same: a Minkowski sum, around a centre, of segments
+(`straight`), of an ellipsoid or a disc (`round`) and, for meshes, of the hull of some `points`. To turn or
+stretch a part is to turn or stretch its vectors, and how far it reaches along n has a closed form,
+
+    h(n) = n . centre + sum |n . straight_i| + sqrt(sum (n . round_j)^2) + max (n . point_k).
+
+Along a unit vector n, a is -h_a(-n) - h_b(n) above b. The most of this over all n is their signed distance,
+and the n where it is found is the normal of their contact: the separating axis theorem (Gottschalk et al.
+1996), taken from boxes to what is round.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.kb_node.relations.geometry.lazily import lazily
+from nodes.kb_node.relations.geometry.polygons import Point, contains, hull
+from schemas.entities import Vector
+
+Floats = NDArray[np.float64]
+
+DEEPEST_M = 0.005
+"""What is further inside a flat top than this may be nearer to one of its sides."""
+
+
+@dataclass(eq=False)
+class Convex:
+    """A convex part in the map [m], and the box along the axes around it."""
+
+    centre: Vector
+    straight: tuple[Vector, ...]
+    round: tuple[Vector, ...]
+    points: tuple[Vector, ...]
+    low: Vector
+    high: Vector
+
+    @lazily
+    def lowest(self) -> Point:
+        """Where its lowest point is on the floor plan, the middle of that where it is flat below."""
+        x, y, _ = self.centre
+        for vx, vy, vz in self.straight:
+            if abs(vz) > _LEVEL:
+                side = 1.0 if vz > 0.0 else -1.0
+                x, y = x - side * vx, y - side * vy
+        if self.round and (reach := math.sqrt(sum(v[2] * v[2] for v in self.round))) > _LEVEL:
+            x -= sum(v[0] * v[2] for v in self.round) / reach
+            y -= sum(v[1] * v[2] for v in self.round) / reach
+        if self.points:
+            px, py, _ = min(self.points, key=lambda point: point[2])
+            x, y = x + px, y + py
+        return x, y
+
+    @lazily
+    def has_flat_top(self) -> bool:
+        """Whether its top is a level face, and all of its shadow."""
+        upright = [v for v in self.straight if abs(v[2]) > _LEVEL]
+        if len(upright) != 1 or self.points or any(abs(v[2]) > _LEVEL for v in self.round):
+            return False
+        return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
+
+    @lazily
+    def is_square(self) -> bool:
+        """Whether it is a box along the axes."""
+        return (
+            self.has_flat_top
+            and not self.round
+            and sum(abs(x) > _LEVEL for v in self.straight for x in v) == 3
+        )
+
+    @lazily
+    def shadow(self) -> tuple[Point, ...]:
+        """Its outline on the floor plan, counterclockwise; what is round has eight corners."""
+        cx, cy, _ = self.centre
+        flat = [v for v in self.straight if abs(v[0]) > _LEVEL or abs(v[1]) > _LEVEL]
+        if len(flat) == 2 and not self.round and not self.points:
+            (ax, ay, _), (bx, by, _) = (
+                flat if flat[0][0] * flat[1][1] > flat[0][1] * flat[1][0] else flat[::-1]
+            )
+            return (
+                (cx - ax - bx, cy - ay - by),
+                (cx + ax - bx, cy + ay - by),
+                (cx + ax + bx, cy + ay + by),
+                (cx - ax + bx, cy - ay + by),
+            )
+        if not flat and not self.points and self.round and all(abs(v[2]) < _LEVEL for v in self.round):
+            (ax, ay, _), (bx, by, _) = self.round
+            if ax * by < ay * bx:
+                bx, by = -bx, -by
+            return tuple((cx + c * ax + s * bx, cy + c * ay + s * by) for c, s in _OCTAGON)
+        return tuple(hull([self._reached(x, y) for x, y in _COMPASS]))
+
+    def _reached(self, nx: float, ny: float) -> Point:
+        """Its point on the floor plan that is furthest in a direction."""
+        x, y, _ = self.centre
+        for vx, vy, _ in self.straight:
+            side = nx * vx + ny * vy
+            if abs(side) > _LEVEL:
+                x, y = x + math.copysign(vx, vx * side), y + math.copysign(vy, vy * side)
+        along = [nx * v[0] + ny * v[1] for v in self.round]
+        if self.round and (reach := math.hypot(*along)) > _LEVEL:
+            x += _EQUAL_AREA * sum(share * v[0] for share, v in zip(along, self.round, strict=True)) / reach
+            y += _EQUAL_AREA * sum(share * v[1] for share, v in zip(along, self.round, strict=True)) / reach
+        if self.points:
+            px, py, _ = max(self.points, key=lambda point: nx * point[0] + ny * point[1])
+            x, y = x + px, y + py
+        return x, y
+
+
+@dataclass(eq=False)
+class _Moved(Convex):
+    """Like another one, elsewhere."""
+
+    like: Convex
+    x: float
+    y: float
+
+    @lazily
+    def lowest(self) -> Point:
+        x, y = self.like.lowest
+        return self.x + x, self.y + y
+
+    @property
+    def has_flat_top(self) -> bool:
+        return self.like.has_flat_top
+
+    @property
+    def is_square(self) -> bool:
+        return self.like.is_square
+
+    @lazily
+    def shadow(self) -> tuple[Point, ...]:
+        own_x, own_y = self.x, self.y
+        return tuple([(own_x + x, own_y + y) for x, y in self.like.shadow])
+
+
+def moved(part: Convex, by: Vector) -> Convex:
+    """The part elsewhere."""
+    x, y, z = by
+    cx, cy, cz = part.centre
+    x0, y0, z0 = part.low
+    x1, y1, z1 = part.high
+    return _Moved(
+        (x + cx, y + cy, z + cz),
+        part.straight,
+        part.round,
+        part.points,
+        (x + x0, y + y0, z + z0),
+        (x + x1, y + y1, z + z1),
+        part,
+        x,
+        y,
+    )
+
+
+_LEVEL = 1e-6
+_COMPASS = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
+_EQUAL_AREA = math.sqrt(math.pi / (2.0 * math.sqrt(2.0)))
+"""An octagon whose corners are so much further out has a disc's area."""
+_OCTAGON = tuple((_EQUAL_AREA * x, _EQUAL_AREA * y) for x, y in _COMPASS)
+
+
+class Contact(NamedTuple):
+    """How far two parts are apart [m], negative inside one another, and the unit normal between them."""
+
+    distance: float
+    normal: Vector
+
+
+UP: Vector = (0.0, 0.0, 1.0)
+
+
+def convex(
+    centre: Vector, straight: tuple[Vector, ...], round_: tuple[Vector, ...], points: tuple[Vector, ...] = ()
+) -> Convex:
+    """The part with its box."""
+    cx, cy, cz = centre
+    rx = ry = rz = 0.0
+    for x, y, z in straight:
+        rx += abs(x)
+        ry += abs(y)
+        rz += abs(z)
+    if round_:
+        rx += math.sqrt(sum(v[0] * v[0] for v in round_))
+        ry += math.sqrt(sum(v[1] * v[1] for v in round_))
+        rz += math.sqrt(sum(v[2] * v[2] for v in round_))
+    low, high = (cx - rx, cy - ry, cz - rz), (cx + rx, cy + ry, cz + rz)
+    if points:
+        ends = [(min(along), max(along)) for along in zip(*points, strict=True)]
+        low = tuple(a + end[0] for a, end in zip(low, ends, strict=True))
+        high = tuple(a + end[1] for a, end in zip(high, ends, strict=True))
+    return Convex(centre, straight, round_, points, low, high)
+
+
+def over_flat_top(upper: Convex, lower: Convex) -> bool:
+    """Whether the lowest point of one is over the flat, level top of the other: then they meet upright."""
+    if upper.low[2] < lower.high[2] - DEEPEST_M or not lower.has_flat_top:
+        return False
+    if not lower.is_square:
+        return contains(lower.shadow, upper.lowest)
+    x, y = upper.lowest
+    return lower.low[0] <= x <= lower.high[0] and lower.low[1] <= y <= lower.high[1]
+
+
+def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
+    """The signed distance of two parts [m], and the normal that points from the other to the one.
+
+    Of what is further apart than `most` only that is known.
+    """
+    if one.is_square and other.is_square:
+        return _between_boxes(one, other)
+    offset = np.subtract(one.centre, other.centre)
+    straight = np.array([*one.straight, *other.straight]).reshape(-1, 3).T
+    rounds = [np.array(r).T for r in (one.round, other.round) if r]
+    hulls = [sign * np.array(p).T for sign, p in ((-1.0, one.points), (1.0, other.points)) if p]
+
+    def apart(normals: Floats) -> Floats:
+        """(N, 3) unit normals to (N,) distances."""
+        found: Floats = normals @ offset - np.abs(normals @ straight).sum(axis=1)
+        for vectors in rounds:
+            found -= np.sqrt(((normals @ vectors) ** 2).sum(axis=1))
+        for points in hulls:
+            found -= (normals @ points).max(axis=1)
+        return found
+
+    normals = np.concatenate([_SPHERE, _exact_normals(one, other)])
+    distances = apart(normals)
+    best = int(distances.argmax())
+    normal, distance = normals[best], float(distances[best])
+    for width in _WIDTHS:
+        if distance > most:
+            break
+        across = np.cross(normal, _AXES[int(np.abs(normal).argmin())])
+        across /= math.sqrt(across @ across)
+        tried = normal + width * (_PATCH @ np.array([across, np.cross(normal, across)]))
+        tried /= np.sqrt((tried * tried).sum(axis=1))[:, None]
+        distances = apart(tried)
+        best = int(distances.argmax())
+        if distances[best] > distance:
+            normal, distance = tried[best], float(distances[best])
+    return Contact(distance, (float(normal[0]), float(normal[1]), float(normal[2])))
+
+
+def _between_boxes(one: Convex, other: Convex) -> Contact:
+    """The same of two boxes along the axes: from corner to corner, or along the axis that separates best."""
+    apart = [
+        max(low - its_high, its_low - high)
+        for low, high, its_low, its_high in zip(one.low, one.high, other.low, other.high, strict=True)
+    ]
+    least = max(apart)
+    if least > 0.0:
+        reach = [max(along, 0.0) for along in apart]
+        distance = length = math.hypot(*reach)
+    else:
+        reach = [float(axis == apart.index(least)) for axis in range(3)]
+        distance, length = least, 1.0
+    x, y, z = (
+        math.copysign(along / length, here - there)
+        for along, here, there in zip(reach, one.centre, other.centre, strict=True)
+    )
+    return Contact(distance, (x, y, z))
+
+
+def _exact_normals(one: Convex, other: Convex) -> Floats:
+    """Where flat faces and straight edges meet: normals of faces, and what is square to two edges; (N, 3)."""
+    first = [*_faces(one), *_faces(other), *((a, b) for a in one.straight for b in other.straight)]
+    if not first:
+        return _AXES
+    pairs = np.array(first)
+    found = np.cross(pairs[:, 0], pairs[:, 1])
+    lengths = np.sqrt((found * found).sum(axis=1))
+    kept = lengths > 1e-12
+    found = found[kept] / lengths[kept, None]
+    return np.concatenate([found, -found])
+
+
+def _faces(part: Convex) -> list[tuple[Vector, Vector]]:
+    """Two vectors in each of its flat faces."""
+    if len(part.straight) == 3:
+        a, b, c = part.straight
+        return [(a, b), (b, c), (c, a)]
+    return [(part.round[0], part.round[1])] if len(part.round) == 2 else []
+
+
+def _sphere(count: int) -> Floats:
+    """Unit vectors spread evenly (a golden spiral): (count, 3)."""
+    k = np.arange(count)
+    z = 1.0 - (2.0 * k + 1.0) / count
+    turn = k * math.pi * (3.0 - math.sqrt(5.0))
+    ring = np.sqrt(1.0 - z * z)
+    return np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=1)
+
+
+_AXES = np.eye(3)
+_SPHERE = np.concatenate([_sphere(324), _AXES, -_AXES])
+"""Where the search for a normal starts: 11 degrees apart at most."""
+_WIDTHS = tuple(math.tan(math.radians(degrees)) for degrees in (8.0, 2.5, 0.8, 0.25, 0.08, 0.025))
+"""How far around the best normal so far is looked, in turn."""
+_PATCH = np.array([(a / 3.0, b / 3.0) for a in range(-3, 4) for b in range(-3, 4)])

@@ -1,0 +1,158 @@
+"""What all that are alike have in common: a shape at a size, turned some way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Final
+
+from nodes.kb_node.relations.geometry.convex import Convex, convex
+from nodes.kb_node.relations.geometry.fitting import fitted
+from nodes.kb_node.relations.geometry.lazily import lazily
+from nodes.kb_node.relations.geometry.polygons import Point, area, hull
+from ontology.model_shapes import ModelShape
+from schemas.entities import Size, Vector
+
+UPRIGHT = math.cos(math.radians(15.0))
+"""A thing that leans more has no level surfaces."""
+LEVEL = math.cos(math.radians(0.2))
+LOWEST_M = 0.01
+"""Parts that end this near to the lowest point are what a thing stands on."""
+_BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
+"""Of what nobody measured."""
+
+Matrix = tuple[Vector, Vector, Vector]
+Bounds = tuple[float, float, float, float]
+"""Least x and y, greatest x and y [m]."""
+_WORKED_OUT = ("corners", "outline", "base", "parts")
+
+
+class Form:
+    """A shape as it is turned, seen from the middle of its bottom [m]; the axes are those of the map.
+
+    Most things of a map stand upright like others of their model: what is worked out here is so once for all
+    of them.
+    """
+
+    def __init__(self, size: Size, rotation: Matrix, shape: ModelShape) -> None:
+        """`rotation` is map from body; `shape` is of that size, in its own frame."""
+        self.size: Final = size
+        self.rotation: Final = rotation
+        self.shape: Final = shape
+        self.users = 0
+        """How many solids have had it."""
+        self.is_level: Final = rotation[2][2] >= LEVEL
+        self.is_upright: Final = rotation[2][2] >= UPRIGHT
+
+    def turned(self, vector: Vector) -> Vector:
+        """A vector of its own frame along the axes of the map."""
+        x, y, z = vector
+        (a, b, c), (d, e, f), (g, h, i) = self.rotation
+        return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+
+    @lazily
+    def corners(self) -> tuple[Vector, ...]:
+        """The eight corners; the four of its base first."""
+        x, y, z = self.size
+        return tuple(
+            self.turned((sx * x / 2, sy * y / 2, level))
+            for level in (0.0, z)
+            for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        )
+
+    @lazily
+    def lowest_corner(self) -> float:
+        """The height of its box's lowest corner."""
+        return min(corner[2] for corner in self.corners)
+
+    @lazily
+    def bottom(self) -> float:
+        """The height of its lowest point."""
+        return min([part.low[2] for part in self.parts]) if self.parts else self.lowest_corner
+
+    @lazily
+    def top(self) -> float:
+        """The height of its box's highest corner."""
+        (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
+        return max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
+
+    @lazily
+    def bounds(self) -> Bounds:
+        """Of its box."""
+        (a, b, c), (d, e, f), _ = self.rotation
+        x, y, z = self.size
+        mid_x, mid_y = c * z / 2, f * z / 2
+        half_x = (abs(a) * x + abs(b) * y + abs(c) * z) / 2
+        half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
+        return mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y
+
+    @lazily
+    def is_square(self) -> bool:
+        """Whether its outline is its bounds."""
+        (a, b, _), (d, e, _), _ = self.rotation
+        return self.is_level and (max(abs(b), abs(d)) < _EXACTLY or max(abs(a), abs(e)) < _EXACTLY)
+
+    @lazily
+    def outline(self) -> list[Point]:
+        """Its shadow on the floor."""
+        if not self.is_level:
+            return hull([(x, y) for x, y, _ in self.corners])
+        (a, b, _), (d, e, _), _ = self.rotation
+        x, y, _ = self.size
+        ax, ay, bx, by = a * x / 2, d * x / 2, b * y / 2, e * y / 2
+        return [(-ax - bx, -ay - by), (ax - bx, ay - by), (ax + bx, ay + by), (-ax + bx, -ay + by)]
+
+    @lazily
+    def base(self) -> Sequence[Point]:
+        """The outline of its lowest parts."""
+        parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
+        return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
+
+    @lazily
+    def parts(self) -> tuple[Convex, ...]:
+        """What of it collides."""
+        turned = self.turned
+        return tuple(
+            convex(
+                turned(part.centre),
+                tuple(map(turned, part.straight)),
+                tuple(map(turned, part.round)),
+                tuple(map(turned, part.points)),
+            )
+            for part in self.shape.parts
+        )
+
+    @lazily
+    def volume(self) -> float:
+        """Of its box [m^3]."""
+        x, y, z = self.size
+        return x * y * z
+
+    @lazily
+    def footprint(self) -> float:
+        """Of its shadow [m^2]."""
+        return area(self.outline)
+
+    def forget(self) -> None:
+        """Drop what takes most of the memory and can be worked out again."""
+        for name in _WORKED_OUT:
+            self.__dict__.pop(name, None)
+
+
+_EXACTLY = 1e-9
+
+
+@lru_cache(maxsize=4096)
+def form_of(model: str | None, size: Size, wxyz: tuple[float, float, float, float]) -> Form:
+    """The form of a model at a size; None has no parts, and "" is a box."""
+    return Form(size, _rotation(wxyz), _BOX if model is None else fitted(model, size))
+
+
+def _rotation(wxyz: tuple[float, float, float, float]) -> Matrix:
+    w, x, y, z = wxyz
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )

@@ -1,0 +1,175 @@
+"""An entity as a solid: an oriented box in the map, its supporting surfaces and its hollows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from nodes.kb_node.relations.geometry.convex import Convex, moved
+from nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of
+from nodes.kb_node.relations.geometry.lazily import lazily
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.polygons import Point
+from ontology.model_shapes import Interior, own_size_m
+from schemas.entities import Entity, Size, Vector
+
+SAMPLES = 5
+"""Points along each axis that stand for a volume."""
+_WORKED_OUT = ("outline", "base", "centre", "supports", "parts", "samples")
+
+
+@dataclass(frozen=True)
+class Support:
+    """A level surface of a solid in the map frame: height [m] and outline."""
+
+    height: float
+    outline: tuple[Point, ...]
+    fill: float
+
+
+class Solid:
+    """A thing or place in the map: position [m] of its bottom centre, and its form as it is turned there.
+
+    `is_measured`: somebody gave it a size, or its model has one. What is not is a point, and claims nothing
+    but where its position is.
+    """
+
+    def __init__(self, name: str, position: Vector, form: Form, is_place: bool, is_measured: bool) -> None:
+        self.name: Final = name
+        self.position: Final = position
+        self.form: Final = form
+        self.is_place: Final = is_place
+        self.is_measured: Final = is_measured
+        form.users += 1
+        self.is_level: Final = form.is_level
+        """Whether it leans by less than a fifth of a degree."""
+        x, y, z = position
+        low_x, low_y, high_x, high_y = form.bounds
+        self.bounds: Final[Bounds] = (x + low_x, y + low_y, x + high_x, y + high_y)
+        """Least x and y, greatest x and y [m]."""
+        self.bottom: Final = z + (form.bottom if is_measured and not is_place else form.lowest_corner)
+        """Its lowest point [m]."""
+        self.top: Final = z + form.top
+        """Its highest point [m], that of its box."""
+
+    @property
+    def rotation(self) -> Matrix:
+        """Map from body."""
+        return self.form.rotation
+
+    @property
+    def size(self) -> Size:
+        """Along its own axes [m]."""
+        return self.form.size
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether its z axis is up, within 15 degrees."""
+        return self.form.is_upright
+
+    @property
+    def volume(self) -> float:
+        """Of its box [m^3]."""
+        return self.form.volume
+
+    @property
+    def footprint(self) -> float:
+        """Of its shadow [m^2]."""
+        return self.form.footprint
+
+    @property
+    def hollows(self) -> tuple[Interior, ...]:
+        """Its interiors, in its own frame."""
+        return self.form.shape.interiors if self.is_measured else ()
+
+    @lazily
+    def lowest_top(self) -> float:
+        """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
+        return min([part.high[2] for part in self.parts], default=self.top)
+
+    @lazily
+    def outline(self) -> list[Point]:
+        """Its shadow on the floor."""
+        px, py, _ = self.position
+        return [(px + x, py + y) for x, y in self.form.outline]
+
+    @lazily
+    def base(self) -> Sequence[Point]:
+        """What it stands on: the outline of its lowest parts."""
+        px, py, _ = self.position
+        return [(px + x, py + y) for x, y in self.form.base] if self.parts else []
+
+    @lazily
+    def centre(self) -> Vector:
+        """The middle of its box, map frame [m]."""
+        return self.to_map((0.0, 0.0, self.size[2] / 2))
+
+    @lazily
+    def supports(self) -> tuple[Support, ...]:
+        """The surfaces that carry things; the whole top of what has no model."""
+        if self.is_place or not self.is_measured or not self.is_upright:
+            return ()
+        return tuple(
+            Support(
+                self.to_map((0.0, 0.0, surface.height))[2],
+                tuple(
+                    self.to_map((x, y, surface.height))[:2]
+                    for x, y in (
+                        (surface.low[0], surface.low[1]),
+                        (surface.high[0], surface.low[1]),
+                        (surface.high[0], surface.high[1]),
+                        (surface.low[0], surface.high[1]),
+                    )
+                ),
+                surface.fill,
+            )
+            for surface in self.form.shape.surfaces
+        )
+
+    @lazily
+    def parts(self) -> tuple[Convex, ...]:
+        """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
+        if self.is_place or not self.is_measured:
+            return ()
+        return tuple([moved(part, self.position) for part in self.form.parts])
+
+    def forget(self) -> None:
+        """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
+        for name in _WORKED_OUT:
+            self.__dict__.pop(name, None)
+        if self.form.users == 1:
+            self.form.forget()
+
+    def to_map(self, point: Vector) -> Vector:
+        """A point of its own frame in the map's."""
+        px, py, pz = self.position
+        x, y, z = self.form.turned(point)
+        return px + x, py + y, pz + z
+
+    def to_own(self, point: Vector) -> Vector:
+        """A point of the map in its own frame."""
+        x, y, z = (p - o for p, o in zip(point, self.position, strict=True))
+        (a, b, c), (d, e, f), (g, h, i) = self.rotation
+        return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
+
+    @lazily
+    def samples(self) -> list[Vector]:
+        """Points spread evenly over its volume, map frame [m]."""
+        x, y, z = self.size
+        shares = [(k + 0.5) / SAMPLES for k in range(SAMPLES)]
+        return [
+            self.to_map(((u - 0.5) * x, (v - 0.5) * y, w * z)) for u in shares for v in shares for w in shares
+        ]
+
+
+def solid_of(entity: Entity | Placed) -> Solid | None:
+    """The solid of an entity; None without a position."""
+    pose = entity.pose
+    if pose is None:
+        return None
+    is_place, model = entity.place, entity.model
+    size = entity.size_m or (None if is_place else own_size_m(model) if model else None)
+    known_as = None if size is None or is_place else model
+    form = form_of(known_as, size or (0.02, 0.02, 0.02), pose.orientation_wxyz)
+    return Solid(entity.name, pose.position_m, form, is_place, size is not None)

@@ -1,0 +1,1 @@
+"""What holds of two things, by their shapes, with what was measured; who is near whom."""

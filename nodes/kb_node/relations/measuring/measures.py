@@ -1,0 +1,258 @@
+"""What is measured between two solids, relation by relation. None where nothing can be measured.
+
+*On* and *in* are grounded in support and containment, not in overlapping boxes (Richard-Bollans et al. 2019).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from nodes.kb_node.relations.geometry.convex import contact, over_flat_top
+from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
+from nodes.kb_node.relations.geometry.polygons import area, clipped, contains, covers, distance, hull
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from ontology.model_shapes import Interior
+
+_ROUNDING = 1e-9
+"""0.80 - 0.75 is more than 0.05 in floats."""
+_SIDEWAYS = math.sin(math.radians(10.0))
+"""A normal nearer to the horizontal than this is that of two who stand side by side."""
+_FLAT = math.cos(math.radians(2.0))
+"""A normal this near to the vertical is that of a flat contact."""
+
+
+class Measure(NamedTuple):
+    """Whether a relation holds between two solids, and the numbers behind it."""
+
+    holds: bool
+    gap_m: float = 0.0
+    """Between the two; of *on* how far the bottom is above the surface, negative below it."""
+    share: float = 1.0
+    """Of the first one's base, volume or footprint that the relation is about."""
+    height_m: float = 0.0
+    """Of the surface, in the map."""
+    limit: float = 0.0
+    """Up to which gap, or from which share on, it holds."""
+
+
+def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
+    """How one rests on another: where they meet, or nearly do, along a normal that points up.
+
+    None where they do not, or where the one's base is nowhere over the other. It does not hold of what only
+    leans there, along a steeper normal.
+    """
+    reach = limits.gap_m + _ROUNDING
+    if upper is lower or upper.bottom - lower.top > reach or not overlap(upper.bounds, lower.bounds):
+        return None
+    # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
+    most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
+    if most < 0.0 and upper.is_level and lower.is_level:
+        return None
+    most = max(most, limits.contact_m)
+    pairs = []
+    is_level = upper.is_level and lower.is_level
+    for part in upper.parts:
+        (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+        for other in lower.parts:
+            (low_x, low_y, low_z), (high_x, high_y, high_z) = other.low, other.high
+            least = z0 - high_z
+            if least > most or z1 <= low_z or (is_level and least < -reach):
+                continue
+            if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
+                pairs.append((least, part, other))
+    if not pairs:
+        return None
+    if len(pairs) > 1:
+        pairs.sort(key=_least)
+    best: Measure | None = None
+    leaning: Measure | None = None
+    for least, part, other in pairs:
+        if best is not None and least >= best.gap_m:
+            break
+        gap, upright = least, 1.0
+        if not over_flat_top(part, other):
+            gap, (_, _, upright) = contact(part, other, most)
+            if not -reach <= gap <= most:
+                continue
+            if upright < limits.upright:
+                if upright > _SIDEWAYS and abs(gap) <= limits.contact_m:
+                    leaning = Measure(False, gap, 1.0, upper.bottom - gap, most)
+                continue
+        if best is None or gap < best.gap_m:
+            best = Measure(True, gap, 1.0, upper.bottom - gap, most)
+            is_flat = upright > _FLAT and other.has_flat_top
+    if best is None:
+        return leaning
+    if not (is_flat and upper.is_upright):
+        return best
+    share = _covered(upper, lower, best.height_m)
+    return Measure(True, best.gap_m, share, best.height_m, most) if share > 0.0 else None
+
+
+def _least(pair: tuple[float, object, object]) -> float:
+    return pair[0]
+
+
+def _covered(upper: Solid, lower: Solid, height: float) -> float:
+    """The share of a base that is over flat tops at a height."""
+    bearing = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    for part in bearing:
+        if part.is_square and _is_amid(upper.bounds, (*part.low[:2], *part.high[:2])):
+            return 1.0
+    base = upper.base
+    tops = [part.shadow for part in bearing]
+    for top in tops:
+        if covers(top, base):
+            return 1.0
+    whole = area(base)
+    return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
+
+
+def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
+    """Whether the middle of a base is over what bears it at a height, or between that."""
+    base = upper.base
+    region = hull(
+        [
+            corner
+            for other in lower
+            for part in other.parts
+            if part.has_flat_top and abs(part.high[2] - height) <= LOWEST_M
+            for corner in clipped(base, part.shadow)
+        ]
+    )
+    x0, y0, x1, y1 = (limit(along) for limit in (min, max) for along in zip(*base, strict=True))
+    return len(region) > 2 and contains(region, ((x0 + x1) / 2, (y0 + y1) / 2))
+
+
+def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
+    """How far above the best surface of the other one is, however far; None where it is over none of them."""
+    if upper is lower or not upper.is_measured or not overlap(upper.bounds, lower.bounds):
+        return None
+    whole = area(upper.outline)
+    best: Measure | None = None
+    for support in lower.supports:
+        gap = upper.bottom - support.height
+        share = area(clipped(upper.outline, support.outline)) / whole if whole > 0.0 else 0.0
+        if share > 0.0 and (best is None or abs(gap) < abs(best.gap_m)):
+            best = Measure(False, gap, share, support.height, limits.base_share)
+    return best
+
+
+def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
+    """The share of one's volume that is in a hollow of the other; None where that has none, or is smaller."""
+    if not outer.hollows or inner is outer or inner.is_place or not inner.is_measured:
+        return None
+    if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
+        return None
+    share = max(_share_in(inner, outer, hollow) for hollow in outer.hollows)
+    return Measure(share >= limits.inside_share, share=share, limit=limits.inside_share)
+
+
+def _share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
+    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
+    if not (inner.is_level and outer.is_level):
+        points = inner.samples
+        found = [outer.to_own(point) for point in points]
+        return sum(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1 for x, y, z in found) / len(points)
+    floor, lid = outer.position[2] + z0, outer.position[2] + z1
+    height = min(lid, inner.position[2] + inner.size[2]) - max(floor, inner.position[2])
+    if height <= 0.0:
+        return 0.0
+    walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+    return area(clipped(inner.outline, walls)) * height / inner.volume
+
+
+def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
+    """How near what collides of the two is; None for what is further apart than counts."""
+    if one is other or not overlap(one.bounds, other.bounds, limits.contact_m):
+        return None
+    limit = limits.contact_m
+    nearest: float | None = None
+    for part in one.parts:
+        (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+        for its in other.parts:
+            (a0, b0, c0), (a1, b1, c1) = its.low, its.high
+            if max(x0 - a1, a0 - x1, y0 - b1, b0 - y1, z0 - c1, c0 - z1) > limit:
+                continue
+            if over_flat_top(part, its):
+                apart = z0 - c1
+            elif over_flat_top(its, part):
+                apart = c0 - z1
+            else:
+                apart = contact(part, its, limit).distance
+            if apart <= limit and (nearest is None or apart < nearest):
+                nearest = apart
+    return None if nearest is None else Measure(True, nearest, limit=limit)
+
+
+def within(solid: Solid, place: Solid, limits: Thresholds) -> Measure | None:
+    """The share of one's footprint that is in a place; of what has no size, whether its position is."""
+    if not place.is_place or not place.is_measured or solid.is_place:
+        return None
+    height = solid.centre[2] if solid.is_measured else solid.position[2]
+    limit = limits.place_share
+    if not place.bottom - limits.gap_m <= height <= place.top + limits.gap_m:
+        return Measure(False, share=0.0, limit=limit)
+    if not solid.is_measured:
+        share = float(contains(place.outline, solid.position[:2]))
+    elif not overlap(solid.bounds, place.bounds):
+        share = 0.0
+    elif (place.form.is_square and _is_amid(solid.bounds, place.bounds)) or covers(
+        place.outline, solid.outline
+    ):
+        share = 1.0
+    else:
+        share = area(clipped(solid.outline, place.outline)) / max(area(solid.outline), 1e-9)
+    return Measure(share >= limit, share=share, limit=limit)
+
+
+def gap(one: Solid, other: Solid) -> float:
+    """The distance of two boxes [m]; of leaning ones that of the upright prisms around them."""
+    up = max(0.0, one.bottom - other.top, other.bottom - one.top)
+    return math.hypot(distance(one.outline, other.outline), up)
+
+
+def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
+    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances."""
+    if one is other or one.is_place or other.is_place:
+        return None
+    limit = min(limits.near_most_m, limits.near_share * (max(one.size) + max(other.size)) / 2.0)
+    between = gap(one, other)
+    return Measure(between <= limit, between, limit=limit)
+
+
+def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
+    """Whether one is below a part of the other, as a box is under a table; None if nothing is over it."""
+    if lower is upper or lower.is_place or upper.is_place or not (lower.is_measured and upper.is_measured):
+        return None
+    if not overlap(lower.bounds, upper.bounds):
+        return None
+    least = lower.top - limits.touch_m
+    above = lower.top + limits.contact_m  # a surface at the height of its own top is beside it
+    ceilings = [support.height for support in upper.supports if support.height > above]
+    if upper.bottom >= least:
+        ceilings.append(upper.bottom)
+    smaller = max(min(lower.footprint, upper.footprint), 1e-9)
+    share = area(clipped(lower.outline, upper.outline)) / smaller
+    if share == 0.0 or not ceilings:
+        return None
+    height = min(ceilings)
+    return Measure(share >= limits.beneath_share, height - lower.top, share, height, limits.beneath_share)
+
+
+def _is_amid(one: Bounds, other: Bounds) -> bool:
+    """Whether one rectangle along the axes is within another."""
+    return one[0] >= other[0] and one[1] >= other[1] and one[2] <= other[2] and one[3] <= other[3]
+
+
+def overlap(one: Bounds, other: Bounds, margin_m: float = 0.0) -> bool:
+    """Whether two rectangles along the axes meet, or are within a margin."""
+    return (
+        one[0] - margin_m <= other[2]
+        and other[0] - margin_m <= one[2]
+        and one[1] - margin_m <= other[3]
+        and other[1] - margin_m <= one[3]
+    )

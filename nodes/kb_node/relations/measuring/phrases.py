@@ -1,0 +1,82 @@
+"""How relations and lengths are put into words, and the measurement behind a relation that holds."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring.measures import Measure
+from schemas.relations import RelationName
+
+SPOKEN: Final[dict[RelationName, str]] = {
+    "isOn": "is on",
+    "isInside": "is inside",
+    "isLocatedIn": "is in",
+    "isAttachedTo": "is attached to",
+    "touches": "touches",
+    "isUnder": "is under",
+    "isAbove": "is above",
+    "isNear": "is near",
+    "isNextTo": "is next to",
+    "isLeftOf": "is left of",
+    "isRightOf": "is right of",
+    "isInFrontOf": "is in front of",
+    "isBehind": "is behind",
+    "isBetween": "is between",
+    "isVisibleFrom": "is visible from",
+}
+SIDES: Final[tuple[RelationName, ...]] = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
+"""Those on which side of another a thing is."""
+
+_LEVEL_M = 0.00005
+"""What would be 0.0 mm."""
+
+
+def spoken(relation: RelationName, holds: bool = True) -> str:
+    """A relation as a verb: "is on", "is not on", "does not touch"."""
+    if holds:
+        return SPOKEN[relation]
+    return "does not touch" if relation == "touches" else SPOKEN[relation].replace("is ", "is not ", 1)
+
+
+def metres(value: float) -> str:
+    """A length as a person reads it."""
+    if abs(value) < 0.01:
+        return f"{1000.0 * value:.1f} mm"
+    return f"{100.0 * value:.1f} cm" if abs(value) < 1.0 else f"{value:.2f} m"
+
+
+def height_over(gap_m: float) -> str:
+    """How far a bottom is above or below a surface, as an adverbial that "a surface" follows."""
+    if abs(gap_m) < _LEVEL_M:
+        return "level with"
+    return f"{metres(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
+
+
+def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+    """The measurement behind a relation, as a clause."""
+    match relation:
+        case "isOn":
+            return (
+                f"its bottom is {height_over(made.gap_m)} a surface of {other.name},"
+                f" at {metres(made.height_m)}, and {made.share:.0%} of its base is over it"
+            )
+        case "isInside":
+            return f"{made.share:.0%} of its volume is within a hollow of {other.name}"
+        case "isLocatedIn":
+            part = f"{made.share:.0%} of its footprint" if solid.is_measured else "its position"
+            is_ = "is" if made.share > 0.0 else "is not"
+            return f"{part} {is_} within {other.name}"
+        case "isUnder":
+            return f"its top is {metres(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
+        case "isAbove":
+            return f"it is {metres(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+        case "isAttachedTo":
+            return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
+        case "touches":
+            return f"they are {metres(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
+        case "isNextTo":
+            return f"they are {metres(made.gap_m)} apart, stand on the same, and nothing is between them"
+    return (
+        f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
+    )

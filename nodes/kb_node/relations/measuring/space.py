@@ -1,0 +1,229 @@
+"""All solids of a map and the relations between them: a function of poses and shapes, without a memory."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from nodes.kb_node.relations.geometry.forms import Bounds
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.grid import Grid
+from nodes.kb_node.relations.measuring.measures import Measure
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from schemas.entities import Entity
+
+Found = tuple[Solid, Measure]
+
+
+class Whereabouts(NamedTuple):
+    """What a thing is inside, what it is on, and in which place; what it is inside it is not on."""
+
+    container: Found | None
+    supports: tuple[Found, ...]
+    """Several of what bridges or leans; the one that counts most first."""
+    place: Found | None
+
+
+class Space:
+    """The solids of a map, found by where they are."""
+
+    def __init__(self, entities: Iterable[Entity | Placed] = (), limits: Thresholds | None = None) -> None:
+        self.limits = limits or Thresholds()
+        self.solids: dict[str, Solid] = {}
+        self._grid = Grid()
+        self._raised: set[str] = set()
+        """The things that are above the floor or of a size of their own."""
+        self._remembered: dict[str, Whereabouts] | None = None
+        for entity in entities:
+            self.put(entity)
+
+    def put(self, entity: Entity | Placed) -> Solid | None:
+        """Add an entity, or have it where it is now; its solid, if it has a position."""
+        self.take(entity.name)
+        solid = solid_of(entity)
+        if solid is not None:
+            self._add(solid)
+            if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
+                self._raised.add(solid.name)
+        return solid
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
+        return not self._raised
+
+    def take(self, name: str) -> None:
+        """Take an entity out, if it is there."""
+        solid = self.solids.pop(name, None)
+        if solid is not None:
+            self._grid.remove(solid)
+            self._raised.discard(name)
+
+    @contextmanager
+    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
+        """Within, these entities are as given here, and those without are not there."""
+        entities, without = tuple(entities), tuple(without)
+        names = {*(entity.name for entity in entities), *without}
+        before = [solid for name in names if (solid := self.solids.get(name)) is not None]
+        raised = self._raised & names
+        try:
+            for name in without:
+                self.take(name)
+            for entity in entities:
+                self.put(entity)
+            yield
+        finally:
+            for name in names:
+                self.take(name)
+            for solid in before:
+                self._add(solid)
+            self._raised |= raised
+            self.shifted()
+
+    def shifted(self) -> list[Solid]:
+        """Who came to count, or does not count any more, since this was asked last."""
+        grid = self._grid
+        if not grid.shifted:
+            return []
+        found = list(grid.shifted)
+        grid.shifted.clear()
+        return found
+
+    def _add(self, solid: Solid) -> None:
+        self.solids[solid.name] = solid
+        self._grid.add(solid)
+
+    def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+        """Whose bounds meet its own, or are within a margin of them."""
+        return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
+
+    def counted_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+        """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
+        return [other for other in self._grid.counted_around(solid.bounds, margin_m) if other is not solid]
+
+    def counts(self, solid: Solid) -> bool:
+        """Whether others look at it."""
+        return self._grid.counts(solid)
+
+    def is_crowded(self, solid: Solid) -> bool:
+        """Whether there is more around it than is looked at."""
+        return self._grid.is_crowded(solid)
+
+    def by_crowds(self, solids: Iterable[Solid], margin_m: float) -> tuple[dict[Solid, None], list[Solid]]:
+        """Of some: who may be beside those that are very many in one spot, and the others of them."""
+        return self._grid.by_crowds(solids, margin_m)
+
+    def crowds(self, names: Collection[str] | None = None) -> list[str]:
+        """Where not all count, a sentence each, the most crowded first; with `names`, where one is."""
+        return self._grid.told_crowds(names)
+
+    def within(self, bounds: Bounds) -> list[Solid]:
+        """Whose bounds meet these."""
+        return self._grid.around(bounds)
+
+    @contextmanager
+    def remembering(self) -> Iterator[None]:
+        """Within, nothing changes, so that whereabouts need to be worked out once only."""
+        self._remembered = {}
+        try:
+            yield
+        finally:
+            self._remembered = None
+
+    def whereabouts(self, solid: Solid) -> Whereabouts:
+        """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
+        if self._remembered is None:
+            return self._whereabouts(solid)
+        if (known := self._remembered.get(solid.name)) is None:
+            known = self._remembered[solid.name] = self._whereabouts(solid)
+        return known
+
+    def _whereabouts(self, solid: Solid) -> Whereabouts:
+        limits = self.limits
+        container: Found | None = None
+        place: Found | None = None
+        below: list[Found] = []
+        least = solid.bottom - limits.gap_m - 1e-6
+        for other in self.counted_around(solid):
+            if other.is_place:
+                made = measures.within(solid, other, limits)
+                if made and made.holds and (place is None or _area(other) < _area(place[0])):
+                    place = (other, made)
+                continue
+            if other.top < least:
+                continue
+            made = measures.inside(solid, other, limits) if other.hollows else None
+            if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
+                container = (other, made)
+            made = measures.on(solid, other, limits)
+            if made is not None:
+                below.append((other, made))
+        floor = None if place is None else solid.bottom - place[0].bottom
+        return Whereabouts(container, self._supports(solid, below, container, floor) if below else (), place)
+
+    def may_bear(self, bearer: Solid, solid: Solid) -> bool:
+        """Whether one is in a hollow of another or touches it from above: else it is not among its supports.
+
+        That takes a look at the two; `whereabouts` looks at all that is around.
+        """
+        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+            return False
+        if bearer.hollows and self._is_within(solid, bearer):
+            return True
+        made = measures.on(solid, bearer, self.limits)
+        return made is not None and made.holds
+
+    def _supports(
+        self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None
+    ) -> tuple[Found, ...]:
+        """What of that which is close below bears it: the nearest, and what is level with that.
+
+        To a centimetre all are equally near; of those the highest counts. The floor of its place, `floor_m`
+        below it, is one of them, and so is what it leans on. What is inside something is on no more than
+        what is in there with it.
+        """
+        limits = self.limits
+        if container is not None:
+            below = [found for found in below if self._is_within(found[0], container[0])]
+        gaps = [made.gap_m for _, made in below if not made.holds]
+        below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
+        if not below:
+            return ()
+        gaps += [made.gap_m for _, made in below]
+        if floor_m is not None and abs(floor_m) <= limits.gap_m:
+            gaps.append(floor_m)
+        nearest = min(gaps, key=_nearness)
+        level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
+        if sum(made.share for _, made in level) < limits.base_share and not measures.is_balanced(
+            solid, [other for other, _ in level], solid.bottom - nearest
+        ):
+            return ()
+        return tuple(sorted(level, key=lambda found: (-found[1].share, found[0].name)))
+
+    def _is_within(self, solid: Solid, container: Solid) -> bool:
+        made = measures.inside(solid, container, self.limits)
+        return made is not None and made.holds
+
+    def _is_below(self, solid: Solid, other: Solid, made: Measure) -> bool:
+        """Whether the other one rests on this one rather, as things do that are hooked into one another."""
+        if other.bottom < solid.bottom - self.limits.contact_m:
+            return False
+        back = measures.on(other, solid, self.limits)
+        return (
+            back is not None and back.holds and (abs(back.gap_m), solid.name) < (abs(made.gap_m), other.name)
+        )
+
+
+def _area(solid: Solid) -> tuple[float, str]:
+    return (solid.footprint, solid.name)
+
+
+def _volume(solid: Solid) -> tuple[float, str]:
+    return (solid.volume, solid.name)
+
+
+def _nearness(gap_m: float) -> tuple[float, float]:
+    return (round(abs(gap_m), 2), gap_m)

@@ -1,0 +1,102 @@
+"""Relations of pairs, kept for those who ask: what is kept is what a look at all gives."""
+
+import random
+
+import pytest
+from msgspec import structs
+
+from nodes.kb_node.relations.facts.beside import MIRRORED, Beside, beside
+from nodes.kb_node.relations.facts.derived import Derived
+from nodes.kb_node.relations.measuring.space import Space
+from ontology import vocabulary as v
+from schemas.entities import Pose
+from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+
+EVERY = frozenset(MIRRORED)
+SUB, INVERSE = v.iri(v.RDFS + "subPropertyOf"), v.iri(v.OWL + "inverseOf")
+
+
+def some_things(dice):
+    made = [ROOM, TABLE, thing("table2", (1.7, 0.2, 0.0)), thing("shelf1", (-2.0, 0.0, 0.0), "bookshelf")]
+    made += [thing(f"chair{k}", (dice.uniform(-2, 2), dice.uniform(-2, 2), 0.0)) for k in range(3)]
+    made += [thing("board1", (0.8, 1.5, 0.0), "box", size=(2.2, 0.3, 0.1))]
+    return made + [
+        thing(f"cup{k}", (dice.uniform(-0.5, 0.5), dice.uniform(-0.3, 0.3), TOP)) for k in range(6)
+    ]
+
+
+def facts(pairs, there):
+    names = [entity.name for entity in there]
+    return {(a, r, b) for a in names for b in names if a < b for r in MIRRORED if pairs.holds(a, r, b)}
+
+
+def anew(there, whole=EVERY, some=()):
+    pairs = Beside(Space(there))
+    pairs.ask(whole, some)
+    return facts(pairs, there)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    ("whole", "some"), [(EVERY, ()), (("isNextTo",), ()), ((), ("table1", "cup3")), (("isNear",), ("cup1",))]
+)
+def test_what_is_kept_is_what_a_look_at_all_gives(seed, whole, some):
+    dice = random.Random(seed)
+    there = {entity.name: entity for entity in some_things(dice)}
+    pairs = Beside(Space(there.values()))
+    pairs.ask(whole, some)
+    known = facts(pairs, there.values())
+    spots = [entity.pose.position_m for entity in there.values() if not entity.place]
+    for _ in range(40):
+        name = dice.choice([name for name in there if name not in ("kitchen1",)])
+        if name.startswith("cup") and dice.random() < 0.1:
+            del there[name]
+            changed = pairs.update((), [name])
+        else:
+            x, y, z = dice.choice(spots)
+            at = (x + dice.choice([0.0, 0.1, 0.4]), y, z)
+            there[name] = structs.replace(there[name], pose=Pose(position_m=at))
+            changed = pairs.update([there[name]])
+        now = anew(there.values(), whole, some)
+        assert facts(pairs, there.values()) == now
+        assert {f for f in known - now if {f[0], f[2]} <= there.keys()} <= changed.gone <= known - now
+        assert changed.come == now - known
+        known = now
+
+
+def test_who_asks_for_less_has_less():
+    there = some_things(random.Random(1))
+    pairs = Beside(Space(there))
+    pairs.ask(EVERY, ())
+    pairs.ask(("isNear",), ("cup1",))
+    assert facts(pairs, there) == anew(there, ("isNear",), ("cup1",))
+    pairs.ask(("isNear", "touches"), ())
+    assert facts(pairs, there) == anew(there, ("isNear", "touches"))
+    pairs.ask((), ())
+    assert facts(pairs, there) == set()
+
+
+def test_one_who_is_on_another_is_not_near_it():
+    space = Space([TABLE, thing("cup1", (0.0, 0.0, TOP)), thing("chair1", (0.9, 0.0, 0.0))])
+    cup, table, chair = (space.solids[name] for name in ("cup1", "table1", "chair1"))
+    assert {name for name, made in beside(space, cup, table) if made.holds} == {"touches"}
+    assert "isNear" in {name for name, made in beside(space, table, chair) if made.holds}
+
+
+def test_what_a_tbox_implies_of_them_is_told():
+    close, around = v.dm("isClose"), v.dm("isAround")
+    derived = Derived(
+        [
+            (v.dm("isNear"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty")),
+            (v.dm("isNear"), SUB, close),
+            (around, INVERSE, close),
+            (v.dm("isNextTo"), SUB, v.dm("isNear")),
+        ]
+    )
+    assert derived.sources == dict.fromkeys((v.dm("isNear"), close, around), frozenset({"isNear"}))
+    found = set(derived.triples(("a", "isNear", "b"), {"a": "<a>", "b": "<b>"}))
+    assert found == {(s, p, o) for p in derived.sources for s, o in (("<a>", "<b>"), ("<b>", "<a>"))}
+
+
+def test_a_tbox_without_them_has_none():
+    assert Derived([(v.dm("isOn"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]).sources == {}

@@ -1,0 +1,65 @@
+"""What is on, inside and in what: kept commit by commit, it is always what it is from nothing."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.geometry.placed import Placed
+from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+
+CUP_ON_TABLE = ("cup1", "isOn", "table1")
+AT = st.tuples(
+    st.sampled_from([-0.3, -0.1, 0.0, 0.1, 0.4, 1.0, 2.0, 7.0]),
+    st.sampled_from([0.0, 0.1, 0.3, 2.0]),
+    st.sampled_from([0.0, 0.02, 0.07, TOP, TOP + 0.02, TOP + 0.08, TOP + 0.2]),
+)
+LYING = (0.5**0.5, 0.0, 0.5**0.5, 0.0)
+THINGS = st.builds(
+    lambda name, at, yaw, turn: thing(name, at, yaw=yaw, turn=turn),
+    st.sampled_from(
+        ["table1", "table2", "cup1", "cup2", "bowl1", "apple1", "book1", "tray1", "bookshelf1", "odd1"]
+    ),
+    AT | st.none(),
+    st.sampled_from([0.0, 0.7]),
+    st.sampled_from([None, None, None, LYING]),
+)
+PLACES = st.builds(
+    lambda name, at, extent: thing(name, at, size=(extent, extent, 2.5), place=True),
+    st.sampled_from(["room1", "corner1"]),
+    AT,
+    st.sampled_from([1.0, 3.0]),
+)
+CHANGES = st.lists(st.tuples(st.lists(THINGS | PLACES, max_size=4), st.lists(st.sampled_from(
+    ["table1", "cup1", "bowl1", "book1", "room1", "nobody"]
+), max_size=2)), max_size=12)  # fmt: skip
+
+
+@settings(deadline=None, max_examples=300)
+@given(CHANGES)
+def test_step_by_step_it_is_as_from_nothing(changes):
+    facts, there = Facts(), {}
+    held = set()
+    for changed, removed in changes:
+        changed = {entity.name: entity for entity in changed}
+        removed = [name for name in removed if name not in changed]
+        there = {name: e for name, e in (there | changed).items() if name not in removed}
+        gone, come = facts.update(changed.values(), removed)
+        assert gone <= held
+        assert not come & held
+        held = held - gone | come
+        anew = Facts()
+        anew.update(map(Placed.of, there.values()))
+        assert held == set(facts) == set(anew)
+        for name in there:
+            assert facts.upward([name]) == anew.upward([name])
+
+
+def test_who_is_carried_by_what_changes():
+    facts = Facts()
+    book = thing("book1", (0.0, 0.0, TOP))
+    cup = thing("cup1", (0.0, 0.0, TOP + book.size_m[2]))
+    facts.update([ROOM, CORNER, TABLE, book, cup])
+    assert facts.upward(["table1"]) == {"table1", "book1", "cup1"}
+    changed = facts.update([], ["book1"])
+    assert changed.come == {CUP_ON_TABLE}
+    assert facts.update([], ["table1"]).gone == {CUP_ON_TABLE, ("table1", "isLocatedIn", "kitchen1")}

@@ -1,0 +1,49 @@
+"""The distance of two boxes along the axes is that which the search finds for the same two, turned."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nodes.kb_node.relations.geometry.convex import contact
+from nodes.kb_node.relations.geometry.solids import solid_of
+from tests.kb_node.relations.made import thing
+
+AT = st.tuples(*[st.sampled_from([-0.7, -0.4, -0.1, 0.0, 0.05, 0.3, 0.5, 0.8])] * 3)
+SIZE = st.tuples(*[st.sampled_from([0.1, 0.3, 0.6])] * 3)
+YAW = 0.6
+
+
+def box(at, size, yaw):
+    (part,) = solid_of(thing("box1", at, "", size=size, yaw=yaw)).parts
+    return part
+
+
+def turned(x, y, z):
+    return math.cos(YAW) * x - math.sin(YAW) * y, math.sin(YAW) * x + math.cos(YAW) * y, z
+
+
+@settings(deadline=None, max_examples=100)
+@given(AT, SIZE, AT, SIZE)
+def test_boxes_along_the_axes(at, size, other_at, other_size):
+    one, other = box(at, size, 0.0), box(other_at, other_size, 0.0)
+    assert one.is_square
+    searched_one, searched_other = box(turned(*at), size, YAW), box(turned(*other_at), other_size, YAW)
+    assert not searched_one.is_square
+    found, searched = contact(one, other), contact(searched_one, searched_other)
+    assert (
+        searched.distance - 1e-9 <= found.distance <= searched.distance + 5e-3
+    )  # its normals are 0.6° apart
+    assert math.hypot(*found.normal) == pytest.approx(1.0)
+
+
+def test_the_normal_points_from_the_other_to_the_one():
+    found = contact(box((0.0, 0.0, 1.0), (0.2, 0.2, 0.2), 0.0), box((0.0, 0.0, 0.5), (0.4, 0.4, 0.4), 0.0))
+    assert found.distance == pytest.approx(0.1)
+    assert found.normal == (0.0, 0.0, 1.0)
+
+
+def test_what_just_meets_is_not_apart():
+    found = contact(box((0.4, 0.0, 0.5), (0.6, 0.1, 0.1), 0.0), box((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), 0.0))
+    assert found == (0.0, (0.0, 0.0, 1.0))

@@ -1,0 +1,65 @@
+"""Next to, between, and attached to."""
+
+import pytest
+
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.measuring.arrangement import attached, attachments, between, next_to
+from nodes.kb_node.relations.measuring.space import Space
+from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+
+WALL = thing("wall1", (0.0, 2.0, 0.0), size=(0.1, 4.0, 2.5), turn=(0.7071068, 0.0, 0.0, 0.7071068))
+PICTURE = thing("picture1", (0.0, 1.93, 1.4), turn=(0.7071068, 0.0, 0.0, -0.7071068))
+CUPS = [thing(f"cup{n}", (0.18 * n, 0.0, TOP)) for n in (1, 2, 3)]
+
+
+def space(*entities):
+    return Space([ROOM, TABLE, *entities])
+
+
+@pytest.mark.parametrize(
+    ("other", "holds"),
+    [
+        pytest.param(thing("plate1", (0.2, 0.2, TOP)), True, id="on the same table"),
+        pytest.param(thing("plate1", (0.2, 0.2, 0.0)), None, id="under the table, far below"),
+        pytest.param(thing("stool1", (0.35, 0.0, 0.25)), False, id="near, but not on the table"),
+        pytest.param(thing("plate1", (0.2, 2.9, TOP)), None, id="far away"),
+    ],
+)
+def test_next_to(other, holds):
+    cup = thing("cup1", (0.0, 0.0, TOP))
+    there = space(cup, other)
+    made = next_to(there, there.solids["cup1"], there.solids[other.name])
+    assert (None if made is None else made.holds) == holds
+
+
+def test_what_is_between_two_keeps_them_from_being_next_to_one_another():
+    there = space(*CUPS)
+    first, middle, last = (there.solids[cup.name] for cup in CUPS)
+    assert between(there, first, last) == [middle]
+    assert between(there, first, middle) == []
+    made = next_to(there, first, last)
+    assert made is None or not made.holds
+    assert next_to(there, first, middle).holds
+
+
+def test_what_hangs_on_a_wall_is_attached_to_it():
+    there = space(WALL, PICTURE)
+    picture, wall = there.solids["picture1"], there.solids["wall1"]
+    assert attached(there, picture, wall).holds
+    assert attached(there, wall, picture) is None
+    assert list(attachments(there, picture)) == [wall]
+
+
+def test_what_stands_at_a_wall_is_not():
+    there = space(WALL, thing("cabinet1", (0.0, 1.72, 0.0)))
+    assert list(attachments(there, there.solids["cabinet1"])) == []
+
+
+def test_attachments_are_facts_and_end_when_something_bears_it():
+    facts = Facts()
+    facts.update([ROOM, WALL, PICTURE])
+    hangs = ("picture1", "isAttachedTo", "wall1")
+    assert hangs in facts
+    box = thing("box1", (0.0, 1.85, 0.0), size=(0.3, 0.3, 1.4))
+    assert hangs in facts.update([box]).gone
+    assert hangs in facts.update([], ["box1"]).come

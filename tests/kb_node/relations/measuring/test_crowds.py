@@ -1,0 +1,111 @@
+"""Very many things in one spot: the largest are looked at, whatever the order in which they came."""
+
+from unittest.mock import patch
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.facts.said import denial
+from nodes.kb_node.relations.measuring import crowds
+from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+
+NAMES = [
+    "table1",
+    "table2",
+    "bowl1",
+    "tray1",
+    *(f"{model}{k}" for model in ("book", "cup") for k in range(5)),
+]
+THINGS = st.builds(
+    lambda name, x, z: thing(name, (x, 0.3, z)),
+    st.sampled_from(NAMES),
+    st.sampled_from([0.3, 0.5, 0.95, 1.1, 1.5]),
+    st.sampled_from([0.0, TOP, TOP + 0.03, TOP + 0.06]),
+)
+CHANGES = st.lists(
+    st.tuples(st.lists(THINGS, max_size=8), st.lists(st.sampled_from(NAMES), max_size=3)), max_size=10
+)
+
+
+@settings(deadline=None, max_examples=150)
+@given(CHANGES, st.sampled_from([1, 2, 4, 6]))
+def test_step_by_step_it_is_as_from_nothing(changes, most):
+    with patch.object(crowds, "MOST", most):
+        facts, there, held = Facts(), {}, set()
+        for changed, removed in changes:
+            changed = {entity.name: entity for entity in changed}
+            there = {name: e for name, e in (there | changed).items() if name not in removed}
+            made = facts.update([e for e in changed.values() if e.name in there], removed)
+            held = held - made.gone | made.come
+            anew, in_steps = Facts(), Facts()
+            anew.update(reversed(there.values()))
+            for _ in in_steps.filling(there.values()):
+                pass
+            assert held == set(facts) == set(anew) == set(in_steps)
+            assert facts.space.crowds() == anew.space.crowds() == in_steps.space.crowds()
+
+
+def heap(count, model="cup", x=0.3):
+    return [thing(f"{model}{k}", (x, 0.3, TOP), model) for k in range(count)]
+
+
+def test_thousands_are_on_the_table_that_is_under_them_all():
+    facts = Facts()
+    looked_at = []
+    around = facts.space.counted_around
+    with patch.object(
+        facts.space, "counted_around", lambda *args: looked_at.append(around(*args)) or looked_at[-1]
+    ):
+        facts.update([ROOM, TABLE, *heap(1500)])
+    assert {(f"cup{k}", "isOn", "table1") for k in range(1500)} <= set(facts)
+    assert {(f"cup{k}", "isLocatedIn", "kitchen1") for k in range(1500)} <= set(facts)
+    assert max(map(len, looked_at)) < 2 * crowds.MOST
+    assert facts.space.crowds() == [
+        "1501 things are within 1 m of (0.5, 0.5): "
+        "what they are on or inside is looked for among the 100 largest"
+    ]
+
+
+def test_a_heap_that_comes_into_a_large_map_is_not_compared_pair_by_pair():
+    facts = Facts()
+    facts.update([ROOM, TABLE, *(thing(f"book{k}", (5.0 + 0.5 * k, 3.0, 0.0), "book") for k in range(2000))])
+    looks = []
+    concerned = Facts.update.__globals__["_Kept"]._add_whom_it_concerns
+    with patch(
+        "nodes.kb_node.relations.facts.place_facts._Kept._add_whom_it_concerns",
+        lambda *args: looks.append(args) or concerned(*args),
+    ):
+        facts.update(heap(1500))
+    assert len(looks) < 2 * (crowds.MOST + 10)
+    assert ("cup1499", "isOn", "table1") in set(facts)
+
+
+def test_a_crowd_that_goes_is_none_any_more():
+    facts = Facts()
+    facts.update([ROOM, TABLE, *heap(crowds.MOST + 20)])
+    assert facts.space.crowds(["cup3"])
+    assert not facts.space.crowds(["nobody"])
+    facts.update([], [f"cup{k}" for k in range(40)])
+    assert facts.space.crowds() == []
+
+
+def test_only_what_is_beside_it_may_hold_what_stands_in_a_crowd():
+    facts = Facts()
+    books = heap(crowds.MOST + 20, "book")
+    above = thing("cup1", (0.3, 0.3, TOP + 0.03))
+    facts.update([ROOM, TABLE, *books, above, thing("table2", (3.0, 3.0, 0.0))])
+    for other in ("book99", "book98", "book0", "table1"):
+        assert denial(facts.space, ("cup1", "isOn", other)) is None
+    assert denial(facts.space, ("cup1", "isOn", "table2")) is not None
+
+
+def test_what_is_supposed_leaves_no_trace():
+    facts = Facts()
+    facts.update([ROOM, TABLE, *heap(crowds.MOST + 20)])
+    before = set(facts)
+    with facts.space.supposing(heap(30, x=2.0), ["table1"]):
+        pass
+    facts.update([thing("book1", (4.0, 4.0, 0.0))])
+    assert facts.shifted == frozenset()
+    assert before <= set(facts)

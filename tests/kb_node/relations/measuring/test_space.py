@@ -1,0 +1,137 @@
+"""Situations, and what a person would say of them."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.surroundings import Surroundings
+from ontology.model_shapes import shapes
+from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+
+LYING = (math.cos(math.pi / 4), 0.0, math.sin(math.pi / 4), 0.0)
+BOWL = thing("bowl1", (0.1, 0.0, TOP))
+BOOK = thing("book1", (0.0, 0.3, TOP))
+SHELF = thing("bookshelf1", (2.0, 0.0, 0.0))
+BOARDS = [surface.height for surface in shapes()["bookshelf"].surfaces]
+
+
+def said(name, *entities):
+    space = Space([ROOM, CORNER, TABLE, *entities])
+    container, supports, place = space.whereabouts(space.solids[name])
+    assert len(supports) < 2
+    return tuple(found and found[0].name for found in (container, *(supports or (None,)), place))
+
+
+@pytest.mark.parametrize(
+    ("entity", "others", "expected"),
+    [
+        pytest.param(thing("cup1", (0.0, 0.0, TOP)), [], (None, "table1", "kitchen1"), id="on a table"),
+        pytest.param(
+            thing("cup1", (0.0, 0.0, TOP + 0.02)),
+            [],
+            (None, "table1", "kitchen1"),
+            id="let go a little above",
+        ),
+        pytest.param(thing("cup1", (0.0, 0.0, TOP + 0.2)), [], (None, None, "kitchen1"), id="in the air"),
+        pytest.param(thing("cup1", (0.0, 0.0, 0.0)), [], (None, None, "kitchen1"), id="under the table"),
+        pytest.param(thing("cup1", (1.5, 0.0, TOP)), [], (None, None, "kitchen1"), id="beside the table"),
+        pytest.param(
+            thing("cup1", (0.4, 0.0, TOP)), [], (None, "table1", "kitchen1"), id="half over the edge"
+        ),
+        pytest.param(
+            thing("cup1", (0.0, 0.3, TOP + BOOK.size_m[2])),
+            [BOOK],
+            (None, "book1", "kitchen1"),
+            id="on a book",
+        ),
+        pytest.param(
+            thing("apple1", (0.1, 0.0, TOP + 0.02)), [BOWL], ("bowl1", None, "kitchen1"), id="in a bowl"
+        ),
+        pytest.param(thing("bowl1", (0.1, 0.0, TOP)), [], (None, "table1", "kitchen1"), id="the bowl itself"),
+        pytest.param(
+            thing("bottle1", (0.0, 0.0, TOP), turn=LYING),
+            [],
+            (None, "table1", "kitchen1"),
+            id="lying on its side",
+        ),
+        *(
+            pytest.param(
+                thing("book2", (2.0, 0.0, board)), [SHELF], (None, "bookshelf1", "kitchen1"), id=f"board {n}"
+            )
+            for n, board in enumerate(BOARDS)
+        ),
+        pytest.param(
+            thing("cup1", (-2.0, 0.0, shapes()["chair"].surfaces[-1].height)),
+            [thing("chair1", (-2.0, 0.0, 0.0))],
+            (None, "chair1", "kitchen1"),
+            id="on a chair's seat",
+        ),
+        pytest.param(
+            thing("lamp1", (2.0, 2.0, 0.0)), [], (None, None, "corner1"), id="in a corner of a room"
+        ),
+        pytest.param(thing("lamp1", (9.0, 2.0, 0.0)), [], (None, None, None), id="outside"),
+        pytest.param(
+            thing("thing1", (0.0, 0.0, TOP), model="unheard of"),
+            [],
+            (None, None, "kitchen1"),
+            id="without a size",
+        ),
+    ],
+)
+def test_where_a_thing_is(entity, others, expected):
+    assert said(entity.name, entity, *others) == expected
+
+
+def test_what_has_no_position_is_nowhere():
+    space = Space([TABLE, thing("cup1", None)])
+    assert list(space.solids) == ["table1"]
+
+
+def test_a_table_that_was_turned_over_carries_nothing():
+    over = thing("table2", (2.5, 0.0, TOP), turn=(0.0, 1.0, 0.0, 0.0), model="table")
+    assert said("cup1", over, thing("cup1", (2.5, 0.0, TOP)))[1] is None
+
+
+def test_a_model_longer_the_other_way_is_turned_as_the_simulator_turns_it():
+    x, y, z = TABLE.size_m
+    desk = thing("table2", (-2.0, 0.0, 0.0), model="table", size=(y, x, z))
+    assert said("cup1", desk, thing("cup1", (-2.0 + 0.4 * y, 0.0, z)))[1] == "table2"
+
+
+def test_two_things_in_one_place_and_a_size_of_nothing_do_no_harm():
+    twice = [thing("cup1", (0.0, 0.0, TOP)), thing("cup2", (0.0, 0.0, TOP))]
+    assert said("cup1", *twice)[1] == "table1"
+
+
+POSES = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.sampled_from([0.0, TOP, 0.3]), st.floats(-4, 4))
+NAMES = st.sampled_from(["cup1", "table2", "bowl1", "book1", "chair1", "corner1"])
+
+
+@given(st.lists(st.tuples(NAMES, st.none() | POSES), max_size=25))
+def test_bringing_it_up_to_date_is_building_it_anew(changes):
+    there = {entity.name: entity for entity in (ROOM, TABLE)}
+    kept = Surroundings(lambda: list(there.values()), there.get)
+    kept.space()
+    for name, pose in changes:
+        if pose is None:
+            there.pop(name, None)
+        else:
+            x, y, z, yaw = pose
+            place = name == "corner1"
+            there[name] = thing(
+                name, (x, y, z), yaw=yaw, place=place, size=(1.5, 1.5, 2.5) if place else None
+            )
+        kept.touch([name])
+    new, space = Space(there.values()), kept.space()
+    assert space.solids.keys() == new.solids.keys()
+    for name, solid in space.solids.items():
+        ours, theirs = space.whereabouts(solid), new.whereabouts(new.solids[name])
+        assert named(ours) == named(theirs)
+
+
+def named(found):
+    container, supports, place = found
+    return [f and (f[0].name, f[1]) for f in (container, *supports, place)]

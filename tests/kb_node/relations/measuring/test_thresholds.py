@@ -1,0 +1,40 @@
+"""Thresholds are annotations of the TBox."""
+
+import pytest
+
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.measuring.thresholds import ANNOTATIONS, Thresholds, of_tbox
+from ontology import HOUSEHOLD_TTL
+from ontology import vocabulary as v
+from schemas import errors
+from tests.kb_node.relations.made import TABLE, TOP, thing
+
+
+def said(**values):
+    """A TBox that says these: isOn_greatestGap="0.01"."""
+    triples = {tuple(key.split("_")): v.literal(text, v.XSD_FLOAT) for key, text in values.items()}
+    names = {(v.dm(p), v.dm(a)): value for (p, a), value in triples.items()}
+    return of_tbox(lambda p, a: [names[p, a]] if (p, a) in names else [])
+
+
+def test_the_household_says_all_of_them_and_the_same_as_a_tbox_that_says_none():
+    triples = rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name)
+    about = [(v.dm(a.property), v.dm(a.annotation)) for a in ANNOTATIONS]
+    assert all(any((s, p) == one for s, p, _ in triples) for one in about)
+    assert of_tbox(lambda s, p: [o for a, b, o in triples if (a, b) == (s, p)]) == Thresholds()
+    assert of_tbox(lambda s, p: ()) == Thresholds()
+
+
+def test_another_tbox_draws_the_line_elsewhere():
+    cup = thing("cup1", (0.0, 0.0, TOP + 0.03))
+    for limits, on in ((said(), True), (said(isOn_greatestGap="0.02"), False)):
+        facts = Facts(limits)
+        facts.update([TABLE, cup])
+        assert (("cup1", "isOn", "table1") in facts) == on
+
+
+@pytest.mark.parametrize("text", ["-0.1", "1.5", "nan", "wide"])
+def test_what_is_no_threshold_is_refused_in_words(text):
+    with pytest.raises(errors.BadRequest, match="the leastShare of isInside is from 0 to 1, not"):
+        said(isInside_leastShare=text)
