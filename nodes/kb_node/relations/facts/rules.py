@@ -77,7 +77,7 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
         return False
     if not (other.is_level and solid.is_level) or (solid.hollows and other.volume < solid.volume):
         return True
-    return other.bottom >= max(solid.bottom - limits.contact_m, solid.lowest_top - gap)
+    return other.bottom >= solid.bottom - limits.contact_m and other.highest_bottom >= solid.lowest_top - gap
 
 
 RULES: Final[tuple[Rule, ...]] = (

@@ -89,6 +89,11 @@ class Solid:
         return min([part.high[2] for part in self.parts], default=self.top)
 
     @lazily
+    def highest_bottom(self) -> float:
+        """Where the last of its parts begins [m]: a bookshelf may rest on a table by one of its boards."""
+        return max([part.low[2] for part in self.parts], default=self.bottom)
+
+    @lazily
     def outline(self) -> list[Point]:
         """Its shadow on the floor."""
         px, py, _ = self.position

@@ -1,6 +1,6 @@
 """What is on, inside and in what: kept commit by commit, it is always what it is from nothing."""
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from nodes.kb_node.relations.facts.place_facts import Facts
@@ -36,6 +36,7 @@ CHANGES = st.lists(st.tuples(st.lists(THINGS | PLACES, max_size=4), st.lists(st.
 
 @settings(deadline=None, max_examples=300)
 @given(CHANGES)
+@example([([thing("bookshelf1", (-0.1, 0.1, 0.0))], []), ([thing("table1", (-0.3, 0.0, 0.0))], [])])
 def test_step_by_step_it_is_as_from_nothing(changes):
     facts, there = Facts(), {}
     held = set()
