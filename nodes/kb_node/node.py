@@ -94,7 +94,7 @@ class KnowledgeBase:
         self.map = SemanticMap(journal, progress=node.beat)
         self._pages = Pages(self.map)
         self._now, self._then = whereabouts.Now(self.map), whereabouts.Then(self.map, self._past)
-        self._announcer = Announcer(node.session, self.map.entities())
+        self._announcer = Announcer(node.session, self.map.entities(), self._now.described)
         self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
         self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
         self._writing: Future[int] | None = None
@@ -196,8 +196,9 @@ class KnowledgeBase:
 
     def _spread(self, commit: Commit, *, told: bool) -> None:
         """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._announcer.announce(commit, told=told)
-        self._node.afterwards(partial(self._sparql.follow, commit, self.map.believed_of(commit)))
+        believed = self.map.believed_of(commit)
+        self._announcer.announce(commit, believed, told=told)
+        self._node.afterwards(partial(self._sparql.follow, commit, believed))
         self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
         self._node.describe(self._summary)
         if commit.tbox:

@@ -182,6 +182,7 @@ class SemanticMap:
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
+        self.believe_places()
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(

@@ -207,7 +207,16 @@ def read_star(
 ) -> Star:
     """The triples about an entity, as `star_of` has them. Raises Refused."""
     own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
-    return Star(seq=seq, name=v.entity_name(iri), iri=iri, own=tuple(own), incoming=tuple(incoming))
+    aside = reasoner.set_aside_about([iri]) if reasoner.sets_aside else ()
+    return Star(
+        seq=seq,
+        name=v.entity_name(iri),
+        iri=iri,
+        own=tuple(own),
+        incoming=tuple(incoming),
+        computed=tuple(reasoner.computed(iri)),
+        denied=tuple(sorted(triple for triple in aside if triple[0] == iri)),
+    )
 
 
 def star_of(
