@@ -43,7 +43,7 @@ def test_a_page_holds_everything():
         "**Measured** (1)",
         "+ beer1 isOn table2",
         "**No longer measured** (1)",
-        "- cup1 isLocatedIn hall1",
+        "- cup1 isLocatedIn kitchen1",
         "`id-7`",
     ):
         assert words in text
