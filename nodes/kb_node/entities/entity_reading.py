@@ -138,6 +138,19 @@ def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     return structs.replace(known, pose=_pose(reasoner.about, iri, nodes), provenance=provenance)
 
 
+def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity | None:
+    """An entity as this code reads it, changed when it was; None if it is none any more."""
+    entity = read_entity(reasoner, classes, v.iri(known.iri), known.provenance)
+    if entity is None:
+        return None
+    return structs.replace(
+        entity,
+        pose_provenance=known.pose_provenance,
+        shape_provenance=known.shape_provenance,
+        reference_provenance=known.reference_provenance,
+    )
+
+
 def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
     """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
     iris = {i for c in classes.spatial for i in reasoner.instances(c)}
