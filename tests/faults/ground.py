@@ -130,7 +130,7 @@ class Ground:
         return Supervisor(self.data).settings
 
     def reckon(self) -> tuple[int, int]:
-        """Stop the load; how many acknowledged changes are lost, and how many of this load were done twice."""
+        """Stop the load; how many acknowledged changes are lost, how many of this load were done twice."""
         self.load.stop()
         assert not self.load.refused, self.load.refused[:3]
         with self.client() as client:
