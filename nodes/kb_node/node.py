@@ -17,6 +17,7 @@ from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import answers, questions, trials, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.beliefs import Believed
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf, term_syntax
 from nodes.kb_node.documents.tbox import tbox_notes, tbox_validation
@@ -155,7 +156,7 @@ class KnowledgeBase:
             self._node.soon(self._follow_places)
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
-        """One transaction: journal (durable), publish, reply."""
+        """One transaction: journal (durable), reply, publish."""
         term_syntax.require_triples(transaction.insert)
         if len(transaction.add) <= _FEW:
             return self._changed(
@@ -175,10 +176,11 @@ class KnowledgeBase:
             return trials.of(self.map, change)
         return _effects(self._published_if_new(change, told=told))
 
-    def _commit(self, transaction: Transaction) -> Commit | None:
-        return self._published_if_new(lambda: self.map.commit(transaction))
+    def _commit_part(self, transaction: Transaction) -> Commit | None:
+        """A part of a load, published at once: the reply comes after many of them."""
+        return self._published_if_new(lambda: self.map.commit(transaction), at_once=True)
 
-    def _published_if_new(self, change: Callable[[], C], *, told: bool = False) -> C:
+    def _published_if_new(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
         """What `change` commits; published unless it is the answer to an old command."""
         before = self.map.seq
         try:
@@ -187,26 +189,35 @@ class KnowledgeBase:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit, told=told)
+            self._spread(commit, told=told, at_once=at_once)
         return commit
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
-    def _spread(self, commit: Commit, *, told: bool) -> None:
-        """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
-        self._announcer.announce(commit, told=told)
-        self._node.afterwards(partial(self._sparql.follow, commit, self.map.believed_of(commit)))
-        self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
+    def _spread(self, commit: Commit, *, told: bool, at_once: bool = False) -> None:
+        """Tell everybody, `at_once` or when the reply is on its way: nobody else is answered before that."""
+        announce = partial(self._announcer.announce, commit, told=told)
+        if at_once:
+            announce()
+        else:
+            self._node.afterwards(announce)
+        self._node.afterwards(partial(self._follow, commit, self.map.believed_of(commit)))
         self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
         if self.map.checkpoint_is_urgent:
             self._node.later(CHECKPOINT_DELAY_S, self._checkpoint_if_urgent)
 
+    def _follow(self, commit: Commit, believed: Believed) -> None:
+        """What this node does with a commit once the reply is on its way."""
+        self._sparql.follow(commit, believed)
+        self._standing_places.follow(commit.seq, commit.names)
+        self.map.tidy()
+
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
-        """Several transactions, each by itself: journal (durable, once for all), publish, reply.
+        """Several transactions, each by itself: journal (durable, once for all), reply, publish.
 
         Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
         """
@@ -259,7 +270,7 @@ class KnowledgeBase:
                 )
             del triples
             parts = load_parts.in_parts(transaction) if load.parts else [transaction]
-            commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
+            commits = load_parts.commit_each(parts, self._commit_part, tell if load.parts else lambda _: None)
             return Loaded(
                 commit=_effects(commits[-1] if commits else None),
                 parts=len(commits),

@@ -221,6 +221,10 @@ class SemanticMap:
         """What a commit changed of that; it is told once."""
         return self._believed.pop(commit.seq, UNCHANGED)
 
+    def tidy(self) -> None:
+        """What a commit leaves to be done when nobody waits for it."""
+        self.beliefs.computed.facts.forget()
+
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
         return any(self.reasoner.asserted(*triple))
