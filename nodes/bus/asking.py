@@ -185,7 +185,7 @@ def _get(
     source: zenoh.SourceInfo | None = None,
     **options: Any,
 ) -> Any:
-    """The replies as they come; none if the lifeline has just been cut. `source`: in whose name it is asked."""
+    """The replies as they come; none if the lifeline has just been cut. `source`: in whose name."""
     source = source or zenoh.SourceInfo(session.id, 0)
     try:
         return session.get(
