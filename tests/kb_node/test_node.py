@@ -29,6 +29,7 @@ from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Relations, Sparql
 from schemas.commits import Effects, NewEntity
 from schemas.entities import Entity, Pose
+from schemas.relations import Described
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
 
@@ -147,7 +148,7 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     commit = ask(session, "commit", transaction("pub1", chair("pub")))
     seen = dict(until(entities, 4))
     assert seen.keys() == {keys.entity_key(c, "pub") for c in ("Chair", "Seat", "Object", "Physical_Thing")}
-    assert list(seen.values()) == list(commit.changed) * 4
+    assert list(seen.values()) == [Described.of(entity) for entity in commit.changed] * 4
     iri = v.entity_iri("pub")
     door = transaction("pub2", [(iri, v.RDF_TYPE, v.dm("Door"))], [(iri, v.RDF_TYPE, v.dm("Chair"))])
     ask(session, "commit", door)
