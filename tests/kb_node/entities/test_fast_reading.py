@@ -96,7 +96,7 @@ def test_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, 
 def _each_by_itself(semantic_map):
     reasoner, classes = semantic_map.reasoner, semantic_map.classes
     for iri in sorted(reasoner.instances(v.dm("Chair"))):
-        known = semantic_map._known(iri)
+        known = semantic_map.known(iri)
         yield entity_reading.read_entity(
             reasoner, classes, iri, known.provenance if known else entity_reading._OF_THE_TBOX
         )
