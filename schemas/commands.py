@@ -357,7 +357,7 @@ class Compact(Command[Compacted], frozen=True, tag="compact"):
     nothing is done; the reply says what would be.
     """
 
-    keep: Annotated[str, Meta(pattern=r"^[1-9][0-9]{0,5}(h|d)$")] = "30d"
+    keep: str = "30d"
     dry_run: bool = False
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime
@@ -10,12 +11,13 @@ from typing import Final
 from nodes.kb_node.storage import backing_up, compaction
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
-from schemas import wording
+from schemas import errors, wording
 from schemas.backups import BackupPart
 from schemas.calls import Handler, by_verb
 from schemas.commands import Backup, Compact
 from schemas.replies import Compacted
 
+_AGE: Final = re.compile(r"([1-9][0-9]{0,5})([hd])")
 _SECONDS: Final = {"h": 3600, "d": 86_400}
 
 
@@ -41,8 +43,7 @@ class Keeping:
         return self._beside.submit(self._compacted, command)
 
     def _compacted(self, command: Compact) -> Compacted:
-        keep_ns = int(command.keep[:-1]) * _SECONDS[command.keep[-1]] * 1_000_000_000
-        journal = self._journal
+        keep_ns, journal = _age_ns(command.keep), self._journal
         share = compaction.share(journal, keep_ns=keep_ns, now_ns=time.time_ns())
         before = journal.size_bytes
         if share.commits and not command.dry_run:
@@ -59,6 +60,13 @@ class Keeping:
     def close(self) -> None:
         """Begin nothing more; what is under way comes to its end."""
         self._beside.shutdown(cancel_futures=True)
+
+
+def _age_ns(text: str) -> int:
+    """`12h` or `30d`. Raises BadRequest."""
+    if (age := _AGE.fullmatch(text)) is None:
+        raise errors.BadRequest(f"'{text}' is not an age; examples: 12h, 30d")
+    return int(age[1]) * _SECONDS[age[2]] * 1_000_000_000
 
 
 def _told(journal: Journal, share: compaction.Share, command: Compact) -> str:

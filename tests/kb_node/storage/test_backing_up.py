@@ -91,8 +91,8 @@ def test_a_file_that_is_there_is_kept_unless_that_is_wanted(tmp_path, semantic_m
     backed_up(semantic_map, file, overwrite=True)
     assert backups.verify(file).last == 8
     assert file.stat().st_mode & 0o777 == 0o600
-    assert {path.name for path in tmp_path.iterdir() if "b" == path.name or "part" in path.name} == {"b"}
-    with pytest.raises(errors.BadFile, match="cannot be written to .*: No such file"):
+    assert {path.name for path in tmp_path.iterdir() if path.name == "b" or "part" in path.name} == {"b"}
+    with pytest.raises(errors.BadFile, match=r"cannot be written to .*: No such file"):
         backed_up(semantic_map, tmp_path / "none" / "b")
 
 

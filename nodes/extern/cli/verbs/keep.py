@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import click
 from nodes.extern.cli.calling import complain, print_json, talks
 from nodes.extern.cli.output.printable import say
 from nodes.runtime import extras
+from schemas import backups
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
@@ -26,9 +28,10 @@ _format = click.option(
 @_format
 @talks
 def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
-    """Write the map and its history to FILE, while the system runs.
+    """Write the map and its history to FILE.
 
-    The backup is as of the moment when it is begun, and verified by its digests. See also: semmap restore.
+    The system goes on meanwhile; the backup is as of its beginning, and verified by its digests.
+    See also: semmap restore.
     """
     opening = client.backup(file, overwrite=overwrite)
     if format == "json":
@@ -49,9 +52,11 @@ def restore(file: Path, data: Path, replace: bool) -> None:
     """
     extras.require("semmap restore", "kb")
     from nodes.kb_node.storage.restoring import restore as restore_journal
-    from nodes.supervisor.privacy import make_private
+    from nodes.supervisor.privacy import UMASK, make_private
     from nodes.supervisor.up import alone
 
+    next(backups.read(file))  # before a folder is made
+    os.umask(UMASK)
     data = data.resolve()
     with alone(data):
         make_private(data)
@@ -66,7 +71,7 @@ def restore(file: Path, data: Path, replace: bool) -> None:
 @_format
 @talks
 def compact(client: Client, keep: str, dry_run: bool, format: str) -> None:
-    """Replace old commits by a snapshot, so that the history takes less room.
+    """Replace old commits by a snapshot, which takes less room.
 
     The map stays as it is. What was before the snapshot cannot be asked about or undone any more: make a
     backup first if you may want it.
