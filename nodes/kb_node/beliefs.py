@@ -70,7 +70,7 @@ class Beliefs:
         """What was withheld at `begin`, and has been looked at again since."""
         self._moved: set[Term] = set()
         self._net: dict[bool, dict[Triple, bool]] = {True: {}, False: {}}
-        """Of computed triples, and of asserted ones, that came or went since `begin`: whether they hold now."""
+        """Of computed triples, and of asserted ones, that came or went since `begin`: do they hold now?"""
 
     def begin(self) -> None:
         """What differs is counted from here on."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Set
+from collections.abc import Callable, Collection, Iterable, Set
 from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.facts.place_facts import Fact, Facts
