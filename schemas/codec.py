@@ -23,6 +23,8 @@ LARGEST: Final = 4 << 30
 """Bytes that a message may unfold to."""
 DENSITY: Final = 1
 """How hard zlib tries: not very."""
+_SAMPLE: Final = 1 << 16
+"""Bytes."""
 _DENSE: Final = b"x"
 """How zlib's format begins, and no MessagePack map."""
 _encoder = msgspec.msgpack.Encoder()
@@ -32,13 +34,16 @@ _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 def encode(message: Any, *, dense_from: int = DENSE_FROM) -> bytes:
     """`message` as MessagePack, compressed (zlib) from `dense_from` bytes on; `decode` takes both.
 
+    What is compressed already, as a packed file is, stays as it is.
     Raises BadRequest for text that cannot be written as UTF-8.
     """
     try:
         payload = _encoder.encode(message)
     except UnicodeEncodeError as error:
         raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
-    return payload if len(payload) < dense_from else zlib.compress(payload, DENSITY)
+    if len(payload) < dense_from or _is_dense(payload):
+        return payload
+    return zlib.compress(payload, DENSITY)
 
 
 def encode_json(message: Any) -> bytes:
@@ -59,6 +64,13 @@ def decode(payload: bytes, kind: type[T] | Any) -> T:
         return decoder.decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
+
+
+def _is_dense(payload: bytes) -> bool:
+    """Would compressing it hardly make it smaller? For a large payload a sample from its middle tells."""
+    middle = len(payload) // 2
+    sample = payload[middle : middle + _SAMPLE]
+    return len(payload) >= 16 * _SAMPLE and len(zlib.compress(sample, DENSITY)) > 0.9 * len(sample)
 
 
 def _unfolded(payload: bytes) -> bytes:

@@ -1,7 +1,7 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
 from nodes.bus import own_config
-from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, ask, ask_later, read_reply
+from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
 from nodes.bus.lifelines import Lifelines, appear, follow_presence
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -33,6 +33,7 @@ __all__ = [
     "HungUp",
     "Lifelines",
     "Network",
+    "Patience",
     "Request",
     "Session",
     "appear",

@@ -10,9 +10,11 @@ consolidated.
 from __future__ import annotations
 
 import logging
+import random
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, NoReturn
+from functools import partial
+from typing import Any, Final, NoReturn
 
 import zenoh
 from msgspec import Struct
@@ -27,12 +29,34 @@ TIMEOUT_S = 30.0
 _HAD_IT_S = 0.1
 """A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
 
+BUSY_S = 60.0
+"""Seconds for which one who is told to come again does so."""
+_SLOWER: Final = 1.5
+"""How much longer one who was sent away again waits than the last time."""
+_LONGEST_S: Final = 5.0
+
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
 class ForeignReply(errors.NoAnswer):
     """Only somebody has answered who is not one of the nodes that serve the key."""
+
+
+class Patience:
+    """With those who are busy: when to come again, later each time and never all at once."""
+
+    def __init__(self) -> None:
+        self._until_s = time.monotonic() + BUSY_S
+        self._times = 0
+
+    def pause_s(self, busy: errors.Busy) -> float:
+        """After how long [s] to ask again. Raises `busy` when it has taken too long."""
+        if time.monotonic() > self._until_s:
+            raise busy
+        wanted_s = min((busy.again_s or 1.0) * _SLOWER**self._times, _LONGEST_S)
+        self._times += 1
+        return wanted_s * random.uniform(0.5, 1.5)
 
 
 class Encoded(Struct, frozen=True):
@@ -68,9 +92,53 @@ def ask(
     a reply counts only if it is by a node that serves the key: where another program has answered, everybody
     who serves the key is asked.
 
+    Who answers that it is busy is asked again, for a minute.
+
     Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
     key for `patience_s` or the one that does takes longer than `timeout_s`.
     """
+    ask_once = partial(
+        _ask,
+        session,
+        prefix,
+        verb,
+        message,
+        kind,
+        timeout_s=timeout_s,
+        patience_s=patience_s,
+        meanwhile=meanwhile,
+        first_hand=first_hand,
+        lifelines=lifelines,
+    )
+    try:
+        return ask_once()
+    except errors.Busy as error:
+        busy, patience = error, Patience()
+    while True:
+        until_s = time.monotonic() + patience.pause_s(busy)
+        while (left_s := until_s - time.monotonic()) > 0:
+            if meanwhile is not None:
+                meanwhile()
+            time.sleep(min(left_s, 0.1))
+        try:
+            return ask_once()
+        except errors.Busy as error:
+            busy = error
+
+
+def _ask(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    *,
+    timeout_s: float,
+    patience_s: float,
+    meanwhile: Callable[[], None] | None,
+    first_hand: bool,
+    lifelines: Lifelines | None,
+) -> Any:
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline_s = time.monotonic() + patience_s
@@ -110,10 +178,19 @@ def ask(
         time.sleep(0.01)
 
 
-def _get(session: zenoh.Session, key: str, lifeline: zenoh.CancellationToken | None, **options: Any) -> Any:
-    """The replies as they come; none if the lifeline has just been cut."""
+def _get(
+    session: zenoh.Session,
+    key: str,
+    lifeline: zenoh.CancellationToken | None,
+    source: zenoh.SourceInfo | None = None,
+    **options: Any,
+) -> Any:
+    """The replies as they come; none if the lifeline has just been cut. `source`: in whose name."""
+    source = source or zenoh.SourceInfo(session.id, 0)
     try:
-        return session.get(key, consolidation=_AS_THEY_COME, cancellation_token=lifeline, **options)
+        return session.get(
+            key, consolidation=_AS_THEY_COME, cancellation_token=lifeline, source_info=source, **options
+        )
     except zenoh.ZError:
         if lifeline is None or not lifeline.is_cancelled:
             raise
@@ -144,11 +221,13 @@ def ask_later(
     timeout_s: float = TIMEOUT_S,
     lifelines: Lifelines | None = None,
     everybody: bool = False,
+    source: Any = None,
 ) -> None:
     """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
 
-    `everybody` who serves the key is asked, as one should after a ForeignReply. `answer` is called once, on
-    the thread with which Zenoh receives everything, so it should only queue.
+    `everybody` who serves the key is asked, as one should after a ForeignReply. `source` is that of a request
+    in whose name it is asked. `answer` is called once, on the thread with which Zenoh receives everything, so
+    it should only queue. One who is busy is not asked again: `Patience` tells when to.
     """
     key = f"{prefix}/{verb}"
     waiting, servers = [answer], keys.servers(prefix, verb)
@@ -177,6 +256,7 @@ def ask_later(
         session,
         key,
         lifeline,
+        source,
         handler=handler,
         payload=payload,
         encoding=encoding,

@@ -24,7 +24,8 @@ class Request(Struct, frozen=True):
     """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
 
     `plain`: the reply may be a message that is `Encoded` already. `who` asks, by the key; whether that is
-    proof is for those to say who serve `semmap/as/*/cmd`.
+    proof is for those to say who serve `semmap/as/*/cmd`. `asker` tells askers apart: `who`, or the id of the
+    session, or nothing of those who do not say. `source` is how Zenoh says that, to be passed on.
     """
 
     verb: str
@@ -33,6 +34,8 @@ class Request(Struct, frozen=True):
     send: Callable[[Any, bool], None] = _send_nowhere
     plain: bool = False
     who: str = ""
+    asker: str = ""
+    source: Any = None
 
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
@@ -77,7 +80,7 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
             else:
                 query.reply_err(content, encoding=encoding)
 
-    return Request(verb, payload, parameters, send, plain=not as_json, who=who)
+    return Request(verb, payload, parameters, send, plain=not as_json, who=who, **_from(query, who))
 
 
 def serve(
@@ -107,9 +110,15 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
             reply, error = (message, None) if ok else (None, message)
             acks.put(encode(Ack(id=str(said.get("id", "")), verb=verb, ok=ok, reply=reply, error=error)))
 
-        receive(Request(verb, payload, {}, send))
+        receive(Request(verb, payload, {}, send, **_from(sample)))
 
     session.declare_subscriber(f"{prefix}/**", on_put)
+
+
+def _from(message: zenoh.Query | zenoh.Sample, who: str = "") -> dict[str, Any]:
+    """Who sent it: `who`, or the session, if that says so."""
+    source = message.source_info
+    return {"asker": who or ("" if source is None else str(source.source_id.zid)), "source": source}
 
 
 def _envelope(payload: bytes) -> dict[str, Any]:

@@ -38,6 +38,11 @@ class Believed(NamedTuple):
     """Asserted facts that do not hold."""
     back: tuple[Triple, ...] = ()
 
+    @property
+    def subjects(self) -> Iterator[str]:
+        """The names of those that they are about; some more than once."""
+        return (v.entity_name(triple[0]) for triples in self for triple in triples)
+
 
 UNCHANGED = Believed()
 

@@ -52,8 +52,14 @@ class Now:
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
         entity = self._map.entity(query.name)
-        if not query.where:
-            return Described.of(entity)
+        return self._with_where(entity) if query.where else Described.of(entity)
+
+    def described(self, name: str) -> Described | None:
+        """The entity of that name with where it is, if it is there."""
+        entity = self._map.find(name)
+        return None if entity is None else self._with_where(entity)
+
+    def _with_where(self, entity: Entity) -> Described:
         space = self._map.places.space()
         wrong = denied(space, answers.said_of_place(self._map, entity))
         left_out = self._map.beliefs.left_out

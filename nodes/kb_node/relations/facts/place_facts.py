@@ -27,6 +27,9 @@ _STEP = 4000
 """Entities."""
 MANY: Final = 64
 """So many are worked out in arrays."""
+_FORGOTTEN = 8
+"""Solids for each that an update touches."""
+_MOST_TO_FORGET = 1000
 _BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
 """Along these `upward` goes."""
 
@@ -45,6 +48,7 @@ class Facts:
         self.space = Space(limits=limits)
         self._kept = [_Kept(rule) for rule in rules]
         self._in_turn: Iterator[Solid] = iter(())
+        self._to_forget = 0
         self.shifted: frozenset[str] = frozenset()
         """Who came to count in a crowd by the last update, or does not any more, because of others."""
 
@@ -108,8 +112,12 @@ class Facts:
                     kept.take(space, some, survey, gone, come)
             yield
 
-    def _forget(self, count: int) -> None:
-        """Let the next solids, in turn, forget what can be worked out again."""
+    def forget(self) -> None:
+        """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
+
+        Nobody need wait for that; only where it is not called for long, `update` does it.
+        """
+        count, self._to_forget = self._to_forget, 0
         forgot = 0
         for solid in islice(self._in_turn, count):
             solid.forget()
@@ -158,7 +166,9 @@ class Facts:
                     kept.work_out(space, left_over, gone, come)
             for _ in self._working_out(things, gone, come):
                 pass
-        self._forget(min(8 * len(moved), len(space.solids)))
+        self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
+        if self._to_forget > _MOST_TO_FORGET:
+            self.forget()
         self.shifted = frozenset(solid.name for solid in shifted)
         return Changed(gone, come)
 

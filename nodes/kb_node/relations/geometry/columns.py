@@ -11,7 +11,7 @@ import numpy as np
 from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
 from nodes.kb_node.relations.geometry.forms import Form, form_of
 from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import UNMEASURED, Solid, size_of
+from nodes.kb_node.relations.geometry.solids import UNMEASURED, Solid, shape_of
 from schemas.entities import Entity, Vector
 
 _FAR_M = 2e4
@@ -56,11 +56,10 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
         pose = entity.pose
         if pose is None:
             continue
-        size, is_place = size_of(entity), entity.place
-        known_as = None if size is None or is_place else entity.model
-        its = form_of(known_as, size or UNMEASURED, pose.orientation_wxyz)
+        model, size = shape_of(entity)
+        its = form_of(model, size or UNMEASURED, pose.orientation_wxyz)
         form.append(rows.setdefault(its, len(rows)))
-        placed.append((entity.name, pose.position_m, its, is_place, size is not None))
+        placed.append((entity.name, pose.position_m, its, entity.place, size is not None))
     forms, of = FormColumns(list(rows)), np.array(form, dtype=np.int64)
     x, y, z = _flat([at for _, at, _, _, _ in placed], 3).T
     bounds = np.stack([x, y, x, y], axis=1) + forms.bounds[of]

@@ -235,7 +235,7 @@ def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, B
     away = np.where(np.abs(rises) > _STEEP_M, np.sign(rises) * straight[:, :, :, :2], 0.0)
     lowest = centre[:, :, :2] - away.sum(axis=2)
     steepness = np.abs(rises[:, :, :, 0])
-    is_sure: Bools = ((steepness <= _LEVEL_M) | (steepness > _STEEP_M)).all(axis=2)
+    is_sure = ((steepness <= _LEVEL_M) | (steepness > _STEEP_M)).all(axis=2)
     rise = np.sqrt((round_[:, :, :, 2] ** 2).sum(axis=2))
     is_level: Bools = rise <= _LEVEL_M
     is_sure = is_sure & (is_level | (rise > _STEEP_M))

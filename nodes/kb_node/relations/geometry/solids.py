@@ -169,7 +169,7 @@ class Solid:
     def forget(self) -> None:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
         del self.__dict__
-        if self.form.users == 1:
+        if self.form.users <= 1:
             self.form.forget()
 
     def to_map(self, point: Vector) -> Vector:
@@ -194,19 +194,29 @@ class Solid:
         ]
 
 
-def solid_of(entity: Entity | Placed) -> Solid | None:
-    """The solid of an entity; None without a position."""
+def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | None:
+    """The solid of an entity; None without a position.
+
+    `before` is the one that it replaces: what only moved keeps its form.
+    """
     pose = entity.pose
     if pose is None:
         return None
-    size = size_of(entity)
-    model = None if size is None or entity.place else entity.model
-    form = form_of(model, size or UNMEASURED, pose.orientation_wxyz)
+    model, size = shape_of(entity)
+    extent, turn = size or UNMEASURED, pose.orientation_wxyz
+    if before is not None and before.form.is_of(model, extent, turn):
+        form = before.form
+        form.users -= 1
+    else:
+        form = form_of(model, extent, turn)
     return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
 
 
-def size_of(entity: Entity | Placed) -> Size | None:
-    """Its own size, or that of its model [m]; places have none of a model."""
-    if entity.size_m is not None or entity.place or not entity.model:
-        return entity.size_m
-    return own_size_m(entity.model)
+def shape_of(entity: Entity | Placed) -> tuple[str | None, Size | None]:
+    """What its form is of: its model, None without parts, and its size, or that of its model [m]."""
+    size = entity.size_m
+    if entity.place:
+        return None, size
+    if size is None and entity.model:
+        size = own_size_m(entity.model)
+    return None if size is None else entity.model, size
