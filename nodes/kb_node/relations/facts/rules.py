@@ -84,8 +84,12 @@ def _attachments(space: Space, solid: Solid) -> Iterator[About]:
 
 
 def _attachments_of_many(survey: Survey) -> Iterator[tuple[About, ...] | None]:
-    for may_hang in survey.may_hang.tolist():
-        yield None if may_hang else ()
+    for row, may_hang in enumerate(survey.may_hang.tolist()):
+        if may_hang:
+            yield None
+        else:
+            names = sorted(survey.solids[other].name for other in survey.hangs_on.get(row, ()))
+            yield tuple(("isAttachedTo", name) for name in names)
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
