@@ -20,7 +20,7 @@ from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
 from nodes.kb_node.relations.geometry.planar import GUARD
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE
+from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
 from nodes.kb_node.relations.measuring.bearing import bearing
 from nodes.kb_node.relations.measuring.broad_phase import BroadPhase, covered, differs, distinct, repeated
 from nodes.kb_node.relations.measuring.space import Space
@@ -221,7 +221,7 @@ class Survey:
             columns.bounds[one, :2] - columns.bounds[other, 2:],
             columns.bounds[other, :2] - columns.bounds[one, 2:],
         )
-        slack = limits.attached_m - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
+        slack = min(limits.attached_m, BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
         exact = is_near[may] & forms.is_square[columns.form[one]] & forms.is_square[columns.form[other]]
         plain = exact & columns.is_sure[one] & (np.minimum(alongside, above) > GUARD) & (slack > GUARD)
         self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True
