@@ -1,5 +1,6 @@
 """The knowledge base as a process of its own, asked over Zenoh on loopback."""
 
+import gzip
 import queue
 import subprocess
 import sys
@@ -264,6 +265,15 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
     replaced = ask(session, "load", load("l2", PREFIXES + ":only a dm:Chair .", replace=True))
     assert {gone.name for gone in replaced.commit.removed} == {e.name for e in before.entities}
     assert [e.name for e in ask(session, "snapshot", SnapshotQuery()).entities] == ["only"]
+
+
+def test_packed_documents_are_loaded(session):
+    packed = structs.replace(load("gz1", ""), content=gzip.compress((PREFIXES + ":gz a dm:Chair .").encode()))
+    assert ask(session, "load", packed).names == ("gz",)
+    with pytest.raises(errors.BadFile, match="ends too early to be unpacked"):
+        ask(session, "load", structs.replace(packed, id="gz2", content=packed.content[:-9]))
+    tbox = LoadTBox(id="gz3", source="file", content=gzip.compress(TBOX_TURTLE.encode()), filename="t.ttl.gz")
+    assert ask(session, "load-tbox", tbox).commit.tbox
 
 
 @pytest.mark.parametrize(

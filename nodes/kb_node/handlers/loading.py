@@ -17,6 +17,7 @@ from ontology import vocabulary as v
 from schemas.bridge import LoadDocument, Loaded, LoadTBox
 from schemas.calls import Handler, by_verb
 from schemas.commits import Commit, Effects, Transaction
+from schemas.packing import unpacked
 
 
 class Loading:
@@ -54,16 +55,18 @@ class Loading:
                 self._sparql.forget()
 
     def _load(self, load: LoadDocument) -> Loaded:
-        if rdf.syntax_of(load.content) == "turtle" and not (load.replace or load.parts or load.dry_run):
-            self._sparql.foresee(load.id, load.content, v.ABOX)
+        content = unpacked(load.content, load.filename)
+        if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
+            self._sparql.foresee(load.id, content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._telling_of(load.filename) as tell:
             triples = rdf.parse(
-                load.content,
+                content,
                 load.filename,
                 label_prefix=label,
                 progress=lambda count: tell(f"{count:,} triples read"),
             )
+            del content
             tell(f"{len(triples):,} triples to check and write")
             transaction, sorted_out = document_change.of_document(self._map, load, triples)
             if not document_change.is_all(triples, transaction):
@@ -110,4 +113,4 @@ class Loading:
             ) from None
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        return self._changing.published_if_new(lambda: self._map.commit(transaction))
+        return self._changing.published_if_new(lambda: self._map.commit(transaction), at_once=True)

@@ -24,6 +24,9 @@ Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
 _STEP = 500
 """Entities."""
+_FORGOTTEN = 8
+"""Solids for each that an update touches."""
+_MOST_TO_FORGET = 1000
 _BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
 """Along these `upward` goes."""
 
@@ -42,6 +45,7 @@ class Facts:
         self.space = Space(limits=limits)
         self._kept = [_Kept(rule) for rule in rules]
         self._in_turn: Iterator[Solid] = iter(())
+        self._to_forget = 0
         self.shifted: frozenset[str] = frozenset()
         """Who came to count in a crowd by the last update, or does not any more, because of others."""
 
@@ -92,8 +96,12 @@ class Facts:
         for solid in self.space.solids.values():
             solid.forget()
 
-    def _forget(self, count: int) -> None:
-        """Let the next solids, in turn, forget what can be worked out again."""
+    def forget(self) -> None:
+        """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
+
+        Nobody need wait for that; only where it is not called for long, `update` does it.
+        """
+        count, self._to_forget = self._to_forget, 0
         forgot = 0
         for solid in islice(self._in_turn, count):
             solid.forget()
@@ -127,7 +135,9 @@ class Facts:
         come: set[Fact] = set()
         for kept in self._kept:
             kept.update(space, moved, left, fresh, gone, come)
-        self._forget(8 * len(moved))
+        self._to_forget += _FORGOTTEN * len(moved)
+        if self._to_forget > _MOST_TO_FORGET:
+            self.forget()
         self.shifted = frozenset(solid.name for solid in shifted)
         return Changed(gone, come)
 

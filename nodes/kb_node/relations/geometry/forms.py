@@ -12,7 +12,7 @@ from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.polygons import Point, area, hull
 from ontology.model_shapes import ModelShape
-from schemas.entities import Size, Vector
+from schemas.entities import Quaternion, Size, Vector
 
 UPRIGHT = math.cos(math.radians(15.0))
 """A thing that leans more has no level surfaces."""
@@ -35,15 +35,22 @@ class Form:
     of them.
     """
 
-    def __init__(self, size: Size, rotation: Matrix, shape: ModelShape) -> None:
-        """`rotation` is map from body; `shape` is of that size, in its own frame."""
+    def __init__(self, model: str | None, size: Size, wxyz: Quaternion) -> None:
+        """None has no parts, and "" is a box."""
+        self.model: Final = model
         self.size: Final = size
-        self.rotation: Final = rotation
-        self.shape: Final = shape
+        self.orientation: Final = wxyz
+        self.rotation: Final = _rotation(wxyz)
+        """Map from body."""
+        self.shape: Final = _BOX if model is None else fitted(model, size)
         self.users = 0
-        """How many solids have had it."""
-        self.is_level: Final = rotation[2][2] >= LEVEL
-        self.is_upright: Final = rotation[2][2] >= UPRIGHT
+        """How many solids have it, or had it."""
+        self.is_level: Final = self.rotation[2][2] >= LEVEL
+        self.is_upright: Final = self.rotation[2][2] >= UPRIGHT
+
+    def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
+        """Whether it is the form of a model at a size, turned so."""
+        return self.orientation == wxyz and self.size == size and self.model == model
 
     def turned(self, vector: Vector) -> Vector:
         """A vector of its own frame along the axes of the map."""
@@ -144,12 +151,12 @@ _EXACTLY = 1e-9
 
 
 @lru_cache(maxsize=4096)
-def form_of(model: str | None, size: Size, wxyz: tuple[float, float, float, float]) -> Form:
+def form_of(model: str | None, size: Size, wxyz: Quaternion) -> Form:
     """The form of a model at a size; None has no parts, and "" is a box."""
-    return Form(size, _rotation(wxyz), _BOX if model is None else fitted(model, size))
+    return Form(model, size, wxyz)
 
 
-def _rotation(wxyz: tuple[float, float, float, float]) -> Matrix:
+def _rotation(wxyz: Quaternion) -> Matrix:
     w, x, y, z = wxyz
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),

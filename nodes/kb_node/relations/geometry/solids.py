@@ -16,6 +16,8 @@ from schemas.entities import Entity, Size, Vector
 
 SAMPLES = 5
 """Points along each axis that stand for a volume."""
+_POINT: Final[Size] = (0.02, 0.02, 0.02)
+"""Of what nobody measured."""
 _WORKED_OUT = ("outline", "base", "centre", "supports", "parts", "samples")
 
 
@@ -143,7 +145,7 @@ class Solid:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
         for name in _WORKED_OUT:
             self.__dict__.pop(name, None)
-        if self.form.users == 1:
+        if self.form.users <= 1:
             self.form.forget()
 
     def to_map(self, point: Vector) -> Vector:
@@ -168,13 +170,21 @@ class Solid:
         ]
 
 
-def solid_of(entity: Entity | Placed) -> Solid | None:
-    """The solid of an entity; None without a position."""
+def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | None:
+    """The solid of an entity; None without a position.
+
+    `before` is the one that it replaces: what only moved keeps its form.
+    """
     pose = entity.pose
     if pose is None:
         return None
     is_place, model = entity.place, entity.model
     size = entity.size_m or (None if is_place else own_size_m(model) if model else None)
     known_as = None if size is None or is_place else model
-    form = form_of(known_as, size or (0.02, 0.02, 0.02), pose.orientation_wxyz)
+    extent, turn = size or _POINT, pose.orientation_wxyz
+    if before is not None and before.form.is_of(known_as, extent, turn):
+        form = before.form
+        form.users -= 1
+    else:
+        form = form_of(known_as, extent, turn)
     return Solid(entity.name, pose.position_m, form, is_place, size is not None)

@@ -56,7 +56,7 @@ def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
     strip = hull([*one.outline, *other.outline])
     low, high = max(one.bottom, other.bottom), min(one.top, other.top)
     apart = measures.gap(one, other)
-    for third in space.around(one, apart):
+    for third in space.counted_around(one, apart):
         if third is other or third.is_place or not third.is_measured:
             continue
         if not measures.overlap(third.bounds, other.bounds, apart):

@@ -42,8 +42,7 @@ class Space:
 
     def put(self, entity: Entity | Placed) -> Solid | None:
         """Add an entity, or have it where it is now; its solid, if it has a position."""
-        self.take(entity.name)
-        solid = solid_of(entity)
+        solid = solid_of(entity, self.take(entity.name))
         if solid is not None:
             self._add(solid)
             if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
@@ -55,12 +54,13 @@ class Space:
         """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
         return not self._raised
 
-    def take(self, name: str) -> None:
-        """Take an entity out, if it is there."""
+    def take(self, name: str) -> Solid | None:
+        """Take an entity out, if it is there; its solid."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self._grid.remove(solid)
             self._raised.discard(name)
+        return solid
 
     @contextmanager
     def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:

@@ -63,7 +63,7 @@ def test_thousands_are_on_the_table_that_is_under_them_all():
     assert max(map(len, looked_at)) < 2 * crowds.MOST
     assert facts.space.crowds() == [
         "1501 things are within 1 m of (0.5, 0.5): "
-        "what they are on or inside is looked for among the 100 largest"
+        "what they are on, inside or beside is looked for among the 100 largest"
     ]
 
 
