@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from nodes.kb_node.documents import rdf
+from nodes.kb_node.storage import dense
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint
 from nodes.kb_node.storage.journal import Journal, Row, chained
 from schemas import errors
