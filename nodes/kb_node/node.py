@@ -52,7 +52,9 @@ class KnowledgeBase:
         )
         self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
-        self._asking = Asking(self.map, journal, self._sparql, self._standing_places)
+        self._asking = Asking(
+            self.map, journal, self._sparql, self._standing_places, asker=lambda: node.asker
+        )
         telling_of = self._telling_of
         changing = Changing(
             self.map, journal, spread=self._spread, not_written=self._not_written, telling_of=telling_of

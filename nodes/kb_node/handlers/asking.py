@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import partial
 from typing import TypeVar
 
@@ -19,6 +19,7 @@ from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
+from nodes.runtime.fair_pool import FairPool
 from schemas import errors
 from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
@@ -57,8 +58,10 @@ class Asking:
         journal: Journal,
         sparql: SparqlService,
         standing_places: StandingPlaces,
+        asker: Callable[[], str] = str,
     ) -> None:
-        """`sparql` and `standing_places` are told of each commit by the node."""
+        """`sparql` and `standing_places` are told of each commit by the node; `asker()` is who asks."""
+        self._asker = asker
         self._map = semantic_map
         self._sparql = sparql
         self._standing_places = standing_places
@@ -66,7 +69,7 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
-        self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._aside = FairPool(2, asker)
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -195,7 +198,7 @@ class Asking:
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """A query, evaluated beside the node's own work."""
-        return self._sparql.ask(query, self._map.seq)
+        return self._sparql.ask(query, self._map.seq, self._asker())
 
     def on_watch(self, query: Watch) -> Watching | Future[Watching]:
         """A standing query, or a standing question of where things are."""
@@ -205,7 +208,7 @@ class Asking:
                 "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
             )
         if not asks_where:
-            return self._sparql.ask(query, self._map.seq)
+            return self._sparql.ask(query, self._map.seq, self._asker())
         if query.where is None or query.inferred:
             raise errors.BadRequest(
                 "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
@@ -218,4 +221,4 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
-        self._aside.shutdown(wait=False, cancel_futures=True)
+        self._aside.close()
