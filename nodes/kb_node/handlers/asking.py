@@ -134,9 +134,11 @@ class Asking:
             return self._now.entity(query)
         return self._aside.submit(self._then.entity, query)
 
-    def on_infer(self, query: Infer) -> Inferred:
-        """What follows."""
-        return answers.infer(self._map, query.name)
+    def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
+        """What follows about an entity; about all, it is worked out beside the node's own work."""
+        if query.name is not None:
+            return answers.infer(self._map, query.name)
+        return self._aside.submit(answers.infer_all, answers.inferring(self._map))
 
     def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
         """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
