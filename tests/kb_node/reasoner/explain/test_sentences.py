@@ -41,7 +41,7 @@ HOLDS = {
     ),
     ":a a dm:Object": (
         ":a dm:isSwitchedOn false",
-        "a is an object, because a is not switched on (asserted), and whatever has a value for “is switched "
+        "a is an object, because it is not switched on (asserted), and whatever has a value for “is switched "
         "on” is an object.",
     ),
     ":plate1 a dm:Tableware": (
