@@ -69,7 +69,7 @@ def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
     if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
         return False
     entering = store.into.gather(nodes, len(edges))
-    if not nodes.issuperset([store.subject[edge] for edge in entering]):
+    if not nodes >= {store.subject[edge] for edge in entering}:
         return False
     source, object_ = store.source, store.object
     for edge in edges:
