@@ -58,7 +58,7 @@ class Past:
 
         Raises Refused when there was no map, UnknownClass, BadRequest.
         """
-        there = self._there(self._commit_at(when))
+        there = self._there(self.commit_at(when))
         if class_name is None:
             return there
         classes = {t for entity in there for t in entity.types}.union(known)
@@ -83,7 +83,7 @@ class Past:
 
     def entity(self, name: str, when: When) -> Entity:
         """One entity as it was. Raises UnknownName, Refused when there was no map, BadRequest."""
-        seq = self._commit_at(when)
+        seq = self.commit_at(when)
         touching = self._journal.touching(name, until=seq)
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
@@ -123,7 +123,7 @@ class Past:
                 self._first.update((entity.name, entity) for entity in said)
         return self._first
 
-    def _commit_at(self, when: When) -> int:
+    def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > time.time_ns():
