@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import accumulate
 from pathlib import Path
+from typing import TypeVar
 
 from msgspec import Struct, structs
 
@@ -26,6 +27,7 @@ from schemas import codec, errors
 from schemas.commits import Commit
 
 log = logging.getLogger(__name__)
+T = TypeVar("T")
 
 FILENAME = "journal.sqlite"
 _SCHEMA = """
@@ -161,6 +163,10 @@ class Journal:
     def commits(self, after: int = 0) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
         return (_signed(body, digest) for body, digest in self._bodies(after))
+
+    def outlines(self, kind: type[T]) -> Iterator[T]:
+        """All commits in order, of each what `kind` has fields for. Raises Damaged at the first damaged."""
+        return (codec.decode(body, kind) for body, _ in self._bodies(0))
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read every commit and TBox. Raises Damaged at the first damaged commit, Refused for a TBox."""
