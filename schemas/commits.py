@@ -123,7 +123,8 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     takes a new snapshot then. The journal always holds all of it.
 
     `digest` is that of the journal up to and with this commit, in hexadecimal: where it is the same, so is
-    all that came before. Within the journal, which keeps it beside, it is empty.
+    all that came before. Within the journal, which keeps it beside, it is that of the commit before, so that
+    each commit can be verified by itself.
 
     `places` is in what is published only: the journal holds what was said, and not what was worked out. It is
     None where nothing of the kind changed, and for another TBox, with which everything is worked out anew.

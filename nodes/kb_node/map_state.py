@@ -173,6 +173,10 @@ class MapState:
         self.follow_places()
         return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
 
+    def tidy(self) -> None:
+        """What a commit leaves to be done when nobody waits for it."""
+        self.beliefs.computed.facts.forget()
+
     # Changing
 
     def exchange_tbox(self, tbox: frozenset[Triple], reasoner: Reasoner) -> None:

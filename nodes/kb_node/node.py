@@ -10,6 +10,7 @@ from nodes.kb_node import gc_pause
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import whereabouts
 from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.beliefs import Believed
 from nodes.kb_node.checkpointing import Checkpointing
 from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents.tbox import tbox_notes
@@ -74,17 +75,26 @@ class KnowledgeBase:
         if self.map.follow_some():
             self._node.soon(self._follow_places)
 
-    def _spread(self, commit: Commit, told: bool) -> None:
-        """Tell everybody; the own readers, whom nobody asks before that, once the reply is on its way."""
+    def _spread(self, commit: Commit, *, told: bool, at_once: bool) -> None:
+        """Tell everybody, `at_once` or when the reply is on its way: nobody else is answered before that."""
         believed = self.map.believed_of(commit)
-        self._announcer.announce(commit, believed, told=told)
-        self._node.afterwards(partial(self._sparql.follow, commit, believed))
-        self._node.afterwards(partial(self._standing_places.follow, commit.seq, commit.names))
+        announce = partial(self._announcer.announce, commit, believed, told=told)
+        if at_once:
+            announce()
+        else:
+            self._node.afterwards(announce)
+        self._node.afterwards(partial(self._follow, commit, believed))
         self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
         if self.map.checkpoint_is_urgent:
             self._node.later(CHECKPOINT_DELAY_S, self._checkpointing.if_urgent)
+
+    def _follow(self, commit: Commit, believed: Believed) -> None:
+        """What this node does with a commit when the reply is on its way."""
+        self._sparql.follow(commit, believed)
+        self._standing_places.follow(commit.seq, commit.names)
+        self.map.tidy()
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)

@@ -17,6 +17,8 @@ from nodes.kb_node.relations.facts.rules import RULES
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from nodes.kb_node.storage.history import Past
+from nodes.kb_node.storage.journal import Journal
 from ontology.model_shapes import own_size_m
 from schemas.entities import Entity, Pose, Size
 
@@ -51,13 +53,22 @@ class Moves(Struct, frozen=True):
     removed: tuple[_Left, ...] = ()
 
 
+def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> dict[Fact, str]:
+    """Since when each fact has held without a break, in words, as far as the journal goes back."""
+    is_whole = journal.beginning.seq == 0
+    first = past.said_by_the_first_tbox().values() if is_whole else journal.snapshot().entities
+    found = beginnings(journal.outlines(Moves), first, facts, limits)
+    before = f"since before commit {journal.first}"
+    return {fact: f"since commit {seq}" if seq else before for fact, seq in found.items()}
+
+
 def beginnings(
     history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
 ) -> dict[Fact, int]:
     """The commit since which each fact has held without a break, measured with these thresholds.
 
-    `history` are all commits in order, `first` the entities before them. What held before the first commit is
-    of commit 0; what does not hold at the end is not among them.
+    `history` are the commits in order, `first` the entities before them. What held before the first of them is
+    given as 0; what does not hold at the end is not among them.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])

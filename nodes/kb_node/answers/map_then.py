@@ -32,7 +32,9 @@ class MapThen(NamedTuple):
 
 def asserted_then(journal: Journal, seq: int) -> set[Triple]:
     """All that was asserted after a commit, the TBox with it. Takes as long as the history until then."""
-    asserted = set(rdf.parse(journal.tbox(0), f"the first TBox in {journal.path}"))
+    start = journal.snapshot()
+    asserted = set(rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}"))
+    asserted.update(start.said())
     for commit in journal.commits():
         if commit.seq > seq:
             break

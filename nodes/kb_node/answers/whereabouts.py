@@ -39,14 +39,12 @@ class Explained(NamedTuple):
     before: str = ""
     measured: tuple[tuple[Fact, str], ...] = ()
 
-    def dated(self, began: Callable[[Collection[Fact]], Mapping[Fact, int]]) -> Explanation:
-        """With the commit since which each measured fact holds, by `began`."""
+    def dated(self, began: Callable[[Collection[Fact]], Mapping[Fact, str]]) -> Explanation:
+        """With words for since when each measured fact holds, by `began`."""
         if not self.measured:
             return self.explanation
         since = began([fact for fact, _ in self.measured])
-        told = (
-            f"{text} (since commit {since[fact]})" if fact in since else text for fact, text in self.measured
-        )
+        told = (f"{text} ({since[fact]})" if fact in since else text for fact, text in self.measured)
         return structs.replace(self.explanation, text=self.before + "; ".join(told))
 
 

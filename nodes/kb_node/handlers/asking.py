@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, map_then, questions, whereabouts
-from nodes.kb_node.answers.beginnings import Moves, beginnings
+from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
-from nodes.kb_node.relations.facts.place_facts import Fact
-from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
@@ -154,12 +151,8 @@ class Asking:
             return self._tried(questions.explain, asked)
         if not found.measured:
             return found.explanation
-        limits = self._map.classes.limits
-        return self._aside.submit(found.dated, partial(self._began, limits=limits))
-
-    def _began(self, facts: Collection[Fact], limits: Thresholds) -> Mapping[Fact, int]:
-        history, first = self._journal.outlines(Moves), self._past.said_by_the_first_tbox()
-        return beginnings(history, first.values(), facts, limits)
+        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, began)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""

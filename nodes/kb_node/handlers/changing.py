@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from nodes.kb_node import undo
 from nodes.kb_node.answers import trials
@@ -21,27 +21,37 @@ Tell = Callable[[str], None]
 TellingOf = Callable[[str], AbstractContextManager[Tell]]
 """Of a file's name: lets the heartbeat tell how far the loading of it is."""
 
+
+class Spread(Protocol):
+    """`spread(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
+
+    The coordinator is `told` of it by the reply.
+    """
+
+    def __call__(self, commit: Commit, /, *, told: bool, at_once: bool) -> None:  # noqa: D102
+        ...
+
+
 _FEW = 1000
 """Entities that are added at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
 
 
 class Changing:
-    """Commits what is asked for, and has everybody told: journal (durable), publish, reply."""
+    """Commits what is asked for, and has everybody told: journal (durable), reply, publish."""
 
     def __init__(
         self,
         semantic_map: SemanticMap,
         journal: Journal,
         *,
-        spread: Callable[[Commit, bool], None],
+        spread: Spread,
         not_written: Callable[[NotWritten], None],
         telling_of: TellingOf,
     ) -> None:
-        """`spread(commit, told)` is called with each new commit, in order, before it is replied.
+        """`spread` is called with each new commit, in order, before it is replied.
 
-        The coordinator is `told` of it by the reply. `not_written` is called with each commit that the disk
-        does not take.
+        `not_written` is called with each one that the disk does not take.
         """
         self._map = semantic_map
         self._journal = journal
@@ -87,7 +97,7 @@ class Changing:
         for transaction, result in zip(several.transactions, results, strict=True):
             if isinstance(result, Commit) and result.seq > before:
                 before = result.seq
-                self._spread(result, transaction.told)
+                self._spread(result, told=transaction.told, at_once=False)
         return tuple(map(_outcome, results))
 
     def on_undo(self, command: TakeBack) -> Effects | None:
@@ -106,8 +116,11 @@ class Changing:
             return trials.of(self._map, change)
         return effects(self.published_if_new(change, told=told))
 
-    def published_if_new(self, change: Callable[[], C], *, told: bool = False) -> C:
-        """What `change` commits; published unless it is the answer to an old command."""
+    def published_if_new(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
+        """What `change` commits; published unless it is the answer to an old command.
+
+        `at_once`: its reply comes after others have been committed, which may take long.
+        """
         before = self._map.seq
         try:
             commit = change()
@@ -115,7 +128,7 @@ class Changing:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit, told)
+            self._spread(commit, told=told, at_once=at_once)
         return commit
 
 

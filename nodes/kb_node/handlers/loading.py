@@ -113,4 +113,4 @@ class Loading:
             ) from None
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        return self._changing.published_if_new(lambda: self._map.commit(transaction))
+        return self._changing.published_if_new(lambda: self._map.commit(transaction), at_once=True)

@@ -64,6 +64,8 @@ class EarlyBody:
         return self._head.result() + self._deflate.compress(effects) + self._deflate.flush()
 
 
-def early(commit: Commit) -> EarlyBody | None:
-    """The beginning of the body of a commit whose triples are worth it."""
-    return EarlyBody(commit) if len(commit.inserted) + len(commit.retracted) >= _MANY else None
+def early(commit: Commit, after: str) -> EarlyBody | None:
+    """The beginning of the body of a commit whose triples are worth it; `after` is the digest before it."""
+    if len(commit.inserted) + len(commit.retracted) < _MANY:
+        return None
+    return EarlyBody(structs.replace(commit, digest=after))

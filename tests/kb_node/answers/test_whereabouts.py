@@ -2,8 +2,7 @@
 
 import pytest
 
-from nodes.kb_node.answers import questions, whereabouts
-from nodes.kb_node.answers.beginnings import Moves, beginnings
+from nodes.kb_node.answers import beginnings, questions, whereabouts
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
 from nodes.kb_node.storage.history import Past
@@ -52,8 +51,7 @@ def explained(semantic_map, name, predicate, value):
 
 def began(semantic_map, facts):
     journal = semantic_map._journal
-    first = Past(journal).said_by_the_first_tbox().values()
-    return beginnings(journal.outlines(Moves), first, facts, semantic_map.classes.limits)
+    return beginnings.spoken(journal, Past(journal), facts, semantic_map.classes.limits)
 
 
 def refused(semantic_map, name, predicate, value):
