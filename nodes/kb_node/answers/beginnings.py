@@ -67,8 +67,8 @@ def beginnings(
 ) -> dict[Fact, int]:
     """The commit since which each fact has held without a break, measured with these thresholds.
 
-    `history` are the commits in order, `first` the entities before them. What held before the first of them is
-    given as 0; what does not hold at the end is not among them.
+    `history` are the commits in order, `first` the entities before them. What held before the first of
+    them is given as 0; what does not hold at the end is not among them.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])

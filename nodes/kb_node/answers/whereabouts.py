@@ -140,8 +140,10 @@ class Now:
         if seen is not None and seen.relation == "touches" and not seen.holds:
             seen = None
         if seen is not None:
-            link = "; and" if seen.holds else "; but as it stands"
-            return Explained(structs.replace(found, text=f"{found.text.rstrip('.')}{link} {seen.text}"))
+            if not seen.holds:
+                text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
+                return Explained(structs.replace(found, text=text))
+            return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
         told = tuple(self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact))
         return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
 
