@@ -233,7 +233,7 @@ class Journal:
 
     def outlines(self, kind: type[T]) -> Iterator[T]:
         """All commits in order, of each what `kind` has fields for. Raises Damaged at the first damaged."""
-        return (codec.decode(row.body, kind) for row in self.rows())
+        return (dense.decode(row.body, kind) for row in self.rows())
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read everything that counts. Raises Damaged at the first damaged commit, Refused for the rest."""
