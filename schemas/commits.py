@@ -7,7 +7,7 @@ from typing import ClassVar
 from msgspec import Struct, structs
 
 from schemas import errors
-from schemas.calls import Call
+from schemas.calls import DOCUMENT, Call
 from schemas.entities import (
     Angle,
     CommandId,
@@ -123,7 +123,8 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     takes a new snapshot then. The journal always holds all of it.
 
     `digest` is that of the journal up to and with this commit, in hexadecimal: where it is the same, so is
-    all that came before. Within the journal, which keeps it beside, it is empty.
+    all that came before. Within the journal, which keeps it beside, it is that of the commit before, so that
+    each commit can be verified by itself.
 
     `places` is in what is published only: the journal holds what was said, and not what was worked out. It is
     None where nothing of the kind changed, and for another TBox, with which everything is worked out anew.
@@ -252,6 +253,8 @@ class Transaction(
     settling). `undoes` are the commits that it takes back.
     """
 
+    LARGEST: ClassVar[int] = DOCUMENT
+
     VERB: ClassVar[str] = "commit"
     id: CommandId
     source: Source
@@ -277,10 +280,11 @@ MANY_TRIPLES = 20 * MANY_ENTITIES
 """A commit with more than either is abridged when it is passed on."""
 
 
-def abridged(commit: Commit) -> Commit:
-    """`commit` as it is passed on: one that is very large without its triples and entities."""
+def abridged(commit: Commit, *, always: bool = False) -> Commit:
+    """`commit` as it is passed on: one that is very large (or `always`) without its triples and entities."""
     triples = len(commit.inserted) + len(commit.retracted)
-    if triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES:
+    is_small = triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES
+    if is_small and not always:
         return commit
     return structs.replace(
         commit, abridged=commit.extent, places=None, retracted=(), inserted=(), changed=(), removed=()

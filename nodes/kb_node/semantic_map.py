@@ -115,7 +115,7 @@ class SemanticMap(MapState):
             commit = planning.signed(transaction, plan, self.seq + 1)
             if self._look is not None:
                 return self._taken(apply(commit, self._write, noted))
-            give_up, begun = self.foretell(commit), commit_encoding.early(commit)
+            give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
             try:
                 return self._taken(apply(commit, lambda whole: self._write(whole, begun=begun), noted))
             except BaseException:
@@ -173,6 +173,18 @@ class SemanticMap(MapState):
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
         return self._taken(self._applier.switch(commit, new, make_durable))
+
+    def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
+        """Commit what another journal has, under its number and in its author's name, as it is.
+
+        `tbox` (N-Triples) is the one that it lets hold. Raises Inconsistent, BadRequest, NotWritten; then the
+        map is as before.
+        """
+        self.follow_places()
+        if tbox is None:
+            return self._taken(self._applier.apply(commit, self._write))
+        new = frozenset(rdf.parse(tbox, "the TBox"))
+        return self._taken(self._applier.switch(commit, new, lambda whole: self._write(whole, tbox)))
 
     def commit_together(
         self, transactions: Sequence[Transaction]

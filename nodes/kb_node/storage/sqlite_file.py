@@ -63,6 +63,8 @@ class JournalFile:
                 yield self._db
         except sqlite3.ProgrammingError:
             raise
+        except UnicodeDecodeError:  # of a text that is not one any more
+            raise _refusal(self._path, sqlite3.DatabaseError("a text is not UTF-8")) from None
         except sqlite3.DatabaseError as error:
             raise _refusal(self._path, error) from None
 
@@ -115,4 +117,4 @@ def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
 def mend(path: Path) -> str:
     """How one goes on after damage."""
     repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
-    return f"continue from the last good commit with: {repair} (the damaged file is kept)"
+    return f"continue with what is good: {repair} (the damaged file is kept)"
