@@ -95,8 +95,8 @@ def _lengthen(log: Path) -> None:
     """Let the write-ahead log be as long from the beginning as it will be once it is written anew.
 
     A commit that makes the file longer waits for the file system's own journal, too: on a busy disk three
-    times as long. SQLite reads no further than the last frame that it wrote. Where there is no room for it the
-    log grows as it is written.
+    times as long. SQLite reads no further than the last frame that it wrote. Where there is no room, the log
+    grows as it is written.
     """
     with suppress(OSError), log.open("r+b", buffering=0) as file:
         page = bytes(_PAGE_BYTES)  # at once it would be cached in large pieces, each written back as a whole
