@@ -7,7 +7,7 @@ from typing import ClassVar
 from msgspec import Struct, structs
 
 from schemas import errors
-from schemas.calls import Call
+from schemas.calls import DOCUMENT, Call
 from schemas.entities import (
     Angle,
     CommandId,
@@ -102,6 +102,19 @@ class Extent(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     removed: int
 
 
+class PlaceChanges(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """How a commit changed what holds of where things are, beyond the triples that it asserts and retracts.
+
+    `came` and `went` are computed facts, which nobody asserted. `denied` are asserted facts that do not hold
+    from this commit on, as things stand; `undenied` hold again, or are not asserted any more.
+    """
+
+    came: tuple[Triple, ...] = ()
+    went: tuple[Triple, ...] = ()
+    denied: tuple[Triple, ...] = ()
+    undenied: tuple[Triple, ...] = ()
+
+
 class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One atomic, checked, durable change. `changed` and `removed` are the entities that it touched.
 
@@ -110,7 +123,11 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     takes a new snapshot then. The journal always holds all of it.
 
     `digest` is that of the journal up to and with this commit, in hexadecimal: where it is the same, so is
-    all that came before. Within the journal, which keeps it beside, it is empty.
+    all that came before. Within the journal, which keeps it beside, it is that of the commit before, so that
+    each commit can be verified by itself.
+
+    `places` is in what is published only: the journal holds what was said, and not what was worked out. It is
+    None where nothing of the kind changed, and for another TBox, with which everything is worked out anew.
     """
 
     seq: int
@@ -127,6 +144,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     tbox: bool = False
     abridged: Extent | None = None
     digest: str = ""
+    places: PlaceChanges | None = None
     retracted: tuple[Triple, ...] = ()
     inserted: tuple[Triple, ...] = ()
     changed: tuple[Entity, ...] = ()
@@ -235,6 +253,8 @@ class Transaction(
     settling). `undoes` are the commits that it takes back.
     """
 
+    LARGEST: ClassVar[int] = DOCUMENT
+
     VERB: ClassVar[str] = "commit"
     id: CommandId
     source: Source
@@ -260,12 +280,15 @@ MANY_TRIPLES = 20 * MANY_ENTITIES
 """A commit with more than either is abridged when it is passed on."""
 
 
-def abridged(commit: Commit) -> Commit:
-    """`commit` as it is passed on: one that is very large without its triples and entities."""
+def abridged(commit: Commit, *, always: bool = False) -> Commit:
+    """`commit` as it is passed on: one that is very large (or `always`) without its triples and entities."""
     triples = len(commit.inserted) + len(commit.retracted)
-    if triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES:
+    is_small = triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES
+    if is_small and not always:
         return commit
-    return structs.replace(commit, abridged=commit.extent, retracted=(), inserted=(), changed=(), removed=())
+    return structs.replace(
+        commit, abridged=commit.extent, places=None, retracted=(), inserted=(), changed=(), removed=()
+    )
 
 
 class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -290,3 +313,7 @@ class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Its own: they go when it goes. A reference that another entity uses too is not among them."""
     incoming: tuple[Triple, ...]
     """What other individuals say of it."""
+    computed: tuple[Triple, ...] = ()
+    """Computed facts about it, as subject, which nobody asserted."""
+    denied: tuple[Triple, ...] = ()
+    """Those of its own that do not hold, as things stand."""

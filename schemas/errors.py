@@ -3,6 +3,7 @@
 SemmapError
 ├── Refused        exit status 1: the request was understood and the map says no
 │   ├── Inconsistent, PreconditionFailed, UnknownName, NameTaken
+├── Busy           exit status 1: not looked at, because too much waits already; to be sent again later
 ├── BadRequest     exit status 2: the request cannot be understood
 │   ├── UnknownClass, UnknownVerb, BadFile
 ├── NoAnswer       exit status 3: nobody serves the key, or this client may not ask it
@@ -18,12 +19,19 @@ from msgspec import Struct
 
 from schemas.explanations import Explanation
 
+LONGEST_TEXT = 10_000
+"""Characters of an error that are sent: what a sentence quotes may be of any length."""
+_LONGEST_WORD = 200
+"""Characters of a word for which similar ones are looked for."""
+
 
 class SemmapError(Exception):
     """Base of every error that crosses the wire. The text is one sentence saying what is possible."""
 
     code: ClassVar[str] = "error"
     exit_status: ClassVar[int] = 1
+    again_s: float | None = None
+    """Of Busy: after how long to come again [s]."""
 
     def __init__(self, text: str, *, explanation: Explanation | None = None) -> None:
         super().__init__(text)
@@ -73,6 +81,18 @@ class NameTaken(Refused):
     code = "name-taken"
 
 
+class Busy(SemmapError):
+    """Not looked at: too much waits already. Nothing was done, so it is safe to send it again."""
+
+    code = "busy"
+
+    def __init__(
+        self, text: str, *, again_s: float | None = None, explanation: Explanation | None = None
+    ) -> None:
+        super().__init__(text, explanation=explanation)
+        self.again_s = again_s
+
+
 class BadRequest(SemmapError):
     """The request cannot be understood: usage, a malformed value or message."""
 
@@ -111,12 +131,13 @@ class InternalError(SemmapError):
     code = "internal"
 
 
-class ErrorMessage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What an error reply carries."""
+class ErrorMessage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What an error reply carries. `again_s` is when to come again [s], of one that says busy."""
 
     code: str
     text: str
     explanation: Explanation | None = None
+    again_s: float | None = None
 
 
 _BY_CODE: dict[str, type[SemmapError]] = {
@@ -128,6 +149,7 @@ _BY_CODE: dict[str, type[SemmapError]] = {
         PreconditionFailed,
         UnknownName,
         NameTaken,
+        Busy,
         BadRequest,
         UnknownClass,
         UnknownVerb,
@@ -140,15 +162,26 @@ _BY_CODE: dict[str, type[SemmapError]] = {
 
 def to_message(error: SemmapError) -> ErrorMessage:
     """The wire form of `error`."""
-    return ErrorMessage(code=error.code, text=error.text, explanation=error.explanation)
+    return ErrorMessage(
+        code=error.code, text=shortened(error.text), explanation=error.explanation, again_s=error.again_s
+    )
 
 
 def from_message(message: ErrorMessage) -> SemmapError:
     """The error that `message` stands for; a code from a newer version becomes a plain SemmapError."""
-    return _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
+    error = _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
+    error.again_s = message.again_s
+    return error
+
+
+def shortened(text: str, most: int = LONGEST_TEXT) -> str:
+    """`text`, or of a longer one the beginning and the number of characters left out."""
+    return text if len(text) <= most else f"{text[:most]} ... (and {len(text) - most:,} more characters)"
 
 
 SKIP_UNKNOWN = "; --skip-unknown leaves these out"
+_A_WORD = 4
+"""Letters of a word that may be looked for within others."""
 _FEW = 10
 _MANY = 30
 
@@ -160,17 +193,25 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Up to three of `known`, nearest first. A client, which knows few names, may be without RapidFuzz."""
+    """Up to three of `known`: those first that the word is a part of, then the nearest.
+
+    A client, which knows few names, may be without RapidFuzz.
+    """
+    if len(word) > _LONGEST_WORD:
+        return []  # nobody meant it, and to compare it takes as long as it is
     try:
         from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
     except ImportError:
         import difflib
 
         return difflib.get_close_matches(word, list(known))
+    names, part = list(known), word.casefold()
     near = process.extract(
-        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+        word, names, scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
     )
-    return [name for name, _, _ in near]
+    longer = [name for name in names if part in name.casefold()] if len(part) >= _A_WORD else []
+    longer.sort(key=lambda name: (len(name), name))
+    return list(dict.fromkeys([*longer[:2], *(name for name, _, _ in near)]))[:3]
 
 
 def enumerated(names: Sequence[str]) -> str:

@@ -11,9 +11,9 @@ from typing import Any, Literal, NamedTuple
 from urllib.parse import quote, unquote
 
 from schemas.commits import Commit, Effects
-from schemas.entities import Entity
 from schemas.health import Health
 from schemas.perception import Observations, SegmentedCloud
+from schemas.relations import Described
 from schemas.replies import Ack
 from schemas.scenes import Poses
 from schemas.sparql import RowsChanged
@@ -55,7 +55,7 @@ EFFECTS = Topic(COMMIT.key, Effects, "lossless")
 """The same publication, read without its triples."""
 UNTOLD = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
 """The effects of the commits that no reply tells the coordinator of."""
-ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Entity, "lossless")
+ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Described, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
 CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")

@@ -10,22 +10,32 @@ consolidated.
 from __future__ import annotations
 
 import logging
+import random
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, NoReturn
+from functools import partial
+from typing import Any, Final, NoReturn
 
 import zenoh
 from msgspec import Struct
 
+from nodes.bus import pieces
 from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
 from schemas import codec, errors, keys
+from schemas.replies import Done
 
 log = logging.getLogger(__name__)
 
 TIMEOUT_S = 30.0
 _HAD_IT_S = 0.1
 """A question that ends without an answer after so long was with somebody, who has gone meanwhile."""
+
+BUSY_S = 60.0
+"""Seconds for which one who is told to come again does so."""
+_SLOWER: Final = 1.5
+"""How much longer one who was sent away again waits than the last time."""
+_LONGEST_S: Final = 5.0
 
 _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
@@ -35,16 +45,33 @@ class ForeignReply(errors.NoAnswer):
     """Only somebody has answered who is not one of the nodes that serve the key."""
 
 
+class Patience:
+    """With those who are busy: when to come again, later each time and never all at once."""
+
+    def __init__(self) -> None:
+        self._until_s = time.monotonic() + BUSY_S
+        self._times = 0
+
+    def pause_s(self, busy: errors.Busy) -> float:
+        """After how long [s] to ask again. Raises `busy` when it has taken too long."""
+        if time.monotonic() > self._until_s:
+            raise busy
+        wanted_s = min((busy.again_s or 1.0) * _SLOWER**self._times, _LONGEST_S)
+        self._times += 1
+        return wanted_s * random.uniform(0.5, 1.5)
+
+
 class Encoded(Struct, frozen=True):
     """A message as it came: to be decoded, or passed on."""
 
-    payload: zenoh.ZBytes
+    payload: zenoh.ZBytes | bytearray
     encoding: zenoh.Encoding
     kind: Any
 
     def decode(self) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
-        return codec.decode(self.payload.to_bytes(), self.kind)
+        payload = self.payload
+        return codec.decode(payload if isinstance(payload, bytearray) else payload.to_bytes(), self.kind)
 
 
 def ask(
@@ -68,9 +95,53 @@ def ask(
     a reply counts only if it is by a node that serves the key: where another program has answered, everybody
     who serves the key is asked.
 
+    Who answers that it is busy is asked again, for a minute.
+
     Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
     key for `patience_s` or the one that does takes longer than `timeout_s`.
     """
+    ask_once = partial(
+        _ask,
+        session,
+        prefix,
+        verb,
+        message,
+        kind,
+        timeout_s=timeout_s,
+        patience_s=patience_s,
+        meanwhile=meanwhile,
+        first_hand=first_hand,
+        lifelines=lifelines,
+    )
+    try:
+        return ask_once()
+    except errors.Busy as error:
+        busy, patience = error, Patience()
+    while True:
+        until_s = time.monotonic() + patience.pause_s(busy)
+        while (left_s := until_s - time.monotonic()) > 0:
+            if meanwhile is not None:
+                meanwhile()
+            time.sleep(min(left_s, 0.1))
+        try:
+            return ask_once()
+        except errors.Busy as error:
+            busy = error
+
+
+def _ask(
+    session: zenoh.Session,
+    prefix: str,
+    verb: str,
+    message: Any,
+    kind: Any,
+    *,
+    timeout_s: float,
+    patience_s: float,
+    meanwhile: Callable[[], None] | None,
+    first_hand: bool,
+    lifelines: Lifelines | None,
+) -> Any:
     key = f"{prefix}/{verb}"
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline_s = time.monotonic() + patience_s
@@ -78,18 +149,23 @@ def ask(
     target = zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING
     while True:
         asked_at_s = time.monotonic()
-        replies = _get(
-            session,
-            key,
-            lifelines.of(servers) if lifelines else None,
-            payload=payload,
-            encoding=encoding,
-            timeout=timeout_s,
-            target=target,
-        )
-        for reply in replies if meanwhile is None else _polled(replies, meanwhile):
+        replies: Any = ()
+        if (last := _sent_ahead(session, key, payload, encoding, lifelines)) is not None:
+            replies = _get(
+                session,
+                key,
+                lifelines.of(servers) if lifelines else None,
+                encoding=encoding,
+                timeout=timeout_s,
+                target=target,
+                **last,
+            )
+        gathered = pieces.Gathered()
+        for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
             if lifelines is None or lifelines.vouch(servers, reply):
-                return read_reply(key, reply, kind, timeout_s).decode()
+                if (whole := read_reply(key, reply, kind, timeout_s, gathered)) is not None:
+                    return whole.decode()
+                continue
             if not foreign:
                 foreign, deadline_s = True, time.monotonic() + patience_s
                 if lifelines.is_news(key):
@@ -110,10 +186,48 @@ def ask(
         time.sleep(0.01)
 
 
-def _get(session: zenoh.Session, key: str, lifeline: zenoh.CancellationToken | None, **options: Any) -> Any:
-    """The replies as they come; none if the lifeline has just been cut."""
+def _sent_ahead(
+    session: zenoh.Session,
+    key: str,
+    payload: bytes,
+    encoding: str,
+    lifelines: Lifelines | None,
+    source: zenoh.SourceInfo | None = None,
+) -> dict[str, Any] | None:
+    """What is left to be sent as the question itself: of a large payload, the last piece.
+
+    None if nobody has taken the others. Raises the error that a piece is answered with.
+    """
+    if len(payload) <= pieces.PIECE:
+        return {"payload": payload}
+    servers = keys.servers(*key.rsplit("/", 1))
+    for content, piece in pieces.cut(payload):
+        sent = {"payload": content, "attachment": codec.encode(piece)}
+        if piece.is_last:
+            return sent
+        lifeline = lifelines.of(servers) if lifelines else None
+        for reply in _get(session, key, lifeline, source, encoding=encoding, timeout=TIMEOUT_S, **sent):
+            if lifelines is None or lifelines.vouch(servers, reply):
+                read_reply(key, reply, Done, TIMEOUT_S)
+                break
+        else:
+            return None
+    return None
+
+
+def _get(
+    session: zenoh.Session,
+    key: str,
+    lifeline: zenoh.CancellationToken | None,
+    source: zenoh.SourceInfo | None = None,
+    **options: Any,
+) -> Any:
+    """The replies as they come; none if the lifeline has just been cut. `source`: in whose name."""
+    source = source or zenoh.SourceInfo(session.id, 0)
     try:
-        return session.get(key, consolidation=_AS_THEY_COME, cancellation_token=lifeline, **options)
+        return session.get(
+            key, consolidation=_AS_THEY_COME, cancellation_token=lifeline, source_info=source, **options
+        )
     except zenoh.ZError:
         if lifeline is None or not lifeline.is_cancelled:
             raise
@@ -144,21 +258,37 @@ def ask_later(
     timeout_s: float = TIMEOUT_S,
     lifelines: Lifelines | None = None,
     everybody: bool = False,
+    source: Any = None,
 ) -> None:
     """Like `ask`, without waiting: `answer` is given a function that returns the reply or raises its error.
 
-    `everybody` who serves the key is asked, as one should after a ForeignReply. `answer` is called once, on
-    the thread with which Zenoh receives everything, so it should only queue.
+    `everybody` who serves the key is asked, as one should after a ForeignReply. `source` is that of a request
+    in whose name it is asked. `answer` is called once, on the thread with which Zenoh receives everything, so
+    it should only queue. One who is busy is not asked again: `Patience` tells when to.
     """
     key = f"{prefix}/{verb}"
     waiting, servers = [answer], keys.servers(prefix, verb)
     foreign: list[zenoh.Reply] = []
+    gathered = pieces.Gathered()
 
     def on_reply(reply: zenoh.Reply) -> None:
         if lifelines is not None and not lifelines.vouch(servers, reply):
             foreign.append(reply)
-        elif waiting:
-            waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
+        elif not waiting:
+            return
+        elif reply.ok is None or reply.ok.attachment is None:
+            waiting.pop()(lambda: read_whole(key, reply, kind, timeout_s))
+        else:
+            on_piece(reply)
+
+    def on_piece(reply: zenoh.Reply) -> None:
+        try:
+            whole = read_reply(key, reply, kind, timeout_s, gathered)
+        except errors.SemmapError as error:
+            waiting.pop()(partial(_raise, error))
+        else:
+            if whole is not None:
+                waiting.pop()(lambda: whole)
 
     def refuse() -> NoReturn:
         if foreign:
@@ -171,24 +301,52 @@ def ask_later(
 
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
+    try:
+        last = _sent_ahead(session, key, payload, encoding, lifelines, source)
+    except errors.SemmapError as error:
+        answer(partial(_raise, error))
+        return
+    if last is None:
+        on_end()
+        return
     lifeline = lifelines.of(servers) if lifelines else None
     target = zenoh.QueryTarget.ALL if everybody else zenoh.QueryTarget.BEST_MATCHING
     _get(
         session,
         key,
         lifeline,
+        source,
         handler=handler,
-        payload=payload,
         encoding=encoding,
         timeout=timeout_s,
         target=target,
+        **last,
     )
 
 
-def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
-    """The message of a reply, of type `kind`; raises the error that it carries."""
+def _raise(error: errors.SemmapError) -> NoReturn:
+    raise error
+
+
+def read_whole(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
+    """The message of a reply that came in one, of type `kind`; raises the error that it carries."""
+    whole = read_reply(key, reply, kind, timeout_s)
+    assert whole is not None
+    return whole
+
+
+def read_reply(
+    key: str, reply: zenoh.Reply, kind: Any, timeout_s: float, gathered: pieces.Gathered | None = None
+) -> Encoded | None:
+    """The message of a reply, of type `kind`; None for a piece after which others come.
+
+    Raises the error that it carries.
+    """
     if (sample := reply.ok) is not None:
-        return Encoded(sample.payload, sample.encoding, kind)
+        if gathered is None or (piece := pieces.piece_of(sample.attachment)) is None:
+            return Encoded(sample.payload, sample.encoding, kind)
+        whole = gathered.take(piece, sample.payload)
+        return None if whole is None else Encoded(whole, sample.encoding, kind)
     error = reply.err
     assert error is not None
     if str(error.encoding) != _ERROR_ENCODING:

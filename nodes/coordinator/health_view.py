@@ -9,6 +9,8 @@ from schemas.replies import NodeStatus
 
 SILENT_AFTER_S = 3.0
 _HEARD_WITHIN_S = 2.0
+_NODES = 50
+"""More than there are; but anybody may publish heartbeats where there are no certificates."""
 
 
 class HealthView:
@@ -19,7 +21,9 @@ class HealthView:
         self._told_from = time.monotonic() + _HEARD_WITHIN_S
 
     def take(self, health: Health) -> None:
-        """Remember a heartbeat."""
+        """Remember a heartbeat; of strange nodes no more than a few."""
+        if health.node not in self._last and len(self._last) >= _NODES:
+            return
         self._last[health.node] = (health, time.monotonic())
 
     def alive(self, node: str) -> bool:

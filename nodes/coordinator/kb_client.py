@@ -19,8 +19,8 @@ _LONG = frozenset({"load", "load-tbox", "undo"})
 """What keeps the knowledge base busy; the heart goes on beating meanwhile."""
 _BUSY_S = 6 * 3600.0
 """However long the knowledge base works: it is watched, and its end ends the question."""
-_AT_ONCE_S = 1.0
-"""Then it goes on without waiting here, or this node's heart would stop with the other one's."""
+_AT_ONCE_S = 0.15
+"""Then it goes on without waiting here, or `status` would wait, and the heart stop with the other one's."""
 _FEW = 1000
 """Entities that are changed at once."""
 _OVER_A_START_S = 900.0

@@ -37,6 +37,9 @@ R = TypeVar("R")
 
 _WAIT_S = 20.0
 _SIM_TIMEOUT_S = 120.0
+_URGENT = frozenset({c.Status.VERB})
+_ROOM = 64
+"""Commands that wait for their turn at most: more wait in the node's queue, which is fair and bounded."""
 _LARGE_FILE = 16 << 20
 """Bytes."""
 
@@ -96,16 +99,21 @@ class Coordinator:
         Follower(node, door.map, keys.UNTOLD, heard=lambda commit, known: None, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
-        node.serve(keys.CMD, handlers, puts=True, leave=self._is_left_to_the_map, admit=admission.claimed)
+        left = self._is_left_to_the_map
+        node.serve(keys.CMD, handlers, puts=True, leave=left, admit=admission.claimed, urgent=_URGENT)
         if config.keys is not None:
             proved = admission.Admission(config.keys).proved
-            node.serve(keys.commands_as(), handlers, leave=self._is_left_to_the_map, admit=proved)
+            node.serve(keys.commands_as(), handlers, leave=left, admit=proved, urgent=_URGENT)
+        node.while_there_is_room(self._has_room)
         node.every(0.2, self._tick)
         node.when_idle(self._catch_up)
 
     def _is_left_to_the_map(self, verb: str) -> bool:
         """Does the knowledge base answer such queries itself just now?"""
         return verb in keys.OF_THE_MAP and self._node.is_there("kb_node")
+
+    def _has_room(self) -> bool:
+        return len(self._turns) + len(self._early) < _ROOM
 
     # Following
 

@@ -49,6 +49,10 @@ class Turns:
         self._waiting: deque[_Waiting] = deque()
         self._under_way: list[Group] = []
 
+    def __len__(self) -> int:
+        """How many commands wait."""
+        return len(self._waiting)
+
     def change(self, change: Change) -> Future[Changed]:
         """The result of a change, in its turn."""
         future: Future[Changed] = Future()

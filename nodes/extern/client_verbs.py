@@ -30,6 +30,7 @@ from schemas.calls import reply_type
 from schemas.commands import Command
 from schemas.entities import Entity, Value
 from schemas.moments import When
+from schemas.packing import packed
 from schemas.scenes import Picture
 
 if TYPE_CHECKING:
@@ -166,7 +167,7 @@ def _load(
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     content, filename = ontology(Path(path), imports) if tbox else (read_file(Path(path)), Path(path).name)
     return commands.Load(
-        content=content,
+        content=packed(content),
         filename=filename,
         replace=replace,
         skip_unknown=skip_unknown,

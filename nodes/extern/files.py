@@ -7,24 +7,22 @@ import os
 from pathlib import Path
 
 from schemas import errors
-
-_LARGEST = 1 << 30
-"""Bytes: some millions of triples, and an end for what has none."""
+from schemas.packing import LARGEST
 
 
 def read_file(path: Path) -> bytes:
     """The content of a file. Raises BadFile in one sentence when there is none, or no end of it."""
     try:
         with path.open("rb") as file:
-            content = file.read(_LARGEST + 1)
+            content = file.read(LARGEST + 1)
     except FileNotFoundError:
         raise errors.BadFile(f"there is no file {path}") from None
     except IsADirectoryError:
         raise errors.BadFile(f"{path} is a directory, not a file") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    if len(content) > _LARGEST:
-        raise errors.BadFile(f"{path} is larger than {_LARGEST >> 20} MiB; load it in parts")
+    if len(content) > LARGEST:
+        raise errors.BadFile(f"{path} is larger than {LARGEST >> 20} MiB; split it into several files")
     return content
 
 

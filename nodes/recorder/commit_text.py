@@ -36,6 +36,8 @@ def page(commit: Commit) -> str:
         *(f"> {note}" for note in commit.notes),
         _triples("Added", "+", commit.inserted),
         _triples("Removed", "-", commit.retracted),
+        _triples("Measured", "+", commit.places.came if commit.places else ()),
+        _triples("No longer measured", "-", commit.places.went if commit.places else ()),
         f"`{commit.id}`",
     ]
     return "\n\n".join(section for section in sections if section)

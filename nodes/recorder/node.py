@@ -14,7 +14,7 @@ from nodes.recorder.growth import LOOK_S, Growth
 from nodes.recorder.perception_recorder import PerceptionRecorder
 from nodes.recorder.recording import Recording, free_to_serve, open_recording
 from nodes.recorder.retention import KEEP_ALL, Retention, recordings
-from nodes.recorder.state.asserted_relations import Relations, missed
+from nodes.recorder.state.map_relations import Relations, missed
 from nodes.recorder.state.scene_state import SceneState
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.loop import Node, open_node

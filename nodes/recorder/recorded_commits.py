@@ -8,8 +8,8 @@ import shutil
 import struct
 import tempfile
 import warnings
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,11 @@ _MESSAGE_HEADER = struct.Struct("<QQ")
 
 @dataclass(frozen=True)
 class RecordedCommit:
-    """What a recording says of one commit. `changed` and `removed` are names of entities."""
+    """What a recording says of one commit. `changed` and `removed` are names of entities.
+
+    `came` and `went` are facts of where things are that were computed; of a commit that was recorded
+    afterwards, from the journal, they are not known, and empty.
+    """
 
     seq: int
     stamp_ns: int
@@ -40,6 +44,8 @@ class RecordedCommit:
     retracted: tuple[Triple, ...]
     changed: tuple[str, ...]
     removed: tuple[str, ...]
+    came: tuple[Triple, ...] = field(default=(), compare=False)
+    went: tuple[Triple, ...] = field(default=(), compare=False)
 
 
 def require_recording(path: Path) -> None:
@@ -63,14 +69,14 @@ def read_commits(path: Path) -> list[RecordedCommit]:
     """
     require_recording(path)
     try:
-        commits = set(_commits(path, called=path))
+        commits = _once_each(_commits(path, called=path))
     except errors.BadFile:
         with tempfile.TemporaryDirectory() as folder:
             whole = Path(shutil.copyfile(path, Path(folder, path.name)))
             left_out = _cut_after_last_message(whole)
             if not left_out:
                 raise
-            commits = set(_commits(whole, called=path))
+            commits = _once_each(_commits(whole, called=path))
         log.warning("%s ends in the middle of a message; its last %d bytes are ignored", path, left_out)
     return sorted(commits, key=lambda commit: (commit.seq, commit.stamp_ns))
 
@@ -104,6 +110,15 @@ def _commits(path: Path, *, called: Path) -> Iterator[RecordedCommit]:
             raise errors.BadFile(f"cannot read {called}: {error}") from None
 
 
+def _once_each(commits: Iterable[RecordedCommit]) -> set[RecordedCommit]:
+    """Without those that were recorded twice: the one that tells what was computed is kept."""
+    found: dict[RecordedCommit, RecordedCommit] = {}
+    for commit in commits:
+        if commit not in found or commit.came or commit.went:
+            found[commit] = commit
+    return set(found.values())
+
+
 def _rows(batch: Any) -> list[dict[str, Any]]:
     prefix = f"{COMMIT_FIELDS}:"
     names = [name for name in batch.schema.names if name.startswith(prefix)]
@@ -127,6 +142,8 @@ def _commit_of(row: dict[str, Any]) -> RecordedCommit:
         retracted=tuple(map(_triple, several("retracted"))),
         changed=tuple(several("changed")),
         removed=tuple(several("removed")),
+        came=tuple(map(_triple, several("came"))),
+        went=tuple(map(_triple, several("went"))),
     )
 
 

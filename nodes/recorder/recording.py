@@ -19,7 +19,7 @@ from nodes.recorder.drawing.figures import Figure
 from nodes.recorder.drawing.geometry import shape_of
 from nodes.recorder.drawing.graph import Graph, nodes_and_edges
 from schemas import errors
-from schemas.commits import Commit
+from schemas.commits import Commit, PlaceChanges
 from schemas.entities import Pose
 from schemas.explanations import Triple
 
@@ -106,6 +106,7 @@ def _transform(pose: Pose) -> rr.Transform3D:
 
 
 def _fields(commit: Commit) -> dict[str, NDArray[Any]]:
+    places = commit.places or PlaceChanges()
     texts = {
         "id": [commit.id],
         "source": [commit.source],
@@ -113,6 +114,8 @@ def _fields(commit: Commit) -> dict[str, NDArray[Any]]:
         "reason": [commit.reason],
         "inserted": [_line(triple) for triple in commit.inserted],
         "retracted": [_line(triple) for triple in commit.retracted],
+        "came": [_line(triple) for triple in places.came],
+        "went": [_line(triple) for triple in places.went],
         "changed": [entity.name for entity in commit.changed],
         "removed": [gone.name for gone in commit.removed],
     }

@@ -1,6 +1,8 @@
-"""The event loop of every node: one thread that owns the node's state, and a queue that feeds it.
+"""The event loop of every node: one thread that owns the node's state, and the queues that feed it.
 
-Callbacks of Zenoh's threads only queue. Whatever fails in a handler is caught here and nowhere else:
+Callbacks of Zenoh's threads only queue: requests in one that is bounded, and fair to those who ask; what they
+find full is answered with Busy at once. Everything else that happens follows from requests, or is bounded by
+itself, and comes first. Whatever fails in a handler is caught here and nowhere else:
 it is logged, answered, shown in the heartbeat, and the node lives on.
 """
 
@@ -11,9 +13,10 @@ import logging
 import math
 import queue
 import signal
+import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from functools import partial
@@ -21,13 +24,16 @@ from itertools import count
 from typing import Any, TypeVar
 
 from nodes import bus
+from nodes.runtime.fair_queue import FairQueue
 from nodes.runtime.heartbeat import Heartbeat
 from schemas import errors, keys
-from schemas.calls import Call, Handler, Relay, reply_type
+from schemas.calls import Call, Handler, Relay, largest, reply_type
 
 log = logging.getLogger(__name__)
 
 _AGAIN_S = 0.05
+_FOLLOWED = 20_000
+"""Publications of a topic that wait at most; then the oldest go, and are missed."""
 
 R = TypeVar("R")
 
@@ -36,6 +42,8 @@ Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
 
 `calls.by_verb(Get.answered_by(function), ...)` makes them, and has mypy check the types of the functions.
 """
+
+_Work = Callable[[], None]
 
 Admit = Callable[[str, Any], Any]
 """Of who asks (nothing where the key does not say) and a message, the message to handle."""
@@ -49,7 +57,11 @@ class Node:
         self.name = name
         self.session = session
         self._commands = commands
-        self._events: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._events: queue.SimpleQueue[_Work] = queue.SimpleQueue()
+        self._requests: FairQueue[_Work] = FairQueue()
+        self._has_room: Callable[[], bool] = lambda: True
+        self.asker = ""
+        """Who asks for what is being handled, as far as they can be told apart."""
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
@@ -66,21 +78,30 @@ class Node:
         puts: bool = False,
         leave: Callable[[str], bool] = lambda verb: False,
         admit: Admit = lambda who, message: message,
+        urgent: Container[str] = (),
     ) -> None:
         """Answer queries on `prefix/<verb>`, and with `puts` execute puts too.
 
         A query of which `leave(verb)` holds is left to another node; it is called on a thread of Zenoh's.
-        `admit(who, message)` gives the message to handle, or raises why it is not.
+        `admit(who, message)` gives the message to handle, or raises why it is not. The `urgent` verbs, which
+        have to be quick, come before all others.
         """
 
         def receive(request: bus.Request) -> None:
-            self._events.put(lambda: self._handle(request, handlers, admit))
+            self._queue(
+                request, lambda: self._handle(request, handlers, admit), urgent=request.verb in urgent
+            )
 
         def receive_query(request: bus.Request) -> None:
             if not leave(request.verb):
                 receive(request)
 
-        bus.serve(self.session, prefix, receive_query)
+        bus.serve(
+            self.session,
+            prefix,
+            receive_query,
+            most=lambda verb: largest(handlers[verb][0]) if verb in handlers else 0,
+        )
         if puts:
             bus.serve_puts(self.session, prefix, receive)
 
@@ -93,25 +114,52 @@ class Node:
 
         def receive(request: bus.Request) -> None:
             if request.verb == verb:  # and not one to all verbs
-                self._events.put(lambda: self._handle(request, {verb: handler}))
+                self._queue(request, lambda: self._handle(request, {verb: handler}))
 
-        bus.serve(self.session, prefix, receive, verb=verb)
+        bus.serve(self.session, prefix, receive, verb=verb, most=lambda _: largest(handler.kind))
+
+    def while_there_is_room(self, has_room: Callable[[], bool]) -> None:
+        """Let requests wait, the urgent ones apart, while `has_room()` does not hold; events go on."""
+        self._has_room = has_room
+
+    def _queue(self, request: bus.Request, handle: _Work, *, urgent: bool = False) -> None:
+        """On a thread of Zenoh's: let a request wait, or refuse it."""
+        size = min(len(request.payload), bus.PIECE)  # what came in pieces is bounded by itself
+        again_s = self._requests.put(request.asker, handle, size=size, urgent=urgent)
+        if again_s is None:
+            self._events.put(_wake)
+        else:
+            request.refuse(
+                errors.Busy(
+                    f"{self.name} is busy: {len(self._requests):,} requests wait already;"
+                    f" try again in {again_s:.1f} s",
+                    again_s=again_s,
+                )
+            )
 
     def follow(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
-        """Call `handle(message)` for each publication."""
-        bus.follow(self.session, topic, lambda key, message: self._events.put(lambda: handle(message)))
+        """Call `handle(message)` for each publication, unless so many wait that the oldest have to go."""
+        self._follow(topic, handle, _FOLLOWED)
 
     def follow_newest(self, topic: keys.Topic, handle: Callable[[Any], None]) -> None:
         """Call `handle(message)` for publications; of those that wait, a busy node sees only the newest."""
-        waiting: deque[Any] = deque(maxlen=1)
+        self._follow(topic, handle, 1)
+
+    def _follow(self, topic: keys.Topic, handle: Callable[[Any], None], most: int) -> None:
+        waiting: deque[Any] = deque(maxlen=most)
+        lock = threading.Lock()
 
         def take() -> None:
-            if waiting:
-                handle(waiting.pop())
+            with lock:
+                message = waiting.popleft()
+            handle(message)
 
         def keep(_: str, message: Any) -> None:
-            waiting.append(message)
-            self._events.put(take)
+            with lock:
+                is_full = len(waiting) == most
+                waiting.append(message)
+            if not is_full:  # else the event of the one that went is for this one
+                self._events.put(take)
 
         bus.follow(self.session, topic, keep)
 
@@ -172,10 +220,21 @@ class Node:
         return self._ask_later(prefix, call, timeout_s=timeout_s, patience_s=patience_s, decoded=True)
 
     def _ask_later(
-        self, prefix: str, call: Call[Any], *, timeout_s: float, patience_s: float, decoded: bool
+        self,
+        prefix: str,
+        call: Call[Any],
+        *,
+        timeout_s: float,
+        patience_s: float,
+        decoded: bool,
+        asked_by: bus.Request | None = None,
     ) -> Future[Any]:
-        """The result is the message, or, unless `decoded`, as it came."""
+        """The result is the message, or, unless `decoded`, as it came.
+
+        With `asked_by` it is asked in that one's name, who is told himself where somebody is busy.
+        """
         future: Future[Any] = Future()
+        patience: list[bus.Patience] = []
         deadline_s = time.monotonic() + patience_s
 
         def send(everybody: bool = False) -> None:
@@ -190,6 +249,7 @@ class Node:
                     timeout_s=timeout_s,
                     lifelines=self._lifelines,
                     everybody=everybody,
+                    source=None if asked_by is None else asked_by.source,
                 )
             except Exception as error:  # whoever waits for the future would wait for ever
                 future.set_exception(error)
@@ -207,6 +267,16 @@ class Node:
                     return
                 self.report(error.text)
                 self._at(time.monotonic() + _AGAIN_S, partial(send, everybody=True))
+            except errors.Busy as error:
+                if asked_by is not None:
+                    future.set_exception(error)
+                    return
+                if not patience:
+                    patience.append(bus.Patience())
+                try:
+                    self._at(time.monotonic() + patience[0].pause_s(error), send)
+                except errors.Busy:
+                    future.set_exception(error)
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)
@@ -269,20 +339,33 @@ class Node:
         self._heartbeat.beat()
 
     def run(self) -> None:
-        """Handle events until stopped."""
+        """Handle events until stopped, and a request between each two."""
         heartbeat = self._heartbeat
         while not self._stopping:
             self.tick()
+            if self._take_request():
+                if not self._events.empty():
+                    self._guard(self._events.get())
+                continue
             if self._events.empty():
                 for handle in self._idle:
                     self._guard(handle)
                 heartbeat.beat()
+                if self._requests and self._has_room():
+                    continue
             due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
             wait_s = max(0.0, due_s - time.monotonic())
             try:
                 self._guard(self._events.get(timeout=wait_s))
             except queue.Empty:
                 continue
+
+    def _take_request(self) -> bool:
+        """Handle the request whose turn it is, if there is one, and room for it."""
+        handle = self._requests.take(urgent_only=not self._has_room())
+        if handle is not None:
+            self._guard(handle)
+        return handle is not None
 
     def _stop(self) -> None:
         self._stopping = True
@@ -301,6 +384,7 @@ class Node:
     def _handle(
         self, request: bus.Request, handlers: Handlers, admit: Admit = lambda who, message: message
     ) -> None:
+        self.asker = request.asker
         try:
             if request.verb not in handlers:
                 raise errors.UnknownVerb(
@@ -330,6 +414,7 @@ class Node:
             timeout_s=relay.timeout_s,
             patience_s=bus.RESTART_S,
             decoded=not request.plain,
+            asked_by=request,
         )
         future.add_done_callback(lambda done: self._answer_later(request, done))
 
@@ -348,6 +433,10 @@ class Node:
                 f"internal error in {self.name}, which keeps running: {type(error).__name__}: {error}"
             )
         request.refuse(error)
+
+
+def _wake() -> None:
+    """An event that says that a request has come."""
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
 from benchmarks.relations.__main__ import as_json
-from benchmarks.relations.flicker import gone
 from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
@@ -10,6 +9,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from ontology import FLAT_TTL
+from tests.benchmarks.noisy_looks import gone
 
 
 def test_shares_of_right_ones():

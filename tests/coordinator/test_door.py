@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import gzip
 from concurrent.futures import Future
 
 import pytest
 from msgspec import structs
 
 from nodes.coordinator.dialogues import hold_later
-from nodes.coordinator.door import Door
+from nodes.coordinator.door import Door, loading
+from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.scene.settled import Settled
 from nodes.coordinator.turns import Turns
 from nodes.runtime.futures import settle
 from ontology import vocabulary as v
 from schemas import commands as c
 from schemas import errors
+from schemas.bridge import LoadDocument
 from schemas.commits import Commit, Transaction
 from schemas.entities import Pose, orientation_from_yaw
 from schemas.replies import Changed
@@ -410,6 +413,13 @@ def test_a_property_is_set_and_unset(door):
     add(door, name="chair2")
     none = door.change(c.Unset(name="chair2", property="isOpen"))
     assert none.text == "chair2: unchanged: isOpen is not set"
+    follows = door.change(c.Unset(name="chair2", property="fits"))
+    assert follows.text == (
+        "chair2: unchanged: fits is not set, but kitchen follows; for the reason:"
+        " semmap explain chair2 fits kitchen"
+    )
+    other = door.change(c.Unset(name="chair2", property="fits", value="chair1"))
+    assert other.text == "chair2: unchanged: fits is not set"
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
         door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):
@@ -493,3 +503,15 @@ def test_doubtful_values_are_noted_and_a_chair_is_no_kitchen(door):
         door.change(c.Update(name="near", class_="Kitchen"))
     door.change(c.Update(name="near", class_="Kitchen", force=True))
     assert door.map.entity("near").place
+
+
+def test_a_packed_scene_is_loaded(door):
+    content = gzip.compress(b'{"entities": [{"class": "Chair"}]}')
+    assert door.change(c.Load(content=content, filename="scene.json.gz")).names == ("chair1",)
+
+
+def test_a_packed_document_is_passed_on_as_it_came():
+    command = c.Load(id="1", content=gzip.compress(b":a a :B ."), filename="map.ttl.gz", source="file")
+    asked = next(loading.load(KnownMap(), command))
+    assert isinstance(asked, LoadDocument)
+    assert asked.content is command.content

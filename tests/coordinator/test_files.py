@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from pathlib import Path
 
@@ -35,6 +36,7 @@ def as_bytes(scene: object) -> bytes:
 )
 def test_files_are_told_apart_by_content(content, kind):
     assert kind_of(content, "file") == kind
+    assert kind_of(gzip.compress(content), "file.gz") == kind
 
 
 @pytest.mark.parametrize("content", [b"", b"  \n", b"{", b'{"chairs": 3}', b"[1, 2]"])
@@ -47,6 +49,13 @@ def test_a_broken_json_file_is_told_as_such():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
     with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
         kind_of(b"[1, 2", "x.json")
+    with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
+        kind_of(gzip.compress(b"[1, 2"), "x.json.gz")
+
+
+def test_what_cannot_be_unpacked_is_told_as_such():
+    with pytest.raises(BadFile, match=r"x\.gz ends too early"):
+        kind_of(gzip.compress(as_bytes(SCENE))[:-9], "x.gz")
 
 
 def test_a_scene():

@@ -22,6 +22,6 @@ def test_what_cannot_be_read_says_why(tmp_path):
 
 
 def test_what_has_no_end_is_refused(monkeypatch):
-    monkeypatch.setattr(files, "_LARGEST", 1 << 20)
-    with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 1 MiB; load it in parts$"):
+    monkeypatch.setattr(files, "LARGEST", 1 << 20)
+    with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 1 MiB; split it into several"):
         files.read_file(Path("/dev/zero"))

@@ -51,16 +51,21 @@ class Row:
 
 def outcome(fault: Fault, data: Path, times: int) -> Row:
     """Do it so many times, to one system."""
-    row = Row(fault.name, skipped=fault.missing())
-    if row.skipped:
-        return row
+    if missing := fault.missing():
+        return Row(fault.name, skipped=missing)
     with contextlib.closing(Ground(data, fault.words)) as ground:
+        return done_to(ground, fault, times)
+
+
+def done_to(ground: Ground, fault: Fault, times: int) -> Row:
+    """Do it so many times to a system under load, and stop the load."""
+    row = Row(fault.name)
+    ground.seconds_until_whole()
+    for _ in range(times):
+        began_s, ground.observed_s = time.monotonic(), 0.0
+        fault.strike(ground)
         ground.seconds_until_whole()
-        for _ in range(times):
-            began_s, ground.observed_s = time.monotonic(), 0.0
-            fault.strike(ground)
-            ground.seconds_until_whole()
-            row.whole_s = max(row.whole_s, time.monotonic() - began_s - ground.observed_s)
-            row.done += 1
-        row.lost, row.doubled = ground.reckon()
+        row.whole_s = max(row.whole_s, time.monotonic() - began_s - ground.observed_s)
+        row.done += 1
+    row.lost, row.doubled = ground.reckon()
     return row

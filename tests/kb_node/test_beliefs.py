@@ -1,10 +1,13 @@
 """What is computed of where things are: kept commit by commit, it is always what it is from nothing."""
 
+from unittest import mock
+
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from nodes.kb_node.beliefs import Beliefs
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.fastpaths import paths
 from nodes.kb_node.sparql.triples.consequences import Consequences, inferred
 from nodes.kb_node.sparql.triples.dataset import ASSERTED, DENIED, INFERRED, Dataset, Delta
 from tests.kb_node.reasoner import graphs
@@ -134,8 +137,13 @@ SETTINGS = settings(deadline=None, derandomize=True, suppress_health_check=list(
 
 
 @settings(SETTINGS, max_examples=80)
-@given(COMMITS)
-def test_commit_by_commit_it_is_as_from_nothing(commits):
+@given(COMMITS, st.sampled_from([1, paths.MANY]))
+def test_commit_by_commit_it_is_as_from_nothing(commits, many):
+    with mock.patch.object(paths, "MANY", many):
+        follow_from_nothing(commits)
+
+
+def follow_from_nothing(commits):
     home = Home()
     for insert, delete, moved, removed in commits:
         before = home.state()

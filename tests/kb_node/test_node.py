@@ -1,5 +1,6 @@
 """The knowledge base as a process of its own, asked over Zenoh on loopback."""
 
+import gzip
 import queue
 import subprocess
 import sys
@@ -29,6 +30,7 @@ from schemas.calls import reply_type
 from schemas.commands import Check, Export, Get, Infer, LastSeen, Relations, Sparql
 from schemas.commits import Effects, NewEntity
 from schemas.entities import Entity, Pose
+from schemas.relations import Described
 from tests.conftest import free_endpoint
 from tests.kb_node.home import PREFIXES, TBOX_TURTLE, chair, transaction
 
@@ -147,7 +149,7 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     commit = ask(session, "commit", transaction("pub1", chair("pub")))
     seen = dict(until(entities, 4))
     assert seen.keys() == {keys.entity_key(c, "pub") for c in ("Chair", "Seat", "Object", "Physical_Thing")}
-    assert list(seen.values()) == list(commit.changed) * 4
+    assert list(seen.values()) == [Described.of(entity) for entity in commit.changed] * 4
     iri = v.entity_iri("pub")
     door = transaction("pub2", [(iri, v.RDF_TYPE, v.dm("Door"))], [(iri, v.RDF_TYPE, v.dm("Chair"))])
     ask(session, "commit", door)
@@ -263,6 +265,15 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
     replaced = ask(session, "load", load("l2", PREFIXES + ":only a dm:Chair .", replace=True))
     assert {gone.name for gone in replaced.commit.removed} == {e.name for e in before.entities}
     assert [e.name for e in ask(session, "snapshot", SnapshotQuery()).entities] == ["only"]
+
+
+def test_packed_documents_are_loaded(session):
+    packed = structs.replace(load("gz1", ""), content=gzip.compress((PREFIXES + ":gz a dm:Chair .").encode()))
+    assert ask(session, "load", packed).names == ("gz",)
+    with pytest.raises(errors.BadFile, match="ends too early to be unpacked"):
+        ask(session, "load", structs.replace(packed, id="gz2", content=packed.content[:-9]))
+    tbox = LoadTBox(id="gz3", source="file", content=gzip.compress(TBOX_TURTLE.encode()), filename="t.ttl.gz")
+    assert ask(session, "load-tbox", tbox).commit.tbox
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_what_comes_into_a_crowd_is_told_so(flat):
     cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
     commit = flat.commit(Transaction(id="cups", source="operator", add=cups))
     (note,) = commit.notes
-    assert note.endswith("what they are on or inside is looked for among the 100 largest")
+    assert note.endswith("what they are on, inside or beside is looked for among the 100 largest")
     assert flat.places.crowds() == (note,)
     assert {on(f"cup{k}", "coffee_table1") for k in range(50, 250)} <= set(flat.inferred())
     elsewhere = flat.commit(moved(flat, "apple1", (8.2, 2.2, 0.74)))

@@ -3,9 +3,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.applier import Applier
 from nodes.kb_node.storage import conclusions_format
-from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
@@ -251,13 +250,11 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
         other.setattr(conclusions_format, "mark", lambda: b"other")
-        semantic_map._entities = {
-            name: structs.replace(entity, class_="Stool") for name, entity in semantic_map._entities.items()
-        }
+        semantic_map.show([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
         semantic_map.checkpoint()
     again = home.reopened(semantic_map)
     assert again.snapshot() == before
-    assert again._checkpointed == 2
+    assert again._schedule.is_written(2)
     home.close(again)
 
 
@@ -265,7 +262,7 @@ def test_a_start_from_a_checkpoint_concludes_nothing_anew(semantic_map, monkeypa
     semantic_map.commit(transaction(1, chair(preferred="stool")))
     before, inferred = semantic_map.snapshot(), list(semantic_map.inferred())
     semantic_map.checkpoint()
-    monkeypatch.setattr(SemanticMap, "_change", None)
+    monkeypatch.setattr(Applier, "change", None)
     again = home.reopened(semantic_map)
     monkeypatch.undo()
     assert again.snapshot() == before
@@ -283,7 +280,7 @@ def test_a_picture_can_be_written_down_later(semantic_map):
     semantic_map.written(picture.seq)
     again = home.reopened(semantic_map)
     assert state(again) == expected
-    assert again._checkpointed == 1
+    assert again._schedule.is_written(1)
     home.close(again)
 
 
@@ -406,39 +403,6 @@ def plain(entity):
     )
 
 
-def _worked_on(folder):
-    """What becomes of a map in which much is changed at once, and how often it told that it lives."""
-    folder.mkdir()
-    beats = []
-    created = home.new_map(folder)
-    path = created._journal.path
-    home.close(created)
-    semantic_map = SemanticMap(Journal(path), progress=lambda: beats.append(1))
-    many = [triple for i in range(9) for triple in chair(f"chair{i}", (i, 2.0, 0.0), preferred="chair")]
-    semantic_map.commit(transaction(1, many))
-    before = state(semantic_map)
-    wrong = [*chair("chair10"), *turtle(":chair1 a dm:Kitchen ."), *chair("chair11")]
-    with pytest.raises(errors.Inconsistent) as refusal:
-        semantic_map.commit(transaction(2, wrong, chair("chair2", preferred="chair")[:2]))
-    assert state(semantic_map) == before
-    semantic_map.commit(transaction(3, turtle(":kitchen1 a dm:Kitchen ."), many[: len(many) // 2 + 2]))
-    semantic_map.commit(transaction(4, many))
-    count = len(beats)
-    semantic_map.checkpoint()
-    again = home.reopened(semantic_map)
-    assert state(again) == state(semantic_map)
-    home.close(again)
-    return refusal.value.text, state(again)[1], count
-
-
-def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
-    *whole, beats = _worked_on(tmp_path / "whole")
-    monkeypatch.setattr("nodes.kb_node.semantic_map.PART", 7)
-    *in_parts, more_beats = _worked_on(tmp_path / "parts")
-    assert in_parts == whole
-    assert more_beats > beats + 20
-
-
 def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):
     bad = Commit(
         seq=1, stamp_ns=1, id="1", source="file", inserted=tuple(turtle(":a a dm:Chair , dm:Kitchen ."))
@@ -477,26 +441,3 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
     assert state(semantic_map) == before
     assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
     assert state(home.reopened(semantic_map)) == state(semantic_map)
-
-
-def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, monkeypatch):
-    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_EVERY", 2)
-    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_AT_LATEST", 3)
-    due = []
-    for i in range(3):
-        semantic_map.commit(transaction(i, chair(f"chair{i}")))
-        due.append((semantic_map.checkpoint_is_due(quiet=True), semantic_map.checkpoint_is_due(quiet=False)))
-    assert due == [(False, False), (True, False), (True, True)]
-    semantic_map.checkpoint()
-    assert not semantic_map.checkpoint_is_due(quiet=True)
-
-
-def test_a_checkpoint_is_due_after_many_triples_in_a_quiet_moment(semantic_map, monkeypatch):
-    monkeypatch.setattr("nodes.kb_node.semantic_map.CHECKPOINT_EVERY_TRIPLES", 10)
-    semantic_map.commit(transaction(1, chair("chair1")))
-    assert not semantic_map.checkpoint_is_due(quiet=True)
-    semantic_map.commit(transaction(2, chair("chair2")))
-    assert semantic_map.checkpoint_is_due(quiet=True)
-    assert not semantic_map.checkpoint_is_due(quiet=False)
-    semantic_map.checkpoint()
-    assert not semantic_map.checkpoint_is_due(quiet=True)

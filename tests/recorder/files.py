@@ -5,8 +5,11 @@ import warnings
 from rerun.chunk import RrdReader
 
 
-def column(path, entity_path, component):
-    """The values of one component of one entity, as they were logged; also of a file that grows."""
+def column(path, entity_path, component, *, whole=False):
+    """The values of one component of one entity, as they were logged; also of a file that grows.
+
+    The first value of each time or, with `whole`, all of them.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         batches = [
@@ -17,7 +20,7 @@ def column(path, entity_path, component):
         if component in batch.schema.names:
             ids = batch.column("rerun.controls.RowId").to_pylist()
             rows += zip(ids, batch.column(component).to_pylist(), strict=True)
-    return [value[0] for _, value in sorted(rows, key=lambda row: row[0]) if value]
+    return [value if whole else value[0] for _, value in sorted(rows, key=lambda row: row[0]) if value]
 
 
 def timelines(path, entity_path):

@@ -1,5 +1,6 @@
 from nodes.recorder import commit_text
 from ontology import vocabulary as v
+from schemas.commits import PlaceChanges
 from tests.recorder.messages import commit, entity, pose, relation
 
 
@@ -24,6 +25,10 @@ def test_a_page_holds_everything():
             inserted=((v.entity_iri("beer1"), v.LEXICAL_REFERENCE, '"a beer"'),),
             retracted=(relation("cup1", "isOn", "table1"),),
             notes=("on table1 was cup1",),
+            places=PlaceChanges(
+                came=(relation("beer1", "isOn", "table2"),),
+                went=(relation("cup1", "isLocatedIn", "kitchen1"),),
+            ),
         )
     )
     for words in (
@@ -35,6 +40,10 @@ def test_a_page_holds_everything():
         "> on table1 was cup1",
         "+ beer1 lexicalReference a beer",
         "- cup1 isOn table1",
+        "**Measured** (1)",
+        "+ beer1 isOn table2",
+        "**No longer measured** (1)",
+        "- cup1 isLocatedIn kitchen1",
         "`id-7`",
     ):
         assert words in text

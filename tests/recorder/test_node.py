@@ -16,7 +16,7 @@ from nodes.runtime.loop import Node
 from schemas import codec, errors, keys
 from schemas.bridge import Recall, SnapshotQuery, StarQuery
 from schemas.commands import Classes
-from schemas.commits import Snapshot
+from schemas.commits import PlaceChanges, Snapshot
 from schemas.health import Health
 from schemas.scenes import SceneQuery, SurfaceQuery, Surfaces
 from tests.conftest import free_endpoint, handling
@@ -151,6 +151,20 @@ def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):
     assert positions(path, "chair1") == [[0.0, 0.0, 0.0]]
     assert positions(path, "cup7") == [[7.0, 0.0, 0.0]]
     assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [False]
+
+
+def test_the_graph_has_what_is_computed_of_places(world, tmp_path):
+    path = tmp_path / "a.rrd"
+    on = relation("cup1", "isOn", "chair1")
+
+    with recorder(world, path):
+        world.publish(commit(2, places=PlaceChanges(came=(on,))))
+        world.await_commit(2)
+    every = column(path, "/graph", "GraphEdges:edges", whole=True)
+    assert [["cup1", "chair1"] in [[e["first"], e["second"]] for e in edges] for edges in every] == [
+        False,
+        True,
+    ]
 
 
 def test_poses_are_recorded_when_they_change(world, tmp_path):

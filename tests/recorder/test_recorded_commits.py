@@ -5,7 +5,20 @@ import pytest
 from nodes.recorder.recorded_commits import read_commits
 from nodes.recorder.recording import open_recording
 from schemas import errors
-from tests.recorder.messages import START_NS, commit
+from schemas.commits import PlaceChanges
+from tests.recorder.messages import START_NS, commit, relation
+
+
+def test_what_was_computed_is_read_back_and_a_commit_recalled_later_counts_once(tmp_path):
+    path = tmp_path / "a.rrd"
+    came, went = relation("cup1", "isOn", "table1"), relation("cup1", "isLocatedIn", "hall1")
+    heard = commit(2, places=PlaceChanges(came=(came,), went=(went,)))
+    with open_recording(path, None) as recording:
+        for one in (commit(2), heard, commit(2), commit(3)):
+            recording.at(one.seq, START_NS, None)
+            recording.commit(one)
+    read = read_commits(path)
+    assert [(c.seq, c.came, c.went) for c in read] == [(2, (came,), (went,)), (3, (), ())]
 
 
 def test_what_is_whole_of_a_recording_that_is_cut_is_read(tmp_path, caplog):

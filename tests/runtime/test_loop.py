@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import queue
 import threading
 import time
 from concurrent.futures import Future
@@ -10,6 +11,9 @@ from concurrent.futures import Future
 import pytest
 
 from nodes import bus
+from nodes.bus import asking
+from nodes.runtime import loop
+from nodes.runtime.fair_queue import FairQueue
 from nodes.runtime.loop import Node
 from schemas import codec, commands, errors, keys, replies
 from schemas.calls import Call, Handler, Relay
@@ -256,3 +260,125 @@ def test_somebody_who_comes_late_is_waited_for(network):
     assert not served[0].done()
     bus.serve(client, "semmap/late", lambda request: request.reply(replies.Done(text="here")))
     assert served[0].result(timeout=5).text == "here"
+
+
+def overloaded(node, client, monkeypatch, *, each=3):
+    """The node's thread is held; the function sends a question, the first of which is in hand."""
+    in_hand, release = threading.Event(), threading.Event()
+    monkeypatch.setattr(node, "_requests", FairQueue(each=each))
+
+    def hold(m):
+        in_hand.set()
+        assert release.wait(20)
+        return replies.Done(text=m.name)
+
+    handlers = {
+        "get": (commands.Get, hold),
+        "status": (commands.Status, lambda _: replies.Done(text="ready")),
+    }
+    node.serve("semmap/held", handlers, urgent={"status"})
+    got: queue.SimpleQueue = queue.SimpleQueue()
+
+    def send(verb="get", name="x", session=client):
+        message = commands.Status() if verb == "status" else commands.Get(name=name)
+        bus.ask_later(session, "semmap/held", verb, message, replies.Done, lambda read: got.put((name, read)))
+
+    until(lambda: send() or in_hand.wait(0.2), "the first question is in hand")
+    return send, release, got
+
+
+def test_what_finds_the_queue_full_is_refused_at_once_and_the_rest_is_done(network, monkeypatch):
+    node, client = network
+    send, release, got = overloaded(node, client, monkeypatch)
+    while len(node._requests) < 3:
+        send()
+        time.sleep(0.02)
+    send(name="too late")
+    name, read = got.get(timeout=5)
+    assert name == "too late"
+    with pytest.raises(
+        errors.Busy, match=r"^test_node is busy: 3 requests wait already; try again in "
+    ) as busy:
+        read()
+    assert busy.value.again_s > 0.0
+    release.set()
+    for _ in range(3):
+        assert got.get(timeout=5)[1]().decode().text == "x"
+
+
+def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, monkeypatch):
+    node, client = network
+    send, release, got = overloaded(node, client, monkeypatch, each=100)
+    with bus.open_session(bus.Network(connect=(f"{client.info.links()[0].dst}",))) as other:
+        for number in range(10):
+            send(name=f"first {number}")
+        until(lambda: len(node._requests) >= 10, "they wait")
+        send(name="other", session=other)
+        until(lambda: len(node._requests) >= 11, "it waits")
+        send("status", name="urgent")
+        time.sleep(0.3)
+        release.set()
+        order = [got.get(timeout=5)[0] for _ in range(13)]
+    assert order.index("urgent") <= 2
+    assert order.index("other") <= 4
+
+
+def test_who_is_told_to_come_again_does_so_by_himself(network, monkeypatch):
+    node, client = network
+    send, release, _ = overloaded(node, client, monkeypatch)
+    while len(node._requests) < 3:
+        send()
+        time.sleep(0.02)
+    threading.Timer(0.5, release.set).start()
+    question = commands.Get(name="patient")
+    assert bus.ask(client, "semmap/held", "get", question, replies.Done).text == "patient"
+
+
+def test_nobody_comes_again_for_ever(network, monkeypatch):
+    node, client = network
+    send, release, _ = overloaded(node, client, monkeypatch)
+    while len(node._requests) < 3:
+        send()
+        time.sleep(0.02)
+    monkeypatch.setattr(asking, "BUSY_S", 0.3)
+    with pytest.raises(errors.Busy):
+        bus.ask(client, "semmap/held", "get", commands.Get(name="x"), replies.Done)
+    release.set()
+
+
+def test_without_room_requests_wait_and_urgent_ones_and_events_do_not(network):
+    node, client = network
+    room = threading.Event()
+    node.while_there_is_room(room.is_set)
+    handlers = {verb: (commands.Get, lambda m: replies.Done(text=m.name)) for verb in ("get", "status")}
+    node.serve("semmap/roomy", handlers, urgent={"status"})
+    got: queue.SimpleQueue = queue.SimpleQueue()
+    ask = (client, "semmap/roomy", "get", commands.Get(name="x"), replies.Done)
+    until(lambda: bus.ask_later(*ask, got.put) or len(node._requests), "it waits")
+    answer = bus.ask(client, "semmap/roomy", "status", commands.Get(name="at once"), replies.Done)
+    assert answer.text == "at once"
+    assert got.empty()
+    room.set()
+    node.soon(lambda: None)
+    assert got.get(timeout=5)().decode().text == "x"
+
+
+def test_of_what_is_published_the_newest_are_kept(network, monkeypatch):
+    node, client = network
+    monkeypatch.setattr(loop, "_FOLLOWED", 5)
+    seen, release = [], threading.Event()
+    topic = keys.Topic("semmap/test/beats", Health, "lossless")
+    node.follow(topic, lambda beat: (seen.append(beat.pid), release.wait(10.0)))
+    publisher = bus.publisher(client, topic)
+
+    def publish(pid):
+        publisher.put(codec.encode(Health(node="x", pid=pid, started_ns=1, stamp_ns=1, state="ready")))
+
+    until(lambda: publish(0) or seen, "it follows")
+    for pid in range(1, 21):
+        publish(pid)
+    time.sleep(0.3)
+    release.set()
+    until(lambda: seen[-1] == 20, "it has seen the last")
+    assert seen[-5:] == [16, 17, 18, 19, 20]
+    assert len(seen) <= 7

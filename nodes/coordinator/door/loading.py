@@ -21,6 +21,7 @@ from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commands import Load
 from schemas.commits import Effects, NewEntity, Transaction
 from schemas.entities import ClassInfo
+from schemas.packing import unpacked
 from schemas.replies import Changed
 from schemas.scene_files import Described
 
@@ -51,7 +52,8 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
     kind = kind_of(command.content, command.filename)
     if kind == "abox":
         return (yield from _load_document(view, command))
-    return (yield from _load_described(view, command, READERS[kind](command.content, command.filename)))
+    content = unpacked(command.content, command.filename)
+    return (yield from _load_described(view, command, READERS[kind](content, command.filename)))
 
 
 def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:

@@ -10,23 +10,27 @@ from msgspec import UNSET, DecodeError, Raw, Struct, UnsetType
 from msgspec import json as _json
 
 from schemas.errors import BadFile
+from schemas.packing import beginning, unpacked
 
 Kind = Literal["abox", "scene", "huric"]
 
+_HEAD = 4096
+"""Bytes by which XML is told apart."""
 _OF_JSON = (".json", ".jsonld")
 _BOM = b"\xef\xbb\xbf"
 _BLANK = _BOM + b" \t\r\n"
 
 
 def kind_of(content: bytes, filename: str) -> Kind:
-    """What kind of file this is. Raises BadFile for an empty one, or JSON that is neither."""
-    start = content.lstrip(_BLANK)
+    """What kind of file this is, packed or not. Raises BadFile for an empty one, or JSON that is neither."""
+    head = beginning(content, _HEAD, filename)
+    start = head.lstrip(_BLANK) or unpacked(content, filename).lstrip(_BLANK)
     if not start:
         raise BadFile(f"{filename or 'the file'} is empty")
-    if start[:1] == b"<" and b"<huricExample" in content[:4096]:
+    if start[:1] == b"<" and b"<huricExample" in head:
         return "huric"
     if start[:1] in (b"{", b"["):
-        return _kind_of_json(content, filename)
+        return _kind_of_json(unpacked(content, filename), filename.removesuffix(".gz"))
     return "abox"
 
 

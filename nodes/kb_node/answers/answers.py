@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from nodes.kb_node import proofs
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
-from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
 from nodes.kb_node.relations.facts import said
 from nodes.kb_node.relations.facts.beside import MIRRORED, Beside
 from nodes.kb_node.relations.facts.derived import Derived
@@ -33,23 +34,53 @@ def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Enti
     return tuple(semantic_map.entities(asked_terms.class_(semantic_map, class_name) if class_name else None))
 
 
-def infer(semantic_map: SemanticMap, name: str | None) -> Inferred:
-    """What follows that was not said, without what is true of everything or of nameless classes."""
-    triples = tuple(worth_saying(_with_pairs(semantic_map, name)))
-    return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
-
-
-def _with_pairs(semantic_map: SemanticMap, name: str | None) -> Iterator[Triple]:
-    """What follows about one or all, with the relations that are measured on demand."""
+def infer(semantic_map: SemanticMap, name: str) -> Inferred:
+    """What follows about an entity that was not said, with what is measured on demand. Raises UnknownName."""
     measured = set(_pairs(semantic_map)(semantic_map.places.space(), name))
-    by_subject: dict[Term, list[Triple]] = {}
-    for triple in measured:
-        if not semantic_map.reasoner.holds(triple):
-            by_subject.setdefault(triple[0], []).append(triple)
-    entities = semantic_map.entities() if name is None else [semantic_map.entity(name)]
-    for entity in entities:
-        yield from semantic_map.inferred(entity.name)
-        yield from sorted(by_subject.get(v.iri(entity.iri), ()))
+    subject = v.iri(semantic_map.entity(name).iri)
+    further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
+    return _told(chain(semantic_map.inferred(name), further))
+
+
+class Inferring(NamedTuple):
+    """What it takes to say, beside the map, what follows about all: enough for a reasoner of one's own."""
+
+    held: Held
+    entities: list[Term]
+    measured: Callable[[], Iterable[Triple]]
+
+
+def inferring(semantic_map: SemanticMap) -> Inferring:
+    """The map as it is now, for `infer_all`."""
+    semantic_map.believe_places()
+    pairs, placed, limits = _pairs(semantic_map), semantic_map.placed(), semantic_map.classes.limits
+    return Inferring(
+        semantic_map.reasoner.held(),
+        [v.iri(entity.iri) for entity in semantic_map.entities()],
+        lambda: pairs(Space(placed, limits), None),
+    )
+
+
+def infer_all(inferring: Inferring) -> Inferred:
+    """What follows about all entities that was not said, one after another; for any thread."""
+    reasoner = Reasoner.of(inferring.held)
+    by_subject: dict[Term, set[Triple]] = {}
+    for triple in inferring.measured():
+        by_subject.setdefault(triple[0], set()).add(triple)
+    return _told(
+        triple
+        for iri in inferring.entities
+        for triple in chain(
+            sorted(reasoner.inferred(iri, None, None)),
+            sorted(t for t in by_subject.get(iri, ()) if not reasoner.holds(t)),
+        )
+    )
+
+
+def _told(triples: Iterable[Triple]) -> Inferred:
+    """Without what is true of everything or of nameless classes."""
+    triples = tuple(worth_saying(triples))
+    return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
 
 
 def _pairs(semantic_map: SemanticMap) -> Callable[[Space, str | None], Iterator[Triple]]:

@@ -12,6 +12,7 @@ from schemas import errors, wording
 from schemas.bridge import LoadDocument, LoadTBox
 from schemas.commits import Transaction
 from schemas.explanations import Triple
+from schemas.packing import unpacked
 
 
 def of_document(
@@ -54,9 +55,10 @@ def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> 
     The present TBox's declared spatial roots stay until others are declared.
     Raises BadFile, UnknownClass.
     """
+    content = unpacked(load.content, load.filename)
     triples = tbox_declarations.declared(
-        rdf.parse(load.content, load.filename, label_prefix=label_prefix),
-        of_file=rdf.prefixes(load.content),
+        rdf.parse(content, load.filename, label_prefix=label_prefix),
+        of_file=rdf.prefixes(content),
         spatial_root=load.spatial_root,
     )
     return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)

@@ -18,6 +18,7 @@ from ontology import vocabulary as v
 from ontology.prefixes import Prefixes
 from schemas import errors
 from schemas.explanations import Term, Triple
+from schemas.packing import unpacked
 
 SUFFIXES = (".owl", ".rdf", ".rdfs", ".ttl", ".nt", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx", ".xml")
 VERSION = v.iri(f"{v.OWL}versionIRI")
@@ -116,7 +117,7 @@ class _Gathering:
         declared: dict[str, str] = {}
         for path in self._read:
             with suppress(OSError):
-                declared = {**rdf.prefixes(path.read_bytes()), **declared}
+                declared = {**rdf.prefixes(unpacked(path.read_bytes(), str(path))), **declared}
         return declared
 
     def _name_of(self, path: Path, wanted: Term) -> Term:
@@ -178,7 +179,7 @@ def read(path: Path, label_prefix: str = "") -> list[Triple]:
         raise errors.BadFile(f"there is no file {path}") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    return rdf.parse(content, str(path), label_prefix=label_prefix)
+    return rdf.parse(unpacked(content, str(path)), str(path), label_prefix=label_prefix)
 
 
 def _files_of(path: Path) -> list[Path]:

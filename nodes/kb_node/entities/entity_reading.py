@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
@@ -138,6 +138,19 @@ def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     return structs.replace(known, pose=_pose(reasoner.about, iri, nodes), provenance=provenance)
 
 
+def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity | None:
+    """An entity as this code reads it, changed when it was; None if it is none any more."""
+    entity = read_entity(reasoner, classes, v.iri(known.iri), known.provenance)
+    if entity is None:
+        return None
+    return structs.replace(
+        entity,
+        pose_provenance=known.pose_provenance,
+        shape_provenance=known.shape_provenance,
+        reference_provenance=known.reference_provenance,
+    )
+
+
 def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
     """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
     iris = {i for c in classes.spatial for i in reasoner.instances(c)}
@@ -207,7 +220,16 @@ def read_star(
 ) -> Star:
     """The triples about an entity, as `star_of` has them. Raises Refused."""
     own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
-    return Star(seq=seq, name=v.entity_name(iri), iri=iri, own=tuple(own), incoming=tuple(incoming))
+    aside = reasoner.set_aside_about([iri]) if reasoner.sets_aside else ()
+    return Star(
+        seq=seq,
+        name=v.entity_name(iri),
+        iri=iri,
+        own=tuple(own),
+        incoming=tuple(incoming),
+        computed=tuple(reasoner.computed(iri)),
+        denied=tuple(sorted(triple for triple in aside if triple[0] == iri)),
+    )
 
 
 def star_of(
@@ -247,11 +269,11 @@ def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set
     return found
 
 
-def users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
+def users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
     """The individuals in whose star `node` is; one that uses it twice comes twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
-        return (s for s, p, _ in incoming if p in stars.STAR_PROPERTIES)
+        return [s for s, p, _ in incoming if p in stars.STAR_PROPERTIES]
     return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 

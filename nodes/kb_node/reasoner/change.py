@@ -20,7 +20,8 @@ class Change(NamedTuple):
     others: frozenset[Term]
     alike: Sequence[Alike] = ()
     implied: frozenset[Triple] | None = None
-    """Of a change of beliefs: the relations of which some came or went, and no others; None if not known."""
+    """Of a change of beliefs: the relations of which some came or went, and no others; None if not known, or
+    if nobody asked."""
 
     @classmethod
     def together(cls, changes: Sequence[Change]) -> Change:

@@ -149,23 +149,32 @@ class CompiledEngine:
         return Change(frozenset(touched), alike)
 
     def believe(
-        self, gone: Sequence[Triple], come: Sequence[Triple], aside: Sequence[Triple], back: Sequence[Triple]
+        self,
+        gone: Sequence[Triple],
+        come: Sequence[Triple],
+        aside: Sequence[Triple],
+        back: Sequence[Triple],
+        *,
+        tell_implied: bool,
     ) -> Change:
         """Computed facts that are gone and that come; asserted ones set `aside`, and `back` again.
 
-        Of the change `others` are those whose named classes changed. Raises as `apply` does.
+        Of the change `others` are those whose named classes changed; `implied` is found if it is wanted.
+        Raises as `apply` does.
         """
         abox, insert = self._abox, self._saturation.insert
         added: list[Triple] = []
         removed: tuple[list[Triple], list[Triple]] = [], []
         computed: list[Triple] = []
         retraction = Retraction(abox, self._saturation) if gone or aside else None
-        abox.store.log = log = list[tuple[int, int, int]]()
+        log = list[tuple[int, int, int]]()
+        if tell_implied:
+            abox.store.log = log
         try:
             if retraction is not None:
                 removed = retraction.delete(aside, gone)
             added.extend(triple for triple in back if insert(triple))
-            computed.extend(triple for triple in come if insert(triple, COMPUTED))
+            self._paths.compute(come, lambda triple: insert(triple, COMPUTED), computed)
             self._saturation.run()
         except (Clash, NotCompilable) as error:
             explanation = None
@@ -178,7 +187,7 @@ class CompiledEngine:
             raise Refused(explanation) from None
         finally:
             abox.store.log = None
-        touched, implied = frozenset(self._moved()), self._implied(log)
+        touched, implied = frozenset(self._moved()), self._implied(log) if tell_implied else None
         abox.settle()
         if retraction is not None:
             retraction.release()

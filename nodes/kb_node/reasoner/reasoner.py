@@ -147,13 +147,14 @@ class Reasoner:
         come: Iterable[Triple] = (),
         aside: Iterable[Triple] = (),
         back: Iterable[Triple] = (),
+        tell_implied: bool = False,
     ) -> Change:
         """Computed facts are gone and others come; asserted triples are set `aside`, or are `back`.
 
         What is computed holds, and is inferred rather than asserted. What is set aside is asserted and does
         not hold. Facts that are not there, or there already, change nothing.
 
-        Returns those whose named classes changed.
+        Returns those whose named classes changed; and what is `implied`, if that is to be told.
 
         Raises:
             Inconsistent: everything is as it was before.
@@ -163,7 +164,7 @@ class Reasoner:
         engine = self._engine
         try:
             if isinstance(engine, CompiledEngine):
-                change = engine.believe(gone, come, aside, back)
+                change = engine.believe(gone, come, aside, back, tell_implied=tell_implied)
             else:
                 change = self._apply_anew(aside, back, gone, come)
         except Refused as refused:
@@ -361,7 +362,7 @@ def _engine_for(
     try:
         compiled = CompiledEngine(triples, closed, scattered=scattered, fast=fast)
         if computed:
-            compiled.believe((), computed, (), ())
+            compiled.believe((), computed, (), (), tell_implied=False)
         return compiled
     except Refused as refused:
         raise Inconsistent(refused.explanation) from None

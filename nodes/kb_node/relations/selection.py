@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence, Set
+from functools import partial
 from typing import NamedTuple
 
+from nodes.kb_node.relations.facts.beside import are_near
 from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
@@ -95,7 +97,7 @@ def chosen(
         found = [e for e in found if _is_in(space, space.solids[e.name], holders, left_out)]
     if those.near is not None:
         others = [space.solids[name] for name in those.near if name in space.solids]
-        is_near = _within(where.within) if where.within is not None else _is_near(space)
+        is_near = _within(where.within) if where.within is not None else partial(are_near, space)
         found = [
             e for e in found if any(is_near(space.solids[e.name], o) for o in others if o.name != e.name)
         ]
@@ -171,14 +173,6 @@ def _is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) -
 
 def _within(metres: float) -> Callable[[Solid, Solid], bool]:
     return lambda solid, other: not solid.is_place and measures.gap(solid, other) <= metres
-
-
-def _is_near(space: Space) -> Callable[[Solid, Solid], bool]:
-    def is_near(solid: Solid, other: Solid) -> bool:
-        made = measures.near(solid, other, space.limits)
-        return made is not None and made.holds
-
-    return is_near
 
 
 def _nearest(space: Space, found: list[Entity], to: Set[str], where: Where) -> list[Entity]:

@@ -61,7 +61,7 @@ def relations_of(space: Space, name: str) -> Iterator[Relation]:
     if solid.is_place:
         return
     told = {relation.object for relation in found}
-    beside = [other for other in space.around(solid, space.limits.near_most_m) if not other.is_place]
+    beside = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
     beside = sorted(beside, key=lambda other: (measures.gap(solid, other), other.name))
     for other in beside:
         if other.name not in told:

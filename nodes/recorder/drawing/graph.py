@@ -8,7 +8,7 @@ from typing import NamedTuple
 import rerun as rr
 
 from nodes.recorder.drawing.palette import colour_of
-from nodes.recorder.state.asserted_relations import Relation
+from nodes.recorder.state.map_relations import Relation
 from schemas.entities import Entity
 
 LIMIT = 400

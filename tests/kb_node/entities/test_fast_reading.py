@@ -79,9 +79,23 @@ def pieces(draw):
     return triples, afterwards
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
-@given(shape=pieces(), numbers=st.lists(st.tuples(NUMBER, NUMBER, FAULTY), min_size=2, max_size=4))
+ALIKE = {"shape": pieces(), "numbers": st.lists(st.tuples(NUMBER, NUMBER, FAULTY), min_size=2, max_size=4)}
+
+
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(**ALIKE)
 def test_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+    check_alike(tmp_path_factory, shape, numbers)
+
+
+@pytest.mark.long
+@settings(max_examples=400, deadline=None)
+@given(**ALIKE)
+def test_many_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+    check_alike(tmp_path_factory, shape, numbers)
+
+
+def check_alike(tmp_path_factory, shape, numbers):
     semantic_map = home.new_map(tmp_path_factory.mktemp("alike"))
     shared = (v.entity_iri("shared"), v.LEXICAL_REFERENCE, v.literal("of all"))
     semantic_map.commit(transaction("shared", [shared]))
@@ -96,7 +110,7 @@ def test_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, 
 def _each_by_itself(semantic_map):
     reasoner, classes = semantic_map.reasoner, semantic_map.classes
     for iri in sorted(reasoner.instances(v.dm("Chair"))):
-        known = semantic_map._known(iri)
+        known = semantic_map.known(iri)
         yield entity_reading.read_entity(
             reasoner, classes, iri, known.provenance if known else entity_reading._OF_THE_TBOX
         )

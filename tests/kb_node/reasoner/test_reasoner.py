@@ -274,15 +274,22 @@ def test_what_is_a_number_by_another_is_so_in_every_spelling():
         proofs.check(reasoner.explain(triple(f':i0 :key2 "{spelling}"^^xsd:float')), asserted)
 
 
-@sequences(200)
+@sequences(120)
 @given(CHANGES)
 def test_any_sequence_of_changes_leaves_what_a_fresh_closure_has(changes):
     check_sequence(changes, BASE)
 
 
-@sequences(15)
+@sequences(6)
 @given(AT_HOME)
 def test_the_same_at_home(changes):
+    check_sequence(changes, HOME)
+
+
+@pytest.mark.long
+@sequences(100)
+@given(AT_HOME)
+def test_many_at_home(changes):
     check_sequence(changes, HOME)
 
 

@@ -21,9 +21,20 @@ def _picture(reasoner):
     return set(reasoner.asserted()), set(reasoner.inferred()), len(reasoner), set(engine._abox.store.numbers)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(ANY_FACT, max_size=6), st.lists(ANY_FACT, min_size=1, max_size=8))
 def test_supposing_leaves_no_trace(facts, supposed):
+    check_supposing(facts, supposed)
+
+
+@pytest.mark.long
+@settings(max_examples=500, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(ANY_FACT, max_size=6), st.lists(ANY_FACT, min_size=1, max_size=8))
+def test_any_of_many_suppositions_leaves_no_trace(facts, supposed):
+    check_supposing(facts, supposed)
+
+
+def check_supposing(facts, supposed):
     reasoner = Reasoner(BASE)
     for fact in facts:
         try:

@@ -1,5 +1,6 @@
 import pytest
 
+from nodes.kb_node.relations.facts.beside import Beside
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.selection import meant, only_meant, selected
 from schemas import errors
@@ -38,7 +39,8 @@ def test_in_is_a_place_or_a_container():
 
 
 def test_near_within_and_nearest():
-    assert "tray1" in names(near="cup1")
+    assert names(near="cup1") == ["table1"]  # what it is on is not near it
+    assert "tray1" in names(near="cup1", within=0.1)
     assert names(near="lamp1", within=0.5) == []
     assert names(nearest=2, to="cup2")[0] in ("table1", "tray1")
     assert len(names(nearest=2, to="cup2")) == 2
@@ -88,3 +90,15 @@ def test_a_place_of_unknown_extent():
     nowhere = thing("k1", (0.0, 0.0, 0.0), place=True)
     with pytest.raises(errors.Refused, match="the extent of k1 is not known"):
         selected(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
+
+
+def test_near_is_the_fact_that_a_query_sees():
+    space = Space(MAP)
+    pairs = Beside(Space(MAP))
+    pairs.ask(("isNear",), ())
+    for entity in MAP:
+        if not entity.place:
+            found = selected(space, MAP, Where(near=entity.name), MAP)
+            assert [e.name for e in found] == [
+                e.name for e in MAP if pairs.holds(e.name, "isNear", entity.name)
+            ]

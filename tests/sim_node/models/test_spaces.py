@@ -1,6 +1,9 @@
+import json
+
 import pytest
 
 from nodes.sim_node.models.library import build
+from nodes.sim_node.models.model_table import MODELS
 from nodes.sim_node.models.spaces import shape_of
 from nodes.sim_node.models.write_shapes import as_json, library_shapes
 from ontology import MODEL_SHAPES_JSON
@@ -10,8 +13,17 @@ def heights(model):
     return [round(surface.height, 2) for surface in shape_of(build(model, None)).surfaces]
 
 
+@pytest.mark.long
 def test_the_file_is_what_the_models_say():
     assert MODEL_SHAPES_JSON.read_text() == as_json(library_shapes()), "make shapes"
+
+
+def test_the_file_is_what_some_models_of_each_kind_say():
+    text = MODEL_SHAPES_JSON.read_text()
+    assert json.loads(text).keys() == {"", *MODELS}
+    for name in ("", "table", "bookshelf", "fridge", "chair", "bowl", "cup", "apple", "door", "clock"):
+        (row,) = as_json({name: shape_of(build(name, None))}).splitlines()[1:-1]
+        assert row in text, "make shapes"
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,13 @@ class Adjacency:
                 after[edge] = second
                 before[second] = edge
 
+    def link_firsts(self, nodes: Sequence[int], edges: range) -> None:
+        """`link` a new edge to each of some different nodes, which have none of its predicate yet."""
+        heads = self.heads
+        self.group[edges.start : edges.stop] = array("i", map(heads.__getitem__, nodes))
+        for node, edge in zip(nodes, edges, strict=True):
+            heads[node] = edge
+
     def _link_all(self, node: int, edges: range, predicate: int) -> None:
         """`link` each edge to one node, column by column. The lists come out as if linked one by one."""
         self.link(node, edges[0], predicate)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
+from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
 from nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
 from nodes.kb_node.reasoner.tbox.schema import Schema
 
@@ -58,6 +58,7 @@ class Steps:
         self._schema = schema
         self._kinds = kinds
         self.known: dict[tuple[int, Kind, Kind], Step] = {}
+        self._concerned: dict[int, tuple[int, int]] = {}
         self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
@@ -70,10 +71,27 @@ class Steps:
             found = self.known[prop, subject, object_] = self._work_out(prop, subject, object_)
         return found
 
-    def _rules_of(self, prop: int) -> EdgeRules | None:
+    def rules(self, prop: int) -> EdgeRules | None:
+        """What new edges of a property are checked for whatever the kinds are; None for nothing."""
         if prop not in self._rules:
             self._rules[prop] = self._edge_rules(prop)
         return self._rules[prop]
+
+    def concerned(self, prop: int) -> tuple[int, int]:
+        """The classes of the subject, and those of the object, that a step of a property depends on."""
+        found = self._concerned.get(prop)
+        if found is None:
+            masks = [0, 0]
+            for q, backwards in self._schema.roles(prop):
+                axioms = self._schema.axioms[q]
+                owners = [r for r, _ in (*axioms.only, *axioms.none)]
+                owners += [limit.owner for limit in axioms.limits] + [key.owner for key in axioms.keys]
+                fillers = [cls for _, cls in (*axioms.some, *axioms.none)]
+                fillers += [limit.filler for limit in axioms.limits]
+                for classes, which in ((owners, backwards), (fillers, not backwards)):
+                    masks[which] |= mask_of({cls for cls in classes if cls != ANY})
+            found = self._concerned[prop] = masks[0], masks[1]
+        return found
 
     def made_by(self, prop: int) -> tuple[tuple[bool, Chain], ...]:
         """The chains that may make what an edge of a property implies, and whether that is backwards."""
@@ -115,7 +133,7 @@ class Steps:
             keys += [(not backwards, key) for key in axioms.keys if _in(key.owner, owner)]
         others = bool(clash or keys or object_.clash)
         of_values = not others and self._are_of_values(prop, limits)
-        rules = self._rules_of(prop)
+        rules = self.rules(prop)
         return Step(
             subject, object_, clash, tuple(limits), tuple(keys), others or bool(limits), of_values, rules
         )

@@ -9,6 +9,7 @@ from __future__ import annotations
 from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, MutableSequence, Sequence, Set
+from itertools import repeat
 from typing import Any, Final
 
 from nodes.kb_node.reasoner.abox.adjacency import NONE, Adjacency
@@ -217,6 +218,35 @@ class Store:
             _put(self.out.before, edges[to::length], edges[at::length])
         for at in layout.values:
             _put(self.source, edges[at::length], bytes([VALUE]) * count)
+
+    def add_each(
+        self,
+        predicate: int,
+        subjects: Sequence[int],
+        objects: Sequence[int],
+        source: int,
+        *,
+        is_first: bool = False,
+    ) -> Sequence[int]:
+        """Like `add` for many new edges of one predicate; `is_first` if each is its subject's only one."""
+        count = len(subjects)
+        if count == 0 or len(self._free_edges) >= count:
+            ends = zip(subjects, objects, strict=True)
+            return [self.add(subject, predicate, object_, source) for subject, object_ in ends]
+        edges = self._more_edges(count)
+        _put(self.subject, edges, subjects)
+        _put(self.object, edges, objects)
+        _put(self.predicate, edges, [predicate] * count)
+        if source != ASSERTED:
+            _put(self.source, edges, bytes([source]) * count)
+        if self.log is not None:
+            self.log += zip(subjects, repeat(predicate), objects, strict=False)
+        if is_first:
+            self.out.link_firsts(subjects, edges)
+        else:
+            self.out.link_each(subjects, edges, predicate)
+        self.into.link_each(objects, edges, predicate)
+        return edges
 
     def add_literals(self, kinds: Mapping[Term, Kind]) -> None:
         """Make room for literals, of known kinds, that edges will enter; what is there already stays."""

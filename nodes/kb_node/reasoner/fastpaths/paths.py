@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.store import COMPUTED
 from nodes.kb_node.reasoner.explain.proof import Proof
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
 from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
 
+MANY = 32
+"""Computed facts that are worth being taken together."""
 WorkOut = Callable[[Sequence[Triple]], None]
 """Inserts triples and draws all conclusions, by the rules."""
 
@@ -42,6 +46,15 @@ class PlainPaths:
             work_out(triples)
         return []
 
+    def compute(
+        self, triples: Iterable[Triple], insert: Callable[[Triple], bool], added: list[Triple]
+    ) -> None:
+        """Have triples as computed; those that are new are `added`. The rules are yet to be run.
+
+        `insert` is for one of them, and tells whether it is new.
+        """
+        added.extend(triple for triple in triples if insert(triple))
+
     def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
         """Take note of triples that were refused, by a proof that is about `terms`."""
 
@@ -51,6 +64,7 @@ class FastPaths(PlainPaths):
 
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
+        self._edges = ManyEdges(abox)
         self.shapes = Shapes(abox)
 
     def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
@@ -86,6 +100,16 @@ class FastPaths(PlainPaths):
         if rest:
             work_out(rest)
         return alike
+
+    def compute(
+        self, triples: Iterable[Triple], insert: Callable[[Triple], bool], added: list[Triple]
+    ) -> None:
+        """See `PlainPaths`. Many are stored column by column."""
+        triples = list(triples)
+        if len(triples) >= MANY and not (self._abox.equals or self._abox.is_mixed):
+            stored, triples = self._edges.insert(triples, COMPUTED)
+            added += stored
+        super().compute(triples, insert, added)
 
     def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
         """See `PlainPaths`."""

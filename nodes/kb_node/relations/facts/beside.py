@@ -1,6 +1,7 @@
 """Relations of two things that are beside one another, measured when somebody asks for them.
 
 They are too many to be kept for all at each commit: fifty things in a room are near to most of one another.
+In a crowd only those are compared that count there (`measuring.crowds`), so that the work stays bounded.
 """
 
 from __future__ import annotations
@@ -66,6 +67,14 @@ def _is_with(space: Space, solid: Solid, other: Solid) -> bool:
     return other in (container and container[0], *(bearer for bearer, _ in supports))
 
 
+def are_near(space: Space, one: Solid, other: Solid) -> bool:
+    """Whether `isNear` is a fact of two: `list --near` and SPARQL mean the same by it."""
+    made = measures.near(one, other, space.limits)
+    if made is None or not made.holds or not (space.counts(one) and space.counts(other)):
+        return False
+    return is_apart(space, one, other) or is_apart(space, other, one)
+
+
 class Beside:
     """What holds of the pairs that somebody asks about, kept in step with a map.
 
@@ -75,6 +84,7 @@ class Beside:
     def __init__(self, space: Space) -> None:
         """It has the space to itself: no one else changes it."""
         self.space = space
+        space.shifted()
         self._whole: frozenset[RelationName] = frozenset()
         self._some: frozenset[str] = frozenset()
         self._pairs: dict[str, dict[str, tuple[RelationName, ...]]] = {}
@@ -112,7 +122,7 @@ class Beside:
         space, moved = self.space, list[Solid]()
         if not self._stances and (self._whole or self._some):
             with space.remembering():
-                self._stances = {n: self._stance(s) for n, s in space.solids.items() if not s.is_place}
+                self._stances = {n: self._stance(s) for n, s in space.solids.items() if self._takes_part(s)}
         names: dict[str, None] = {}
         for name in removed:
             names[name] = None
@@ -122,21 +132,27 @@ class Beside:
             names[entity.name] = None
             moved += filter(None, (space.solids.get(entity.name),))
             moved += filter(None, (space.put(entity),))
-        moved += space.shifted()
+        shifted = space.shifted()
+        names.update((solid.name, None) for solid in shifted)
+        moved += shifted
         if not (self._whole or self._some):
             return Changed(set(), set())
         with space.remembering():
             for solid in moved:
-                for other in space.around(solid):
-                    if not other.is_place and self._stances.get(other.name) != self._stance(other):
+                for other in space.counted_around(solid):
+                    if self._takes_part(other) and self._stances.get(other.name) != self._stance(other):
                         names[other.name] = None
             for name in names:
                 now = space.solids.get(name)
-                if now is None or now.is_place:
+                if now is None or not self._takes_part(now):
                     self._stances.pop(name, None)
                 else:
                     self._stances[name] = self._stance(now)
         return self._work_out(names, moved)
+
+    def _takes_part(self, solid: Solid) -> bool:
+        """Whether it is in any pair."""
+        return not solid.is_place and self.space.counts(solid)
 
     def _stance(self, solid: Solid) -> _Stance:
         container, supports, _ = self.space.whereabouts(solid)
@@ -156,9 +172,9 @@ class Beside:
             for name in tuple(names):
                 solid = space.solids.get(name)
                 others = dict.fromkeys(self._pairs.get(name, ()))
-                if solid is not None and not solid.is_place:
-                    for near in space.around(solid, space.limits.near_most_m):
-                        if not near.is_place:
+                if solid is not None and self._takes_part(solid):
+                    for near in space.counted_around(solid, space.limits.near_most_m):
+                        if self._takes_part(near):
                             others[near.name] = None
                 for other in others:
                     pair = (name, other) if name < other else (other, name)
@@ -183,9 +199,12 @@ class Beside:
         for solid in moved:
             if solid.is_place:
                 continue
-            ends = [e for e in space.around(solid, space.limits.near_most_m) if not e.is_place]
+            around = space.counted_around(solid, space.limits.near_most_m)
+            ends = [end for end in around if self._takes_part(end)]
             for at, one in enumerate(ends):
                 for other in ends[at + 1 :]:
+                    if not _may_be_beside(space, one, other):
+                        continue
                     if measures.overlap(solid.bounds, _both(one.bounds, other.bounds)):
                         yield (one.name, other.name) if one.name < other.name else (other.name, one.name)
 
@@ -193,7 +212,9 @@ class Beside:
         self, name: str, other_name: str, more: Set[RelationName] = frozenset()
     ) -> tuple[RelationName, ...]:
         solid, other = self.space.solids.get(name), self.space.solids.get(other_name)
-        if solid is None or other is None or solid.is_place or other.is_place:
+        if solid is None or other is None or not _may_be_beside(self.space, solid, other):
+            return ()
+        if not (self._takes_part(solid) and self._takes_part(other)):
             return ()
         wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
         if not wanted:
@@ -226,6 +247,13 @@ class Beside:
                 there.pop(two, None)
                 if not there:
                     del self._pairs[one]
+
+
+def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
+    """Whether two are close enough for any of the relations: a quick look at their bounds."""
+    limits = space.limits
+    reach = max(measures.near_limit(one, other, limits), limits.contact_m)
+    return measures.overlap(one.bounds, other.bounds, reach)
 
 
 def _both(one: Bounds, other: Bounds) -> Bounds:

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.arrangement import attachments
 from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology import vocabulary as v
 from schemas.explanations import Term
@@ -21,6 +22,7 @@ About = tuple[RelationName, str]
 """What a fact says of its subject: ("isOn", "table1")."""
 
 
+_WHEREABOUTS: Final[tuple[RelationName, RelationName, RelationName]] = ("isInside", "isOn", "isLocatedIn")
 _ROUNDING = 1e-6
 """What is asked for here may be asked for in vain."""
 
@@ -32,6 +34,8 @@ class Rule(NamedTuple):
     """Each is a property of its name in the namespace of the household TBox."""
     facts: Callable[[Space, Solid], Iterator[About]]
     """What holds of a thing. It is not asked of places."""
+    of_many: Callable[[Survey], Iterator[tuple[About, ...] | None]]
+    """The same for each of those who were surveyed; None where `facts` has to be asked."""
     concerns: Callable[[Space, Solid, Solid], bool]
     """Whether something may come to hold of the second because of the first, who is new there.
 
@@ -55,9 +59,33 @@ def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
         yield "isLocatedIn", place[0].name
 
 
+def _whereabouts_of_many(survey: Survey) -> Iterator[tuple[About, ...] | None]:
+    names = [solid.name for solid in survey.solids]
+    known: dict[tuple[int, int, int], tuple[About, ...]] = {}
+    columns = (survey.container, survey.support, survey.place)
+    for is_open, *found in zip(survey.is_open.tolist(), *(c.tolist() for c in columns), strict=True):
+        if is_open:
+            yield None
+            continue
+        rows = (found[0], found[1], found[2])
+        facts = known.get(rows)
+        if facts is None:
+            facts = known[rows] = tuple(
+                (relation, names[row])
+                for relation, row in zip(_WHEREABOUTS, rows, strict=True)
+                if row != NOBODY
+            )
+        yield facts
+
+
 def _attachments(space: Space, solid: Solid) -> Iterator[About]:
     for other in attachments(space, solid):
         yield "isAttachedTo", other.name
+
+
+def _attachments_of_many(survey: Survey) -> Iterator[tuple[About, ...] | None]:
+    for may_hang in survey.may_hang.tolist():
+        yield None if may_hang else ()
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
@@ -81,9 +109,12 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
 
 
 RULES: Final[tuple[Rule, ...]] = (
-    Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear, when_gone=True),
-    Rule(("isAttachedTo",), _attachments, _may_hold, lambda limits: limits.attached_m, when_gone=True),
-)
+    Rule(_WHEREABOUTS, _whereabouts, _whereabouts_of_many, _may_bear, when_gone=True),
+    Rule(
+        ("isAttachedTo",), _attachments, _attachments_of_many, _may_hold, lambda limits: limits.attached_m,
+        when_gone=True,
+    ),
+)  # fmt: skip
 
 COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}
 """The properties that are computed, where a TBox has them."""

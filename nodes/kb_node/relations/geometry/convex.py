@@ -42,6 +42,11 @@ class Convex:
     high: Vector
 
     @lazily
+    def met(self) -> dict[tuple[Convex, float], Contact]:
+        """Its contacts that were worked out: what lies in a heap is asked of again at every change of it."""
+        return {}
+
+    @lazily
     def lowest(self) -> Point:
         """Where its lowest point is on the floor plan, the middle of that where it is flat below."""
         x, y, _ = self.centre
@@ -187,9 +192,14 @@ def convex(
         ry += abs(y)
         rz += abs(z)
     if round_:
-        rx += math.sqrt(sum(v[0] * v[0] for v in round_))
-        ry += math.sqrt(sum(v[1] * v[1] for v in round_))
-        rz += math.sqrt(sum(v[2] * v[2] for v in round_))
+        sx = sy = sz = 0.0
+        for x, y, z in round_:
+            sx += x * x
+            sy += y * y
+            sz += z * z
+        rx += math.sqrt(sx)
+        ry += math.sqrt(sy)
+        rz += math.sqrt(sz)
     low, high = (cx - rx, cy - ry, cz - rz), (cx + rx, cy + ry, cz + rz)
     if points:
         ends = [(min(along), max(along)) for along in zip(*points, strict=True)]
@@ -215,6 +225,14 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
     """
     if one.is_square and other.is_square:
         return _between_boxes(one, other)
+    known = one.met.get((other, most))
+    if known is None:
+        known = one.met[other, most] = _searched(one, other, most)
+    return known
+
+
+def _searched(one: Convex, other: Convex, most: float) -> Contact:
+    """The same of any two, by looking along ever more directions around the best so far."""
     offset = np.subtract(one.centre, other.centre)
     straight = np.array([*one.straight, *other.straight]).reshape(-1, 3).T
     rounds = [np.array(r).T for r in (one.round, other.round) if r]
@@ -236,15 +254,27 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
     for width in _WIDTHS:
         if distance > most:
             break
-        across = np.cross(normal, _AXES[int(np.abs(normal).argmin())])
-        across /= math.sqrt(across @ across)
-        tried = normal + width * (_PATCH @ np.array([across, np.cross(normal, across)]))
+        tried = normal + width * (_PATCH @ _across(normal))
         tried /= np.sqrt((tried * tried).sum(axis=1))[:, None]
         distances = apart(tried)
         best = int(distances.argmax())
         if distances[best] > distance:
             normal, distance = tried[best], float(distances[best])
     return Contact(distance, (float(normal[0]), float(normal[1]), float(normal[2])))
+
+
+def _across(normal: Floats) -> Floats:
+    """Two unit vectors that are square to a unit normal and to each other: (2, 3)."""
+    x, y, z = normal.tolist()
+    if abs(x) <= abs(y) and abs(x) <= abs(z):
+        ax, ay, az = 0.0, z, -y
+    elif abs(y) <= abs(z):
+        ax, ay, az = -z, 0.0, x
+    else:
+        ax, ay, az = y, -x, 0.0
+    length = math.sqrt(ax * ax + ay * ay + az * az)
+    ax, ay, az = ax / length, ay / length, az / length
+    return np.array([(ax, ay, az), (y * az - z * ay, z * ax - x * az, x * ay - y * ax)])
 
 
 def _between_boxes(one: Convex, other: Convex) -> Contact:
@@ -272,8 +302,8 @@ def _exact_normals(one: Convex, other: Convex) -> Floats:
     first = [*_faces(one), *_faces(other), *((a, b) for a in one.straight for b in other.straight)]
     if not first:
         return _AXES
-    pairs = np.array(first)
-    found = np.cross(pairs[:, 0], pairs[:, 1])
+    ax, ay, az, bx, by, bz = np.array(first).reshape(-1, 6).T
+    found = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
     lengths = np.sqrt((found * found).sum(axis=1))
     kept = lengths > 1e-12
     found = found[kept] / lengths[kept, None]

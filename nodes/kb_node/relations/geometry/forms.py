@@ -12,7 +12,7 @@ from nodes.kb_node.relations.geometry.fitting import fitted
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.polygons import Point, area, hull
 from ontology.model_shapes import ModelShape
-from schemas.entities import Size, Vector
+from schemas.entities import Quaternion, Size, Vector
 
 UPRIGHT = math.cos(math.radians(15.0))
 """A thing that leans more has no level surfaces."""
@@ -25,25 +25,39 @@ _BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
 Matrix = tuple[Vector, Vector, Vector]
 Bounds = tuple[float, float, float, float]
 """Least x and y, greatest x and y [m]."""
-_WORKED_OUT = ("corners", "outline", "base", "parts")
 
 
 class Form:
     """A shape as it is turned, seen from the middle of its bottom [m]; the axes are those of the map.
 
-    Most things of a map stand upright like others of their model: what is worked out here is so once for all
-    of them.
+    Most things of a map stand upright like others of their model: what is worked out here is worked out once
+    for all of them, and not before somebody asks.
     """
 
-    def __init__(self, size: Size, rotation: Matrix, shape: ModelShape) -> None:
-        """`rotation` is map from body; `shape` is of that size, in its own frame."""
+    __slots__ = (
+        "__dict__", "is_level", "is_upright", "model", "orientation", "rotation", "size", "users",
+    )  # fmt: skip
+
+    def __init__(self, model: str | None, size: Size, wxyz: Quaternion) -> None:
+        """A `model` of None has no parts, and "" is a box."""
+        self.model: Final = model
         self.size: Final = size
-        self.rotation: Final = rotation
-        self.shape: Final = shape
+        self.orientation: Final = wxyz
+        self.rotation: Final = _rotation(wxyz)
+        """Map from body."""
         self.users = 0
-        """How many solids have had it."""
-        self.is_level: Final = rotation[2][2] >= LEVEL
-        self.is_upright: Final = rotation[2][2] >= UPRIGHT
+        """How many solids have it, or had it."""
+        self.is_level: Final = self.rotation[2][2] >= LEVEL
+        self.is_upright: Final = self.rotation[2][2] >= UPRIGHT
+
+    def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
+        """Whether it is the form of a model at a size, turned so."""
+        return self.orientation == wxyz and self.size == size and self.model == model
+
+    @lazily
+    def shape(self) -> ModelShape:
+        """The shape of its model at its size, in its own frame."""
+        return _BOX if self.model is None else fitted(self.model, self.size)
 
     def turned(self, vector: Vector) -> Vector:
         """A vector of its own frame along the axes of the map."""
@@ -135,21 +149,20 @@ class Form:
         return area(self.outline)
 
     def forget(self) -> None:
-        """Drop what takes most of the memory and can be worked out again."""
-        for name in _WORKED_OUT:
-            self.__dict__.pop(name, None)
+        """Drop what can be worked out again."""
+        del self.__dict__
 
 
 _EXACTLY = 1e-9
 
 
 @lru_cache(maxsize=4096)
-def form_of(model: str | None, size: Size, wxyz: tuple[float, float, float, float]) -> Form:
+def form_of(model: str | None, size: Size, wxyz: Quaternion) -> Form:
     """The form of a model at a size; None has no parts, and "" is a box."""
-    return Form(size, _rotation(wxyz), _BOX if model is None else fitted(model, size))
+    return Form(model, size, wxyz)
 
 
-def _rotation(wxyz: tuple[float, float, float, float]) -> Matrix:
+def _rotation(wxyz: Quaternion) -> Matrix:
     w, x, y, z = wxyz
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),

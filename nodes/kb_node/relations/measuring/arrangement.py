@@ -15,7 +15,7 @@ _OPPOSITE = -math.cos(math.radians(60.0))
 """What is between two sees them in directions this far from one another: 120 degrees or more."""
 _BESIDE_M = 0.2
 """What is further from another thing is not beside it."""
-_ALONGSIDE = 0.5
+ALONGSIDE = 0.5
 """Of the height of what hangs that is alongside what it hangs on."""
 
 
@@ -56,7 +56,7 @@ def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
     strip = hull([*one.outline, *other.outline])
     low, high = max(one.bottom, other.bottom), min(one.top, other.top)
     apart = measures.gap(one, other)
-    for third in space.around(one, apart):
+    for third in space.counted_around(one, apart):
         if third is other or third.is_place or not third.is_measured:
             continue
         if not measures.overlap(third.bounds, other.bounds, apart):
@@ -111,7 +111,7 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, _BESIDE_M):
         return None
     apart = distance(solid.outline, other.outline)
-    holds = apart <= limits.attached_m and share >= _ALONGSIDE
+    holds = apart <= limits.attached_m and share >= ALONGSIDE
     return Measure(holds, apart, share, limit=limits.attached_m)
 
 

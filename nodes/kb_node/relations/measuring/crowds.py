@@ -9,7 +9,8 @@ from typing import Final
 from nodes.kb_node.relations.geometry.solids import Solid
 
 MOST: Final = 100
-"""Things in one cell of the grid that others look at; what more there is bears and holds nothing there."""
+"""Things in one cell of the grid that others look at; the rest bears, holds and is near nothing."""
+_WHAT: Final = "on, inside or beside"
 
 
 class Crowd:
@@ -71,7 +72,7 @@ def sentence(things: int, cell: tuple[int, int] | None, cell_m: float) -> str:
     if cell is not None:
         x, y = ((place + 0.5) * cell_m for place in cell)
         where = f"within {cell_m:g} m of ({x:g}, {y:g})"
-    return f"{things} things are {where}: what they are on or inside is looked for among the {MOST} largest"
+    return f"{things} things are {where}: what they are {_WHAT} is looked for among the {MOST} largest"
 
 
 def _ranked(solid: Solid) -> tuple[float, str]:

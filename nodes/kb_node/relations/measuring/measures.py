@@ -219,9 +219,14 @@ def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
     """A gap that is small beside the sizes of both, as Gapp (1994) scales distances."""
     if one is other or one.is_place or other.is_place:
         return None
-    limit = min(limits.near_most_m, limits.near_share * (max(one.size) + max(other.size)) / 2.0)
+    limit = near_limit(one, other, limits)
     between = gap(one, other)
     return Measure(between <= limit, between, limit=limit)
+
+
+def near_limit(one: Solid, other: Solid, limits: Thresholds) -> float:
+    """Up to which gap two things are near to one another [m]."""
+    return min(limits.near_most_m, limits.near_share * (max(one.size) + max(other.size)) / 2.0)
 
 
 def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:

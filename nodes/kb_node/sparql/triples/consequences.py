@@ -78,9 +78,9 @@ class Consequences:
         `believed` is what it changes besides.
         """
         was_compiled = self._reasoner.is_compiled
-        less = self._reasoner.believe(gone=believed.gone, aside=believed.aside)
+        less = self._reasoner.believe(gone=believed.gone, aside=believed.aside, tell_implied=True)
         touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        more = self._reasoner.believe(come=believed.come, back=believed.back)
+        more = self._reasoner.believe(come=believed.come, back=believed.back, tell_implied=True)
         if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
             gone, new = self._all_changes()
         elif less.implied is None or more.implied is None:

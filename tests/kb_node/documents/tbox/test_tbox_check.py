@@ -117,7 +117,12 @@ def test_the_household_is_sound():
     ("file", "ambiguous", "empty"),
     [
         ("oro/oro.owl", "Hand", ()),
-        ("soma/SOMA-HOME.owl", "Configuration", ("PreferenceOrder", "PreferenceRegion")),
+        pytest.param(
+            "soma/SOMA-HOME.owl",
+            "Configuration",
+            ("PreferenceOrder", "PreferenceRegion"),
+            marks=pytest.mark.long,
+        ),
         ("bfo", None, ()),
     ],
 )

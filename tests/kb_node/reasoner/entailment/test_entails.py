@@ -465,7 +465,7 @@ def test_does_not_follow(premise, conclusion):
     assert not _follows(premise, conclusion)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.sampled_from(list(MEANINGS)), min_size=1, max_size=4, unique=True))
 def test_nothing_is_claimed_that_a_small_interpretation_makes_false(premise):
     check_soundness(premise)

@@ -7,6 +7,8 @@ from msgspec import structs
 
 from nodes.kb_node.relations.facts.beside import MIRRORED, Beside, beside
 from nodes.kb_node.relations.facts.derived import Derived
+from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.relations.measuring.crowds import MOST
 from nodes.kb_node.relations.measuring.space import Space
 from ontology import vocabulary as v
 from schemas.entities import Pose
@@ -100,3 +102,41 @@ def test_what_a_tbox_implies_of_them_is_told():
 
 def test_a_tbox_without_them_has_none():
     assert Derived([(v.dm("isOn"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]).sources == {}
+
+
+def crowd(dice, count):
+    spread = [(dice.uniform(-0.4, 0.4), dice.uniform(-0.3, 0.3), TOP) for _ in range(count)]
+    return [ROOM, TABLE, *(thing(f"cup{k}", at) for k, at in enumerate(spread))]
+
+
+def test_in_a_crowd_so_many_are_compared_and_no_more():
+    dice = random.Random(3)
+    there = crowd(dice, 700)
+    space = Space(there)
+    pairs = Beside(space)
+    near = pairs.ask(("isNear",), ()).come
+    told = {name for name, _, other in near for name in (name, other)}
+    assert told
+    assert all(space.counts(space.solids[name]) for name in told)
+    assert len(told) <= 4 * MOST + 1  # four cells meet on the table
+    aside = next(name for name, solid in space.solids.items() if not space.counts(solid))
+    assert pairs.update([thing(aside, (0.0, 0.0, TOP), size=(0.2, 0.2, 0.2))]).come
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_kept_of_a_crowd_is_what_a_look_at_all_gives(seed, monkeypatch):
+    monkeypatch.setattr(crowds, "MOST", 8)
+    dice = random.Random(seed)
+    there = {entity.name: entity for entity in crowd(dice, 24)}
+    pairs = Beside(Space(there.values()))
+    pairs.ask(EVERY, ())
+    for _ in range(30):
+        name = f"cup{dice.randrange(24)}"
+        if name in there and dice.random() < 0.3:
+            del there[name]
+            pairs.update((), [name])
+        else:
+            size = (dice.uniform(0.05, 0.3), 0.08, 0.1)
+            there[name] = thing(name, (dice.uniform(-0.4, 0.4), dice.uniform(-0.3, 0.3), TOP), size=size)
+            pairs.update([there[name]])
+        assert facts(pairs, there.values()) == anew(there.values())

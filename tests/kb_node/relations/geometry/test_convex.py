@@ -47,3 +47,9 @@ def test_the_normal_points_from_the_other_to_the_one():
 def test_what_just_meets_is_not_apart():
     found = contact(box((0.4, 0.0, 0.5), (0.6, 0.1, 0.1), 0.0), box((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), 0.0))
     assert found == (0.0, (0.0, 0.0, 1.0))
+
+
+def test_a_contact_is_worked_out_once():
+    one, other = box((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), YAW), box((0.0, 0.0, 0.29), (0.3, 0.3, 0.3), 0.0)
+    assert contact(one, other) is contact(one, other)
+    assert contact(one, other, -0.1) is not contact(one, other)

@@ -1,5 +1,8 @@
-from nodes.recorder.state.asserted_relations import Relations, is_relation, missed
+from msgspec import structs
+
+from nodes.recorder.state.map_relations import Relations, is_relation, missed
 from ontology import vocabulary as v
+from schemas.commits import PlaceChanges
 from tests.recorder.messages import commit, entity, relation, star
 
 ON = relation("cup1", "isOn", "table1")
@@ -29,6 +32,30 @@ def test_commits_change_relations_and_only_those_of_present_entities_count():
     relations.take(commit(2, inserted=(relation("cup1", "isInside", "sink1"),), retracted=(ON,)))
     assert relations.between(ENTITIES)["cup1"] == (("isInside", "sink1"),)
     assert relations.between({"cup1": ENTITIES["cup1"]}) == {"cup1": ()}
+
+
+def test_what_is_computed_counts_and_what_is_denied_does_not():
+    relations = Relations()
+    in_sink = relation("cup1", "isInside", "sink1")
+    told = structs.replace(star("cup1", ON), computed=(in_sink,), denied=(ON,))
+    relations.begin([told, star("table1"), star("sink1")])
+    assert relations.between(ENTITIES)["cup1"] == (("isInside", "sink1"),)
+    relations.take(commit(2, places=PlaceChanges(went=(in_sink,), undenied=(ON,))))
+    assert relations.between(ENTITIES)["cup1"] == (("isOn", "table1"),)
+    relations.take(commit(3, places=PlaceChanges(came=(in_sink,), denied=(ON,))))
+    assert relations.between(ENTITIES)["cup1"] == (("isInside", "sink1"),)
+    relations.take(commit(4, retracted=(ON,)))
+    relations.take(commit(5, inserted=(ON,), places=PlaceChanges(went=(in_sink,))))
+    assert relations.between(ENTITIES)["cup1"] == (("isOn", "table1"),)
+
+
+def test_what_is_asserted_and_computed_stays_until_neither_is_so():
+    relations = begun()
+    relations.take(commit(2, places=PlaceChanges(came=(ON,))))
+    relations.take(commit(3, retracted=(ON,)))
+    assert relations.between(ENTITIES)["cup1"] == (("isOn", "table1"),)
+    relations.take(commit(4, places=PlaceChanges(went=(ON,))))
+    assert relations.between(ENTITIES)["cup1"] == ()
 
 
 def test_stars_that_are_newer_than_a_commit_do_no_harm():

@@ -1,0 +1,215 @@
+"""Takes a commit in, checked and with its effects, before it is durable; and gives it back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Set
+from typing import Final
+
+from msgspec import structs
+
+from nodes.kb_node import preconditions, proofs
+from nodes.kb_node.beliefs import Believed
+from nodes.kb_node.documents.tbox import tbox_validation
+from nodes.kb_node.entities import entity_changes, entity_reading
+from nodes.kb_node.entities.fast_reading import Patterns
+from nodes.kb_node.map_state import MapState
+from nodes.kb_node.places import at_most
+from nodes.kb_node.progress import parts, steadily
+from nodes.kb_node.reasoner import Change, Inconsistent
+from ontology import vocabulary as v
+from schemas.commits import Commit
+from schemas.entities import Entity
+from schemas.explanations import Term, Triple
+
+PART: Final = 250_000
+"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
+
+
+class Applier:
+    """Changes what a map's reasoner holds. The entities show it only when `MapState.take` is called."""
+
+    def __init__(self, state: MapState) -> None:
+        """`state` is what is changed."""
+        self._state = state
+        self._patterns = Patterns()
+        self.believed: dict[int, Believed] = {}
+        """What the last commits changed of what is computed, until somebody asks."""
+
+    def apply(
+        self,
+        commit: Commit,
+        make_durable: Callable[[Commit], Commit],
+        noted: Callable[[Commit], Commit] = lambda commit: commit,
+    ) -> Commit:
+        """The commit, durable and with its effects. Raises Inconsistent, and what `make_durable` raises.
+
+        On any error all is as before. `noted` adds a word on the change while the reasoner has it already.
+        """
+        state = self._state
+        subjects = preconditions.subjects(commit.retracted, commit.inserted)
+        known = state.reasoner.mentioned(subjects)
+        owners = subjects.union(
+            *(
+                entity_reading.owners(state.reasoner, state.classes, s)
+                for s in steadily(known, state.progress)
+            )
+        )
+        state.beliefs.begin()
+        restores = bool(commit.undoes)
+        contradicted = state.beliefs.contradicted.keys() if restores else frozenset()
+        lenient = restores or not state.follows
+        change = self.change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
+        try:
+            if not lenient:
+                self._require_agreement(commit)
+            commit = noted(self._with_effects(commit, owners, change, subjects - known))
+            if state.follows:
+                commit = self._with_places(commit)
+            if restores and state.follows:
+                self._require_no_more_than(contradicted)
+            commit = make_durable(commit)
+        except BaseException:
+            self.reverse(commit, {name: state.by_name.get(name) for name in commit.names})
+            raise
+        return commit
+
+    def switch(
+        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
+    ) -> Commit:
+        """Like `apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
+        state = self._state
+        before = state.tbox, state.reasoner, state.classes, state.beliefs
+        abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
+        try:
+            state.exchange_tbox(tbox, tbox_validation.compiled(tbox))
+            self.change(insert=abox, lenient=True)
+            concerned = {v.iri(entity.iri) for entity in state.by_name.values()}
+            concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))
+            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
+            if state.follows:
+                commit = self._with_places_anew(commit, before[-1].withheld.keys())
+            commit = make_durable(commit)
+        except BaseException:
+            state.tbox, state.reasoner, state.classes, state.beliefs = before
+            raise
+        return commit
+
+    def reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
+        """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
+        state = self._state
+        self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
+        if not state.follows:
+            return
+        after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
+        after.update((entity.name, entity) for entity in commit.changed)
+        state.beliefs.follow(
+            changed=[entity for entity in before.values() if entity is not None],
+            removed=[name for name, entity in before.items() if entity is None],
+            before=lambda name: after[name] if name in after else state.by_name.get(name),
+            retracted=commit.inserted,
+            inserted=commit.retracted,
+        )
+
+    def change(
+        self, *, delete: Collection[Triple] = (), insert: Collection[Triple], lenient: bool = False
+    ) -> Change:
+        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent.
+
+        When it is `lenient`, what is asserted of places and contradicts the rest is set aside.
+        """
+        state = self._state
+        try:
+            if len(delete) + len(insert) <= PART or not state.reasoner.is_compiled:
+                return state.beliefs.change(delete, insert, lenient=lenient)
+            return self._change_in_parts(delete, insert, lenient)
+        except Inconsistent as error:
+            raise proofs.refusal(error) from None
+
+    def _change_in_parts(self, delete: Iterable[Triple], insert: Iterable[Triple], lenient: bool) -> Change:
+        """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
+        state = self._state
+        reasoner, changes = state.beliefs, list[Change]()
+        deleted, inserted = list[Triple](), list[Triple]()
+        try:
+            for part in parts(delete, PART, state.progress):
+                changes.append(reasoner.change(part, (), lenient=lenient))
+                deleted += part
+            for part in parts(insert, PART, state.progress):
+                changes.append(reasoner.change((), part, lenient=lenient))
+                inserted += part
+        except BaseException:
+            reasoner.change(inserted, deleted)
+            raise
+        return Change.together(changes)
+
+    def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
+        state = self._state
+        reading = entity_changes.Reading(state.reasoner, state.classes, self._patterns, state.progress)
+        return entity_changes.of(commit, change, state.by_name, reading, owners=owners, new=new)
+
+    def _with_places(self, commit: Commit) -> Commit:
+        """`commit` with the entities, too, whose classes change by where things are."""
+        state = self._state
+        entities = state.by_name
+        moved = state.beliefs.follow(
+            changed=commit.changed,
+            removed=[departed.name for departed in commit.removed],
+            before=entities.get,
+            retracted=commit.retracted,
+            inserted=commit.inserted,
+        )
+        self.believed[commit.seq] = state.beliefs.believed
+        crowds = state.places.crowds(commit.names)
+        if crowds:
+            commit = structs.replace(commit, notes=(*commit.notes, *crowds))
+        commit = self._with_withheld(commit, state.beliefs.newly_withheld)
+        if not moved:
+            return commit
+        changed = {entity.name: entity for entity in commit.changed}
+        gone = {departed.name for departed in commit.removed}
+        for iri in sorted(moved):
+            name = v.entity_name(iri)
+            entity = changed.get(name) or (None if name in gone else entities.get(name))
+            if entity is not None and v.iri(entity.iri) == iri:
+                changed[name] = structs.replace(entity, types=state.types_of(entity))
+        return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
+
+    def _with_places_anew(self, commit: Commit, withheld: Set[Triple]) -> Commit:
+        """The same for a commit that replaces the TBox, so that everything is worked out anew.
+
+        `withheld` is what was before.
+        """
+        state = self._state
+        gone = {departed.name for departed in commit.removed}
+        after = {name: e for name, e in state.by_name.items() if name not in gone}
+        after.update((entity.name, entity) for entity in commit.changed)
+        state.beliefs.fill(after)
+        commit = self._with_withheld(commit, sorted(state.beliefs.withheld.keys() - withheld))
+        for name, entity in after.items():
+            after[name] = structs.replace(entity, types=state.types_of(entity))
+        changed = tuple(e for name, e in after.items() if e != state.by_name.get(name))
+        return structs.replace(commit, changed=changed)
+
+    def _with_withheld(self, commit: Commit, facts: Collection[Triple]) -> Commit:
+        """`commit` with a note on what it lets contradict the map, so that it is left out."""
+        if not facts:
+            return commit
+        return structs.replace(
+            commit, notes=(*commit.notes, *at_most(list(map(self._state.beliefs.told, facts))))
+        )
+
+    def _require_agreement(self, commit: Commit) -> None:
+        """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
+        try:
+            self._state.beliefs.require_agreement(commit.inserted)
+        except Inconsistent as error:
+            raise proofs.refusal(error) from None
+
+    def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
+        """Raises Inconsistent when assertions contradict one another that geometry does not deny.
+
+        Taking something back may bring such together that did at the time, since geometry denied them.
+        """
+        newly = {t: why for t, why in self._state.beliefs.contradicted.items() if t not in contradicted}
+        if newly:
+            raise proofs.refusal(Inconsistent(newly[min(newly)]))

@@ -1,0 +1,61 @@
+"""Writes the map down now and then, beside the node's other work, so that the next start is quick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import Journal
+from nodes.runtime import heap
+
+
+class Checkpointing:
+    """One checkpoint at a time; the map goes on changing meanwhile."""
+
+    def __init__(
+        self, semantic_map: SemanticMap, journal: Journal, soon: Callable[[Callable[[], None]], None]
+    ) -> None:
+        """`soon(handle)` calls `handle()` on the map's own thread."""
+        self._map = semantic_map
+        self._journal = journal
+        self._soon = soon
+        self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
+        self._writing: Future[int] | None = None
+        """While a checkpoint is written: the number of its last commit."""
+        self._seq_then = 0
+
+    def if_due(self) -> None:
+        """Begin one in a quiet moment, if there is one: when nothing has changed since this was called."""
+        quiet, self._seq_then = self._map.seq == self._seq_then, self._map.seq
+        if self._map.checkpoint_is_due(quiet=quiet):
+            self._begin()
+
+    def if_urgent(self) -> None:
+        """Begin one if the next start would have to replay most of the map."""
+        if self._map.checkpoint_is_urgent:
+            self._begin()
+
+    def close(self) -> None:
+        """Leave a checkpoint for a quick start, unless that takes long. Raises Refused by a full disk."""
+        if self._writing is not None:
+            self._map.written(self._writing.result())
+        if not self._map.is_large or self._map.checkpoint_is_due(quiet=True):
+            self._map.checkpoint()
+
+    def _begin(self) -> None:
+        if self._writing is not None:
+            return
+        picture = self._map.picture()
+
+        def write() -> int:
+            self._journal.checkpoint(picture)
+            return picture.seq
+
+        def end(done: Future[int]) -> None:
+            self._writing = None
+            heap.trim()
+            self._map.written(done.result())
+
+        self._writing = self._beside.submit(write)
+        self._writing.add_done_callback(lambda done: self._soon(lambda: end(done)))

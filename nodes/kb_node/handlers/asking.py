@@ -1,0 +1,230 @@
+"""What is asked of the map: each question is answered by one call, long ones beside the node's own work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from typing import TypeVar
+
+from msgspec import structs
+
+from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
+from nodes.kb_node.answers.pages import Pages
+from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.reasoner import Held
+from nodes.kb_node.reasoner.entailment.explaining import nearby
+from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.storage import history
+from nodes.kb_node.storage.journal import Journal
+from schemas import errors
+from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
+from schemas.calls import Handler, by_verb
+from schemas.commands import (
+    Check,
+    Classes,
+    Could,
+    Explain,
+    Export,
+    Get,
+    History,
+    Infer,
+    LastSeen,
+    Properties,
+    Relations,
+    Renew,
+    Sparql,
+    Watch,
+)
+from schemas.commits import Commit, Snapshot, Star
+from schemas.entities import ClassInfo, Entity, PropertyInfo
+from schemas.explanations import Explanation, Triple
+from schemas.relations import Described, Relation
+from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
+from schemas.sparql import SparqlResult, Watching
+
+R = TypeVar("R", Explanation, Possible)
+
+
+class Asking:
+    """Answers questions about the map as it is and as it was; changes nothing."""
+
+    def __init__(
+        self,
+        semantic_map: SemanticMap,
+        journal: Journal,
+        sparql: SparqlService,
+        standing_places: StandingPlaces,
+    ) -> None:
+        """`sparql` and `standing_places` are told of each commit by the node."""
+        self._map = semantic_map
+        self._sparql = sparql
+        self._standing_places = standing_places
+        self._journal = journal
+        self._past = history.Past(journal)
+        self._pages = Pages(semantic_map)
+        self._now = whereabouts.Now(semantic_map)
+        self._then = whereabouts.Then(semantic_map, self._past)
+        self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+
+    def handlers(self) -> dict[str, Handler]:
+        """By verb."""
+        return by_verb(
+            SnapshotQuery.answered_by(self.on_snapshot),
+            Recall.answered_by(self.on_recall),
+            StarQuery.answered_by(self.on_star),
+            LoadOf.answered_by(self.on_load_of),
+            Classes.answered_by(self.on_classes),
+            Properties.answered_by(self.on_properties),
+            Entities.answered_by(self.on_list),
+            Get.answered_by(self.on_get),
+            Infer.answered_by(self.on_infer),
+            Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
+            Relations.answered_by(self.on_relations),
+            Export.answered_by(self.on_export),
+            History.answered_by(self.on_history),
+            LastSeen.answered_by(self.on_last_seen),
+            Check.answered_by(self.on_check),
+            Sparql.answered_by(self.on_sparql),
+            Watch.answered_by(self.on_watch),
+            Renew.answered_by(self.on_renew),
+        )
+
+    def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
+        """The entities as of the last commit, or a page of them."""
+        return self._pages.snapshot(query)
+
+    def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
+        """Commits of the history, whole."""
+        return self._aside.submit(self._past.commits, query.seqs)
+
+    def on_star(self, query: StarQuery) -> tuple[Star, ...]:
+        """The triples about some entities."""
+        return self._map.stars(query.names)
+
+    def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
+        """What a thing bears."""
+        return tuple(self._map.places.borne_by(query.name, query.leave))
+
+    def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
+        """The class table."""
+        return tuple(self._map.class_table())
+
+    def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
+        """The property table."""
+        return tuple(self._map.classes.stated.rows())
+
+    def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
+        """The entities of a class, now or as of then; with `where` those that are there."""
+        if query.as_of is None:
+            return self._now.entities(query)
+        return self._aside.submit(self._then.entities, query)
+
+    def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
+        """Where a thing is relative to others, now or as of then."""
+        if query.as_of is None:
+            return self._now.relations(query)
+        return self._aside.submit(self._then.relations, query)
+
+    def on_get(self, query: Get) -> Described | Future[Described]:
+        """One entity, now or as of then."""
+        if query.as_of is None:
+            return self._now.entity(query)
+        return self._aside.submit(self._then.entity, query)
+
+    def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
+        """What follows about an entity; about all, it is worked out beside the node's own work."""
+        if query.name is not None:
+            return answers.infer(self._map, query.name)
+        return self._aside.submit(answers.infer_all, answers.inferring(self._map))
+
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        if (measured := self._now.measured(query)) is not None:
+            return measured
+        asked = questions.of_explain(self._map, query)
+        found = self._now.explained(query, asked)
+        if found is None:
+            return self._tried(questions.explain, asked)
+        if not found.measured:
+            return found.explanation
+        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, began)
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Whether it could be."""
+        asked = questions.of_could(self._map, query)
+        against = self._now.against(asked.triples[0])
+        return self._tried(partial(questions.could, against=against), asked)
+
+    def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
+        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        reasoner, names = self._map.reasoner, self._map.classes.prefixed
+        needed: list[Triple] | None = None
+        self._map.believe_places()
+        if questions.is_quick(reasoner, asked):
+            try:
+                return answer(reasoner, asked, anew=False)
+            except questions.Undecided:
+                needed = nearby(reasoner, asked.terms)
+            except NotCompilable:
+                pass
+        held = reasoner.held() if needed is None else Held(needed, [])
+        return self._aside.submit(lambda: answer(questions.copy_of(held, names), asked))
+
+    def on_export(self, query: Export) -> Future[Document]:
+        """The map as a document; checked first, and written beside the node's own work."""
+        return self._aside.submit(answers.export, answers.picture(self._map, query.inferred), query.format)
+
+    def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
+        """Commits of the history."""
+        return self._aside.submit(self._past.history, query)
+
+    def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
+        """Where an entity was last; where it is, if it is there."""
+        if (entity := self._map.find(query.name)) is not None:
+            return history.sighting(entity, None)
+        return self._aside.submit(self._past.last_seen, query.name)
+
+    def on_check(self, query: Check) -> Future[Checked]:
+        """Consistency, worked out beside the node's own work."""
+        self._map.follow_places()
+        held, denied = self._map.reasoner.held(), self._now.denied()
+        withheld, crowds = tuple(answers.withheld(self._map)), self._map.places.crowds()
+        return self._aside.submit(
+            lambda: structs.replace(
+                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
+            )
+        )
+
+    def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
+        """A query, evaluated beside the node's own work; of the past, in a process of its own."""
+        if query.as_of is not None:
+            return self._aside.submit(map_then.ask_then, self._journal, self._past, query)
+        return self._sparql.ask(query, self._map.seq)
+
+    def on_watch(self, query: Watch) -> Watching | Future[Watching]:
+        """A standing query, or a standing question of where things are."""
+        asks_where = query.where is not None or query.class_ is not None
+        if (query.query is None) != asks_where:
+            raise errors.BadRequest(
+                "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
+            )
+        if not asks_where:
+            return self._sparql.ask(query, self._map.seq)
+        if query.where is None or query.inferred:
+            raise errors.BadRequest(
+                "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
+            )
+        return self._standing_places.watch(query)
+
+    def on_renew(self, renewal: Renew) -> Done | Future[Done]:
+        """A standing query goes on, or ends."""
+        return self._standing_places.renew(renewal) or self._sparql.ask(renewal, self._map.seq)
+
+    def close(self) -> None:
+        """Answer no more."""
+        self._aside.shutdown(wait=False, cancel_futures=True)

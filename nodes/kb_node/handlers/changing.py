@@ -1,0 +1,143 @@
+"""What changes the map: one transaction, several, or the taking back of one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from typing import Protocol, TypeVar
+
+from nodes.kb_node import undo
+from nodes.kb_node.answers import trials
+from nodes.kb_node.documents import term_syntax
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
+from schemas import errors
+from schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
+from schemas.calls import Handler, by_verb
+from schemas.commits import Commit, Effects, Transaction
+
+Tell = Callable[[str], None]
+TellingOf = Callable[[str], AbstractContextManager[Tell]]
+"""Of a file's name: lets the heartbeat tell how far the loading of it is."""
+
+
+class Spread(Protocol):
+    """`spread(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
+
+    The coordinator is `told` of it by the reply.
+    """
+
+    def __call__(self, commit: Commit, /, *, told: bool, at_once: bool) -> None:  # noqa: D102
+        ...
+
+
+_FEW = 1000
+"""Entities that are added at once without a word on it."""
+C = TypeVar("C", Commit, Commit | None)
+
+
+class Changing:
+    """Commits what is asked for, and has everybody told: journal (durable), reply, publish."""
+
+    def __init__(
+        self,
+        semantic_map: SemanticMap,
+        journal: Journal,
+        *,
+        spread: Spread,
+        not_written: Callable[[NotWritten], None],
+        telling_of: TellingOf,
+    ) -> None:
+        """`spread` is called with each new commit, in order, before it is replied.
+
+        `not_written` is called with each one that the disk does not take.
+        """
+        self._map = semantic_map
+        self._journal = journal
+        self._spread = spread
+        self._not_written = not_written
+        self._telling_of = telling_of
+
+    def handlers(self) -> dict[str, Handler]:
+        """By verb."""
+        return by_verb(
+            Transaction.answered_by(self.on_commit),
+            Transactions.answered_by(self.on_commits),
+            TakeBack.answered_by(self.on_undo),
+            MadeBy.answered_by(self.on_made_by),
+        )
+
+    def on_commit(self, transaction: Transaction) -> Effects | None:
+        """One transaction."""
+        term_syntax.require_triples(transaction.insert)
+        if len(transaction.add) <= _FEW:
+            return self._transacted(transaction)
+        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
+            tell(f"{len(transaction.add):,} entities to check and write")
+            return self._transacted(transaction)
+
+    def _transacted(self, transaction: Transaction) -> Effects | None:
+        return self.changed(lambda: self._map.commit(transaction), transaction.dry_run, told=transaction.told)
+
+    def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
+        """Several transactions, each by itself, made durable once for all.
+
+        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        """
+        for transaction in several.transactions:
+            term_syntax.require_triples(transaction.insert)
+            if transaction.dry_run:
+                raise errors.BadRequest("a dry run cannot be combined with other transactions")
+        before = self._map.seq
+        results = self._map.commit_together(several.transactions)
+        for error in results:
+            if isinstance(error, NotWritten):
+                self._not_written(error)
+        for transaction, result in zip(several.transactions, results, strict=True):
+            if isinstance(result, Commit) and result.seq > before:
+                before = result.seq
+                self._spread(result, told=transaction.told, at_once=False)
+        return tuple(map(_outcome, results))
+
+    def on_undo(self, command: TakeBack) -> Effects | None:
+        """A commit that takes back another one."""
+        return self.changed(lambda: undo.undo(self._map, self._journal, command), command.dry_run)
+
+    def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
+        """The commits that some commands have made."""
+        return tuple(effects(self._journal.commit_of(id_)) for id_ in query.ids)
+
+    def changed(
+        self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
+    ) -> Effects | None:
+        """What `change` commits, and publishes; or would commit, in a dry run."""
+        if dry_run:
+            return trials.of(self._map, change)
+        return effects(self.published_if_new(change, told=told))
+
+    def published_if_new(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
+        """What `change` commits; published unless it is the answer to an old command.
+
+        `at_once`: its reply comes after others have been committed, which may take long.
+        """
+        before = self._map.seq
+        try:
+            commit = change()
+        except NotWritten as error:
+            self._not_written(error)
+            raise
+        if commit is not None and commit.seq > before:
+            self._spread(commit, told=told, at_once=at_once)
+        return commit
+
+
+def effects(commit: Commit | None) -> Effects | None:
+    """What a commit made of the entities, if there is one."""
+    return None if commit is None else Effects.of(commit)
+
+
+def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
+    if isinstance(result, errors.SemmapError):
+        return Outcome(error=errors.to_message(result))
+    return Outcome(commit=effects(result))

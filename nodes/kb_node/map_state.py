@@ -1,0 +1,211 @@
+"""What the map says as of its last commit, and everything that can be asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import TypeVar
+
+from msgspec import structs
+
+from nodes.kb_node.beliefs import Beliefs, Believed
+from nodes.kb_node.entities import entity_changes, entity_reading
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.places import Places
+from nodes.kb_node.progress import steadily
+from nodes.kb_node.reasoner import Reasoner
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.geometry.placed import Placed
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Commit, Snapshot, Star
+from schemas.entities import ClassInfo, Entity
+from schemas.explanations import Term, Triple
+
+T = TypeVar("T")
+
+
+class MapState:
+    """The TBox, what is asserted and computed, and the entities that these make. Owned by one thread."""
+
+    def __init__(self, tbox: frozenset[Triple], reasoner: Reasoner, progress: Callable[[], None]) -> None:
+        """A map of nothing but its TBox, which `reasoner` holds.
+
+        `progress` is called between the steps of long work.
+        """
+        self.progress = progress
+        self.exchange_tbox(tbox, reasoner)
+        self._following: Iterator[None] | None = None
+        self.follows = False
+        """Whether what is computed is worked out at each commit; not yet after a start."""
+        self.believes = False
+        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
+        self.by_name: dict[str, Entity] = {}
+        """The entities; changed by `take` and `give_back` only."""
+        self.places = Places(
+            self.by_name,
+            self.entities,
+            lambda p: self.reasoner.asserted(None, p, None),
+            lambda: self.classes.limits,
+            self._facts,
+        )
+        self.seq = 0
+        self.digest = ""
+        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
+
+    # Asking
+
+    def __len__(self) -> int:
+        return len(self.by_name)
+
+    def entity(self, name: str) -> Entity:
+        """The entity of that name. Raises UnknownName with the nearest ones."""
+        if name in self.by_name:
+            return self.by_name[name]
+        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.by_name)}")
+
+    def find(self, name: str) -> Entity | None:
+        """The entity of that name, if there is one."""
+        return self.by_name.get(name)
+
+    @property
+    def names(self) -> Collection[str]:
+        """Those of the entities."""
+        return self.by_name.keys()
+
+    def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
+        """The entities, or those of a class by inference, in the order of their names."""
+        if class_iri is None:
+            return (self.by_name[name] for name in sorted(self.by_name))
+        self.believe_places()
+        found = filter(None, map(self.known, self.reasoner.instances(class_iri)))
+        return iter(sorted(found, key=lambda entity: entity.name))
+
+    def snapshot(self) -> Snapshot:
+        """Every entity, as of the last commit."""
+        return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
+
+    def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
+        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
+        self.believe_places()
+        iris = [v.iri(self.entity(name).iri) for name in names]
+        leaving = frozenset(iris)
+        return tuple(
+            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            for iri in iris
+        )
+
+    def class_table(self) -> Iterator[ClassInfo]:
+        """The classes with the number of entities of each, asserted and inferred."""
+        return self.classes.counted(self.by_name.values())
+
+    def abox(self) -> list[Triple]:
+        """The asserted triples that are not the TBox's."""
+        tbox = self.tbox
+        return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
+
+    def inferred(self, name: str | None = None) -> Iterator[Triple]:
+        """What follows and was not said, about one entity or all. Raises UnknownName."""
+        self.believe_places()
+        for entity in [self.entity(name)] if name is not None else self.entities():
+            yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
+
+    def steadily(self, items: Iterable[T]) -> Iterator[T]:
+        """The items, for long work on them: the node tells meanwhile that it lives."""
+        return steadily(items, self.progress)
+
+    def all_believed(self) -> Believed:
+        """What is computed and what is set aside."""
+        self.believe_places()
+        return self.beliefs.all()
+
+    def placed(self) -> tuple[Placed, ...]:
+        """Where everything is."""
+        return tuple(map(Placed.of, self.by_name.values()))
+
+    def has(self, triple: Triple) -> bool:
+        """Is it asserted?"""
+        return any(self.reasoner.asserted(*triple))
+
+    def types_of(self, entity: Entity) -> tuple[str, ...]:
+        """The classes of an entity as it is now, by what is computed, too."""
+        return self.classes.spoken_types(self.reasoner.types(v.iri(entity.iri)))
+
+    def known(self, iri: Term) -> Entity | None:
+        """The entity with this IRI, as of the last commit."""
+        return entity_changes.known(self.by_name, iri)
+
+    # What is computed of where things are
+
+    def follow_places(self) -> None:
+        """Work out where everything is, if that was not done since the start.
+
+        Whoever asks what follows needs it, and the first commit.
+        """
+        while self.follow_some():
+            self.progress()
+
+    def follow_some(self) -> bool:
+        """Do a part of that, some tens of milliseconds; whether there is more to do."""
+        if self.follows:
+            return False
+        following, self._following = self._following or self._follow(), None
+        for _ in following:
+            self._following = following
+            return True
+        return False
+
+    def _follow(self) -> Iterator[None]:
+        self.beliefs.begin()
+        yield from self.beliefs.filling(self.by_name)
+        self.follows = self.believes = True
+        for name, entity in self.by_name.items():
+            types = self.types_of(entity)
+            if types != entity.types:
+                self.by_name[name] = structs.replace(entity, types=types)
+
+    def believe_places(self) -> None:
+        """Let the reasoner have what is computed of where things are, if it has not."""
+        if not self.believes:
+            self.follow_places()
+
+    def _facts(self) -> Facts | None:
+        """The relations that are computed, if any are, with their solids."""
+        self.follow_places()
+        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
+
+    def tidy(self) -> None:
+        """What a commit leaves to be done when nobody waits for it."""
+        self.beliefs.computed.facts.forget()
+
+    # Changing
+
+    def exchange_tbox(self, tbox: frozenset[Triple], reasoner: Reasoner) -> None:
+        """Let another TBox hold; `reasoner` holds it, and nothing else yet."""
+        self.tbox, self.reasoner = tbox, reasoner
+        self.classes = ClassTable(reasoner)
+        self.beliefs = Beliefs(reasoner, self.classes.limits, self.progress)
+
+    def take(self, commit: Commit) -> None:
+        """Let the entities show a commit that the reasoner has taken in already."""
+        self.seq, self.digest = commit.seq, commit.digest
+        self.places.take(commit.names, commit.retracted, commit.inserted)
+        for gone in commit.removed:
+            del self.by_name[gone.name]
+        self.show(commit.changed)
+
+    def give_back(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
+        """Let the entities be as before the last commit: those that it touched, None for what was not there.
+
+        `digest` is that of the commit before.
+        """
+        self.seq, self.digest = commit.seq - 1, digest
+        self.places.take(commit.names, commit.inserted, commit.retracted)
+        for name, entity in before.items():
+            if entity is None:
+                self.by_name.pop(name, None)
+            else:
+                self.by_name[name] = entity
+
+    def show(self, changed: Iterable[Entity]) -> None:
+        """Let entities be as these."""
+        self.by_name.update((entity.name, entity) for entity in changed)

@@ -1,0 +1,91 @@
+"""What a transaction changes: which triples go and come, and what is to be known of that."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection
+from typing import NamedTuple
+
+from nodes.kb_node import preconditions
+from nodes.kb_node.entities import entity_writing
+from nodes.kb_node.map_state import MapState
+from ontology import vocabulary as v
+from schemas import agents, errors, wording
+from schemas.commits import Commit, Transaction
+from schemas.explanations import Triple
+
+
+class Plan(NamedTuple):
+    """The triples that a transaction takes away, all of which are there, and adds, none of which is."""
+
+    retracted: tuple[Triple, ...]
+    inserted: tuple[Triple, ...]
+    notes: tuple[str, ...]
+    """What is to be known of that."""
+
+
+def of(state: MapState, transaction: Transaction) -> Plan | None:
+    """What a transaction changes of the map as it is; None when it changes nothing.
+
+    Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
+    what makes no sense; Refused when it takes away from the TBox.
+    """
+    retract, insert, notes = _spelled_out(state, transaction)
+    held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
+    preconditions.require(transaction, held)
+    wanted = dict.fromkeys(insert)
+    retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
+    inserted = tuple([t for t in wanted if t not in held]) if held else tuple(wanted)
+    if not retracted and not inserted:
+        return None
+    denied = state.places.taken_back(state.reasoner, state.classes, retracted, inserted)
+    retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
+    for triple in retracted:
+        if triple in state.tbox:
+            raise errors.Refused(f"the TBox says that {v.spoken(triple)}, and no command changes the TBox")
+    return Plan(retracted, inserted, (*notes, *denied.notes))
+
+
+def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
+    """The commit `seq` of a plan, by the transaction's author, without its effects and its digest."""
+    return Commit(
+        seq=seq,
+        stamp_ns=time.time_ns(),
+        id=transaction.id,
+        source=transaction.source,
+        agent=agents.name_of(transaction.agent),
+        authenticated=agents.is_proved(transaction.agent),
+        verb=transaction.verb,
+        reason=transaction.reason,
+        confidence=transaction.confidence,
+        undoes=transaction.undoes,
+        tbox=tbox,
+        retracted=plan.retracted,
+        inserted=plan.inserted,
+        notes=plan.notes,
+    )
+
+
+def _spelled_out(
+    state: MapState, transaction: Transaction
+) -> tuple[Collection[Triple], Collection[Triple], list[str]]:
+    """The triples that a transaction takes away and adds, its intents said in triples, too; and notes."""
+    remove, edit, add = transaction.remove, transaction.edit, transaction.add
+    if not (remove or edit or add):
+        return transaction.retract, transaction.insert, []
+    draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
+    draft.remove([state.entity(name) for name in state.steadily(remove)])
+    notes = list(state.places.left_behind(remove)) if remove else []
+    for one in state.steadily(edit):
+        draft.edit(state.entity(one.name), one)
+        if one.carry:
+            load = state.places.load_of(one, edit)
+            for other in load:
+                draft.edit(state.by_name[other.name], other)
+            if load or transaction.source == "operator":
+                notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
+    for new in state.steadily(add):
+        draft.add(new)
+    if not (transaction.retract or transaction.insert):
+        return draft.retract, draft.insert, notes
+    return [*transaction.retract, *draft.retract], [*transaction.insert, *draft.insert], notes

@@ -1,0 +1,96 @@
+"""What waits for a busy node: bounded, and taken from those who wait by turns.
+
+Whoever sends a thousand requests waits for them himself; another one's first comes next.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import Final, Generic, NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+EACH: Final = 1000
+"""How many things of one asker may wait."""
+ALL: Final = 4000
+"""How many things of all askers may wait."""
+ALL_BYTES: Final = 64 << 20
+"""How much memory the things that wait may take; a single larger one is let in where nothing else waits."""
+SOONEST_S: Final = 0.1
+LATEST_S: Final = 10.0
+"""Who finds it full is told to come again after as long as the first one has waited, within these [s]."""
+
+
+class _Waiting(NamedTuple, Generic[T]):
+    item: T
+    size: int
+    since_s: float
+
+
+class FairQueue(Generic[T]):
+    """Each asker has a queue, and these take turns. Any thread may use it."""
+
+    def __init__(self, *, each: int = EACH, everyone: int = ALL, size: int = ALL_BYTES) -> None:
+        """`size` is in bytes."""
+        self._each, self._everyone, self._size = each, everyone, size
+        self._urgent: deque[_Waiting[T]] = deque()
+        self._by_asker: dict[str, deque[_Waiting[T]]] = {}
+        self._next: deque[str] = deque()
+        """The askers of whom something waits, in the order of their turns."""
+        self._count = self._bytes = 0
+        self._lock = threading.Lock()
+
+    def __len__(self) -> int:
+        """How many things wait, urgent ones apart."""
+        return self._count
+
+    def put(self, asker: str, item: T, *, size: int = 0, urgent: bool = False) -> float | None:
+        """Let `item`, of `size` bytes, wait; or, when it is full, after how long [s] to come again.
+
+        What is `urgent` comes before everything else.
+        """
+        waiting = _Waiting(item, size, time.monotonic())
+        with self._lock:
+            if urgent:
+                if len(self._urgent) >= self._each:
+                    return self._again_s(self._urgent, waiting.since_s)
+                self._urgent.append(waiting)
+                return None
+            own = self._by_asker.get(asker)
+            if own is not None and len(own) >= self._each:
+                return self._again_s(own, waiting.since_s)
+            if self._count >= self._everyone or (self._count and self._bytes + size > self._size):
+                return self._again_s(self._by_asker[self._next[0]], waiting.since_s)
+            if own is None:
+                own = self._by_asker[asker] = deque()
+                self._next.append(asker)
+            own.append(waiting)
+            self._count += 1
+            self._bytes += size
+        return None
+
+    def take(self, *, urgent_only: bool = False) -> T | None:
+        """The next one, if there is one."""
+        if not self._count and not self._urgent:
+            return None
+        with self._lock:
+            if self._urgent:
+                return self._urgent.popleft().item
+            if urgent_only or not self._next:
+                return None
+            asker = self._next.popleft()
+            own = self._by_asker[asker]
+            waiting = own.popleft()
+            if own:
+                self._next.append(asker)
+            else:
+                del self._by_asker[asker]
+            self._count -= 1
+            self._bytes -= waiting.size
+            return waiting.item
+
+    @staticmethod
+    def _again_s(queue: deque[_Waiting[T]], now_s: float) -> float:
+        return min(max(now_s - queue[0].since_s, SOONEST_S), LATEST_S)

@@ -1,0 +1,237 @@
+"""Computed facts that come together leave what they leave one by one."""
+
+import random
+from functools import partial
+
+import pytest
+
+from nodes.kb_node.reasoner import Inconsistent, Reasoner
+from nodes.kb_node.reasoner.abox.saturation import Saturation
+from nodes.kb_node.reasoner.fastpaths import paths
+from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
+from nodes.kb_node.reasoner.terms import TYPE
+from tests.kb_node.reasoner.graphs import triple, triples
+from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, TRANSITIVE, World
+
+STEPS = 12
+CHAINS = [text for text in AXIOMS if "Chain" in text] * 5 + [
+    text for text in AXIOMS if text.startswith("{p}")
+]
+VALUES = [
+    "{e} owl:equivalentClass {e}",
+    "{e} rdfs:subClassOf {e}",
+    "{p} rdfs:domain {c}",
+    "{p} rdfs:range {c}",
+]
+THEMES = {
+    "everything": AXIOMS,
+    "keys": KEYS,
+    "nominals": NOMINALS,
+    "transitive": TRANSITIVE,
+    "chains": CHAINS,
+    "values": [*AXIOMS, *VALUES * 10],
+    "restrictions": VALUES,
+}
+HOME = triples("""
+:isOn a owl:ObjectProperty , owl:AsymmetricProperty ; owl:inverseOf :bears ;
+    owl:propertyDisjointWith :isInside .
+:bears a owl:ObjectProperty . :isInside a owl:ObjectProperty , owl:IrreflexiveProperty .
+:isIn a owl:ObjectProperty ; rdfs:range :Place ;
+    owl:propertyChainAxiom ( :isOn :isIn ) , ( :isIn :isPartOf ) .
+:isPartOf a owl:ObjectProperty , owl:TransitiveProperty ; rdfs:subPropertyOf :isIn .
+:Place owl:disjointWith :Thing . :Laden a owl:Class ; owl:onProperty :bears ; owl:someValuesFrom :Thing .
+:Laden rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :affords ; owl:hasValue :putting ] .
+:kitchen :isPartOf :flat . :table a :Thing .
+""")
+
+
+@pytest.fixture(autouse=True)
+def comparable(monkeypatch):
+    """`together` and `singly` set it. One who departs may take along what is computed, which others keep."""
+    monkeypatch.setattr(paths, "MANY", paths.MANY)
+    monkeypatch.setattr(paths, "depart", lambda *_: None)
+
+
+def together(reasoner, **change):
+    """Let a reasoner take each change by columns, however small."""
+    paths.MANY = 1
+    reasoner.believe(**change)
+
+
+def singly(reasoner, **change):
+    """Let a reasoner take each change edge by edge, however large."""
+    paths.MANY = 10**9
+    reasoner.believe(**change)
+
+
+def state(reasoner):
+    individuals = {term for s, p, o in reasoner.given() for term in (s, o) if p != TYPE and term[0] == "<"}
+    return (
+        set(reasoner.asserted()),
+        set(reasoner.computed()),
+        set(reasoner.inferred()),
+        {individual: reasoner.types(individual) for individual in individuals},
+    )
+
+
+def is_done(change):
+    """Whether a change is made."""
+    try:
+        change()
+    except Inconsistent:
+        return False
+    return True
+
+
+def follow(seed, theme):
+    """One world, to which computed facts come together, and one to which they come singly."""
+    world, random_ = World(seed, theme), random.Random(seed)
+    try:
+        pair = [Reasoner(world.asserted), Reasoner(world.asserted)]
+    except Inconsistent:
+        return 0
+    taken = 0
+    for _ in range(STEPS):
+        some = None
+        if random_.random() < 0.6:
+            facts = [
+                fact for fact in (world._fact() for _ in range(random_.randint(1, 12))) if fact[1] != TYPE
+            ]
+            there = sorted(pair[0].computed())
+            gone = random_.sample(there, min(len(there), random_.choice((0, 0, 1, 3))))
+            change = {"come": facts, "gone": gone}
+            ways = [partial(way, one, **change) for way, one in zip((together, singly), pair, strict=True)]
+        else:
+            facts, some = [], world.change()
+            change = some._asdict()
+            ways = [partial(one.apply, **change) for one in pair]
+        before = [state(one) for one in pair]
+        done = [is_done(way) for way in ways]
+        assert done[0] == done[1], change
+        if not done[0]:
+            assert [state(one) for one in pair] == before, change
+        elif some:
+            world.accept(some)
+        else:
+            taken += len(facts)
+        assert state(pair[0]) == state(pair[1]), change
+    return taken
+
+
+@pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
+def test_they_are_as_those_that_come_singly(theme):
+    assert sum(follow(seed, theme) for seed in range(12)) > 100
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
+def test_many_times(theme):
+    for _ in range(1500):
+        seed = random.randrange(10**9)
+        print(seed)  # shown if it fails
+        follow(seed, theme)
+
+
+def at_home(tables, per_table):
+    """A kitchen with tables, cups on them, and all of them in the kitchen; a chair without a place on one."""
+    said, seen = list(HOME), []
+    for n in range(tables):
+        said += triples(f":t{n} a :Thing .")
+        seen.append(f":t{n} :isIn :kitchen")
+        for k in range(per_table):
+            said += triples(f":c{n}_{k} a :Thing .")
+            seen += [f":c{n}_{k} :isOn :t{n}", f":c{n}_{k} :isIn :kitchen"]
+    return said, [triple(text) for text in (*seen, ":chair :isOn :t0")]
+
+
+def test_a_home_is_as_one_whose_things_came_singly():
+    said, seen = at_home(6, 7)
+    pair = Reasoner(said), Reasoner(said)
+    together(pair[0], come=seen)
+    for fact in seen:
+        singly(pair[1], come=[fact])
+    assert state(pair[0]) == state(pair[1])
+    for text in (
+        ":c5_6 :isIn :flat",
+        ":chair :isIn :flat",
+        ":t5 a :Laden",
+        ":t5 :affords :putting",
+        ":t5 :bears :c5_6",
+    ):
+        assert pair[0].follows(triple(text)), text
+    assert not pair[0].holds(triple(":c5_6 a :Laden"))
+    for one in pair:
+        one.believe(gone=seen)
+    assert state(pair[0]) == state(pair[1]) == state(Reasoner(said))
+
+
+FAULTS = [
+    ":t3 :isOn :c3_0",  # what is asymmetric
+    ":c2_1 :isInside :t2",  # what excludes another
+    ":c1_1 :isIn :t1",  # the wrong class
+    ":c0_0 :isInside :c0_0",  # what is irreflexive
+]
+
+
+@pytest.mark.parametrize(
+    ("fault", "is_there"), [*((fault, False) for fault in FAULTS), *((fault, True) for fault in FAULTS[:2])]
+)
+def test_many_that_contradict_the_rest_are_refused_with_an_explanation(fault, is_there):
+    said, seen = at_home(4, 3)
+    fault = triple(fault)
+    reasoner = Reasoner([*said, fault] if is_there else said)
+    before = state(reasoner)
+    with pytest.raises(Inconsistent) as refusal:
+        together(reasoner, come=seen if is_there else [*seen, fault])
+    support = refusal.value.explanation.support
+    assert fault in support
+    assert state(reasoner) == before
+    together(reasoner, come=[fact for fact in seen if fact not in support])
+
+
+def test_what_is_there_already_is_not_there_twice():
+    said, seen = at_home(2, 2)
+    reasoner = Reasoner([*said, seen[0]])
+    together(reasoner, come=[*seen, *seen])
+    together(reasoner, come=seen)
+    assert sorted(reasoner.computed()) == sorted(set(seen) - {seen[0]})
+
+
+def test_what_followed_and_is_computed_now_outlives_its_reason():
+    said, seen = at_home(1, 1)
+    cup_in_flat, cup_in_kitchen = triple(":c0_0 :isIn :flat"), triple(":c0_0 :isIn :kitchen")
+    reasoner = Reasoner(said)
+    together(reasoner, come=seen)
+    assert not reasoner.is_computed(cup_in_flat)
+    together(reasoner, come=[cup_in_flat])
+    reasoner.believe(gone=[cup_in_kitchen, triple(":t0 :isIn :kitchen")])
+    assert reasoner.holds(cup_in_flat)
+    assert not reasoner.holds(cup_in_kitchen)
+
+
+def test_most_of_a_home_is_not_looked_at_singly(monkeypatch):
+    said, seen = at_home(6, 7)
+    reasoner = Reasoner(said)
+    asked = []
+    monkeypatch.setattr(Saturation, "_look_at", lambda _, edge: asked.append(edge))
+    together(reasoner, come=[fact for fact in seen if fact[0] != triple(":chair :isOn :t0")[0]])
+    # that it is in the flat follows for each in the kitchen; no more does
+    assert len(asked) <= len(seen) / 2 + 6
+
+
+def test_holes_are_filled_before_there_are_more_edges():
+    said, seen = at_home(6, 7)
+    reasoner = Reasoner(said)
+    store = reasoner._engine._abox.store
+    together(reasoner, come=seen)
+    length = len(store.subject)
+    for _ in range(3):
+        reasoner.believe(gone=seen)
+        together(reasoner, come=seen)
+    assert len(store.subject) <= length + 256
+
+
+def test_few_are_taken_singly(monkeypatch):
+    monkeypatch.setattr(ManyEdges, "insert", None)
+    said, seen = at_home(1, 2)
+    Reasoner(said).believe(come=seen)

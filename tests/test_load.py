@@ -1,0 +1,67 @@
+"""A whole system under more than it can do: refused or done, and nothing lost silently."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import Counter
+
+import pytest
+import zenoh
+
+from nodes import bus
+from schemas import codec, keys
+from tests.conftest import running, until
+
+PUTS = 4000
+LOOK_S = 0.05
+PATIENT_S = 3.0
+"""What `status` may take here, where other tests run beside; 0.2 s is what is promised of a quiet machine."""
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("load") / "data", "--no-sim", "--no-record") as system:
+        yield system
+
+
+def test_puts_without_end_are_done_or_refused_and_the_status_is_told_meanwhile(system):
+    acks: dict[str, str] = {}
+    flooding = threading.Event()
+
+    def flood(who: str) -> None:
+        with bus.open_session(bus.Network(connect=(system.endpoint,))) as session:
+            flooding.wait()
+            for number in range(PUTS):
+                command = {"id": f"{who}{number}", "name": "fridge1", "ref": f"{who} {number}"}
+                session.put(
+                    f"{keys.CMD}/update",
+                    codec.encode(command),
+                    congestion_control=zenoh.CongestionControl.BLOCK,
+                )
+
+    def told(_: str, ack) -> None:
+        acks[ack.id] = "done" if ack.ok else ack.error.code
+
+    floods = [threading.Thread(target=flood, args=(who,)) for who in "ab"]
+    with bus.open_session(bus.Network(connect=(system.endpoint,))) as session, system.client() as client:
+        bus.follow(session, keys.ACK, told)
+        time.sleep(1.0)
+        for thread in floods:
+            thread.start()
+        before = client.status().commit
+        flooding.set()
+        took_s = []
+        deadline_s = time.monotonic() + 60.0
+        while len(acks) < 2 * PUTS and time.monotonic() < deadline_s:
+            began_s = time.monotonic()
+            client.status()
+            took_s.append(time.monotonic() - began_s)
+            time.sleep(LOOK_S)
+        for thread in floods:
+            thread.join()
+        assert len(acks) == 2 * PUTS
+        ended = Counter(acks.values())
+        assert set(ended) == {"done", "busy"}
+        assert until(lambda: client.status().commit - before == ended["done"], "all that was done is there")
+        assert max(took_s) < PATIENT_S
