@@ -349,13 +349,14 @@ TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
 class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
-    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts.
+    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts; with `as_of` those of then.
 
     It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
     """
 
     query: QueryText
     inferred: bool = False
+    as_of: When | None = None
     timeout: TimeLimit = 5.0
     limit: RowLimit = 10_000
 

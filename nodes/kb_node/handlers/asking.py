@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, questions, whereabouts
+from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.reasoner import Held
@@ -65,6 +65,7 @@ class Asking:
         self._map = semantic_map
         self._sparql = sparql
         self._standing_places = standing_places
+        self._journal = journal
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
@@ -148,7 +149,13 @@ class Asking:
         if (measured := self._now.measured(query)) is not None:
             return measured
         asked = questions.of_explain(self._map, query)
-        return self._now.explained(query, asked) or self._tried(questions.explain, asked)
+        found = self._now.explained(query, asked)
+        if found is None:
+            return self._tried(questions.explain, asked)
+        if not found.measured:
+            return found.explanation
+        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, began)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""
@@ -197,7 +204,9 @@ class Asking:
         )
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
-        """A query, evaluated beside the node's own work."""
+        """A query, evaluated beside the node's own work; of the past, in a process of its own."""
+        if query.as_of is not None:
+            return self._aside.submit(map_then.ask_then, self._journal, self._past, query)
         return self._sparql.ask(query, self._map.seq, self._asker())
 
     def on_watch(self, query: Watch) -> Watching | Future[Watching]:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import accumulate
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from msgspec import MsgspecError, Struct, structs
 
@@ -29,6 +29,7 @@ from schemas import errors
 from schemas.commits import Commit
 
 log = logging.getLogger(__name__)
+T = TypeVar("T")
 
 FILENAME = "journal.sqlite"
 _SCHEMA = """
@@ -229,6 +230,10 @@ class Journal:
     def commits(self, after: int | None = None) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
         return (_signed(row.body, row.digest) for row in self.rows(after))
+
+    def outlines(self, kind: type[T]) -> Iterator[T]:
+        """All commits in order, of each what `kind` has fields for. Raises Damaged at the first damaged."""
+        return (dense.decode(row.body, kind) for row in self.rows())
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read everything that counts. Raises Damaged at the first damaged commit, Refused for the rest."""
