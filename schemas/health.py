@@ -6,8 +6,8 @@ from typing import Literal
 
 from msgspec import Struct
 
-LOADING = "loading"
-"""With this word the knowledge base's detail begins while it loads a file."""
+WORKING = ("loading ", "undoing ", "removing ")
+"""With one of these words the knowledge base's detail begins while a large change takes long."""
 
 
 class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

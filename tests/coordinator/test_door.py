@@ -413,6 +413,13 @@ def test_a_property_is_set_and_unset(door):
     add(door, name="chair2")
     none = door.change(c.Unset(name="chair2", property="isOpen"))
     assert none.text == "chair2: unchanged: isOpen is not set"
+    follows = door.change(c.Unset(name="chair2", property="fits"))
+    assert follows.text == (
+        "chair2: unchanged: fits is not set, but kitchen follows; for the reason:"
+        " semmap explain chair2 fits kitchen"
+    )
+    other = door.change(c.Unset(name="chair2", property="fits", value="chair1"))
+    assert other.text == "chair2: unchanged: fits is not set"
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
         door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):

@@ -59,7 +59,7 @@ class Loading:
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.foresee(load.id, content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
-        with self._telling_of(load.filename) as tell:
+        with self._telling_of(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
                 content,
                 load.filename,

@@ -42,7 +42,7 @@ class Past:
         else:
             self._require_known(query.name)
             seqs = self._journal.touching(query.name, after=first - 1, until=last)[-query.limit :]
-        changes = Changelog(self._journal, self._said_by_the_first_tbox)
+        changes = Changelog(self._journal, self.said_by_the_first_tbox)
         commits = map(self._journal.commit, seqs)
         return tuple(_logged(commit, changes.of(commit, query.name)) for commit in commits)
 
@@ -58,7 +58,7 @@ class Past:
 
         Raises Refused when there was no map, UnknownClass, BadRequest.
         """
-        there = self._there(self._commit_at(when))
+        there = self._there(self.commit_at(when))
         if class_name is None:
             return there
         classes = {t for entity in there for t in entity.types}.union(known)
@@ -70,7 +70,7 @@ class Past:
 
     def _there(self, seq: int) -> tuple[Entity, ...]:
         """The entities after a commit, in the order of names."""
-        there = dict(self._said_by_the_first_tbox())
+        there = dict(self.said_by_the_first_tbox())
         names_by_seq: dict[int, list[str]] = {}
         for name, touched in self._journal.last_touches(seq):
             names_by_seq.setdefault(touched, []).append(name)
@@ -83,12 +83,12 @@ class Past:
 
     def entity(self, name: str, when: When) -> Entity:
         """One entity as it was. Raises UnknownName, Refused when there was no map, BadRequest."""
-        seq = self._commit_at(when)
+        seq = self.commit_at(when)
         touching = self._journal.touching(name, until=seq)
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
         else:
-            entity = self._said_by_the_first_tbox().get(name)
+            entity = self.said_by_the_first_tbox().get(name)
         if entity is None:
             known = [there for there, _ in self._journal.last_touches(seq)]
             hint = errors.did_you_mean(name, known) if name not in known else ""
@@ -105,14 +105,14 @@ class Past:
             if entity is not None:
                 return sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self._said_by_the_first_tbox()[name], removed)
+        return sighting(self.said_by_the_first_tbox()[name], removed)
 
     def _require_known(self, name: str) -> None:
-        if name not in self._said_by_the_first_tbox() and not self._journal.touching(name):
+        if name not in self.said_by_the_first_tbox() and not self._journal.touching(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             raise errors.UnknownName(f"no entity was ever named '{name}'{errors.did_you_mean(name, known)}")
 
-    def _said_by_the_first_tbox(self) -> Mapping[str, Entity]:
+    def said_by_the_first_tbox(self) -> Mapping[str, Entity]:
         """The entities of the map before the first commit."""
         if self._first is None:
             tbox = rdf.parse(self._journal.tbox(0), "the first TBox")
@@ -123,7 +123,7 @@ class Past:
                 self._first.update((entity.name, entity) for entity in said)
         return self._first
 
-    def _commit_at(self, when: When) -> int:
+    def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > time.time_ns():

@@ -41,9 +41,10 @@ def ask(
     format: Format | None,
     timeout: float,
     limit: int,
+    as_of: str | None,
 ) -> None:
     """Print the answer; without a format, a table of rows, the verdict, or Turtle for a graph."""
-    result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit)
+    result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit, as_of=as_of)
     format = format or ("turtle" if result.kind == "graph" else "table")
     if format != "table" or result.kind == "ask":
         sys.stdout.write(output.sparql_formats.text(result, format))
