@@ -183,7 +183,7 @@ def read(path: Path, label_prefix: str = "") -> list[Triple]:
 
 
 def _file_below(folders: Iterable[Path], iri: str) -> Path | None:
-    """The file of a `file:` IRI, if it is in one of these folders: an ontology does not choose what is read."""
+    """The file of a `file:` IRI, if it is below one of these folders: no ontology has any other file read."""
     if not iri.startswith("file:"):
         return None
     path = Path(unquote(urlsplit(iri).path)).resolve()
