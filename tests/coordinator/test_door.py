@@ -404,6 +404,8 @@ def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
 def test_what_takes_the_place_of_something_else_is_one_commit(door):
     with pytest.raises(errors.BadRequest, match="without --parts"):
         door.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
+    with pytest.raises(errors.BadRequest, match="--tbox makes one commit"):
+        door.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
 
 
 def test_a_property_is_set_and_unset(door):
