@@ -268,6 +268,12 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
     assert set(door.map.entities) == {"chair1"}
 
 
+def test_an_undo_under_the_id_of_another_command_is_answered_as_that(door):
+    door.change(c.Add(class_="Chair", name="chair1", id="x"))
+    assert door.change(c.Undo(id="x")).text == "already done: add Chair chair1"
+    assert set(door.map.entities) == {"chair1"}
+
+
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
