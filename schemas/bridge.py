@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta, Struct, field
 
-from schemas.calls import Call
+from schemas.calls import DOCUMENT, MANY, Call
 from schemas.commands import (
     Backup,
     Check,
@@ -64,6 +64,8 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The stars of these entities, taken together; UnknownName if one is not there."""
 
+    LARGEST: ClassVar[int] = MANY
+
     VERB: ClassVar[str] = "star"
 
     names: tuple[str, ...]
@@ -84,6 +86,8 @@ class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fi
 class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The commits that these commands have made already; None for a command that has made none."""
 
+    LARGEST: ClassVar[int] = MANY
+
     VERB: ClassVar[str] = "made-by"
 
     ids: tuple[CommandId, ...]
@@ -100,6 +104,8 @@ class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown
 class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Several changes, each accepted or refused by itself in this order, and made durable together."""
 
+    LARGEST: ClassVar[int] = DOCUMENT
+
     VERB: ClassVar[str] = "commits"
 
     transactions: tuple[Transaction, ...]
@@ -107,6 +113,8 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Add an ABox in any RDF syntax, with `replace` instead of the present one; see `commands.Load`."""
+
+    LARGEST: ClassVar[int] = DOCUMENT
 
     VERB: ClassVar[str] = "load"
 
@@ -128,6 +136,8 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     `spatial_root` are the classes of things in space, by IRI or name, where that is not known by itself.
     """
+
+    LARGEST: ClassVar[int] = DOCUMENT
 
     VERB: ClassVar[str] = "load-tbox"
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Self, get_args, get_origin
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, NamedTuple, Self, get_args, get_origin
 
 from msgspec import Struct
 
@@ -29,6 +29,8 @@ class Call(Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=
 
     VERB: ClassVar[str]
     """The last chunk of the key at which it is asked; it is a field of the message in commands only."""
+    LARGEST: ClassVar[int] = 1 << 20
+    """Bytes that such a message may have, encoded. What takes more than that to say is said in a document."""
 
     @classmethod
     def answered_by(cls, function: Callable[[Self], R | Future[R] | Relay[R]]) -> Handler:
@@ -50,6 +52,17 @@ class Relay(Generic[R]):
     prefix: str
     call: Call[R]
     timeout_s: float
+
+
+MANY: Final = 64 << 20
+"""Bytes: names or poses of a million things."""
+DOCUMENT: Final = (1 << 30) + (1 << 20)
+"""Bytes: a file, as large as one is read, and what goes with it."""
+
+
+def largest(kind: Any) -> int:
+    """How many bytes a message of this type may have, encoded."""
+    return getattr(kind, "LARGEST", Call.LARGEST)
 
 
 @cache

@@ -157,7 +157,12 @@ def stated_in_words(stated: Stated) -> str:
 
 
 def _shown(values: Iterable[Value]) -> str:
-    return ", ".join(str(value).lower() if isinstance(value, bool) else str(value) for value in values)
+    return ", ".join(map(value_in_words, values))
+
+
+def value_in_words(value: Value) -> str:
+    """A value as people write it; an empty text in quotation marks."""
+    return str(value).lower() if isinstance(value, bool) else str(value) or "''"
 
 
 def _quoted(values: Iterable[Value]) -> str:

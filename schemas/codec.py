@@ -4,46 +4,29 @@ from __future__ import annotations
 
 import re
 import types
-import zlib
 from collections.abc import Mapping
 from typing import Any, Final, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
-from schemas.errors import BadRequest
+from schemas.errors import BadRequest, shortened
 from schemas.wording import sentence
 
 T = TypeVar("T")
 
 MALFORMED: Final = "malformed message: "
 """How an error about a message that cannot be read begins."""
-DENSE_FROM: Final = 64 << 20
-"""Bytes; Zenoh carries messages of up to 256 MB, and a map of a million triples is more."""
-LARGEST: Final = 4 << 30
-"""Bytes that a message may unfold to."""
-DENSITY: Final = 1
-"""How hard zlib tries: not very."""
-_SAMPLE: Final = 1 << 16
-"""Bytes."""
-_DENSE: Final = b"x"
-"""How zlib's format begins, and no MessagePack map."""
+_JSON: Final = re.compile(rb"\s*\{")
 _encoder = msgspec.msgpack.Encoder()
 _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 
 
-def encode(message: Any, *, dense_from: int = DENSE_FROM) -> bytes:
-    """`message` as MessagePack, compressed (zlib) from `dense_from` bytes on; `decode` takes both.
-
-    What is compressed already, as a packed file is, stays as it is.
-    Raises BadRequest for text that cannot be written as UTF-8.
-    """
+def encode(message: Any) -> bytes:
+    """`message` as MessagePack. Raises BadRequest for text that cannot be written as UTF-8."""
     try:
-        payload = _encoder.encode(message)
+        return _encoder.encode(message)
     except UnicodeEncodeError as error:
-        raise BadRequest(f"a text is not UTF-8: {error.object!r}") from None
-    if len(payload) < dense_from or _is_dense(payload):
-        return payload
-    return zlib.compress(payload, DENSITY)
+        raise BadRequest(f"a text is not UTF-8: {shortened(repr(error.object))}") from None
 
 
 def encode_json(message: Any) -> bytes:
@@ -51,38 +34,20 @@ def encode_json(message: Any) -> bytes:
     return msgspec.json.format(msgspec.json.encode(message), indent=2)
 
 
-def decode(payload: bytes, kind: type[T] | Any) -> T:
-    """The message in `payload`, MessagePack or a JSON object. Raises BadRequest naming the field at fault."""
+def decode(payload: bytes | bytearray, kind: type[T] | Any) -> T:
+    """The message in `payload`, MessagePack or a JSON object. Raises BadRequest naming the field at fault.
+
+    Nothing is unpacked: a message takes memory in proportion to its own size.
+    """
     try:
         if looks_like_json(payload):
             return msgspec.json.decode(payload, type=kind)
-        if payload[:1] == _DENSE:
-            payload = _unfolded(payload)
         decoder = _decoders.get(kind)
         if decoder is None:
             decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
         return decoder.decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
-
-
-def _is_dense(payload: bytes) -> bool:
-    """Would compressing it hardly make it smaller? For a large payload a sample from its middle tells."""
-    middle = len(payload) // 2
-    sample = payload[middle : middle + _SAMPLE]
-    return len(payload) >= 16 * _SAMPLE and len(zlib.compress(sample, DENSITY)) > 0.9 * len(sample)
-
-
-def _unfolded(payload: bytes) -> bytes:
-    unfolding = zlib.decompressobj()
-    try:
-        content = unfolding.decompress(payload, LARGEST)
-    except zlib.error as error:
-        raise BadRequest(f"{MALFORMED}it is not valid MessagePack, JSON or zlib: {error}") from None
-    if not unfolding.eof:
-        reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
-        raise BadRequest(f"{MALFORMED}it {reason}")
-    return content
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
@@ -103,9 +68,9 @@ def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
         raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
 
 
-def looks_like_json(payload: bytes) -> bool:
+def looks_like_json(payload: bytes | bytearray) -> bool:
     """A JSON object begins with a brace, which no MessagePack map does."""
-    return payload.lstrip()[:1] == b"{"
+    return payload[:1] == b"{" or _JSON.match(payload) is not None
 
 
 def encoding_of(message: Any) -> str:

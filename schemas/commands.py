@@ -7,12 +7,12 @@ alike. Positions and sizes are metres in the map frame, angles are radians.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta, field, structs
 
 from schemas.backups import BackupPart
-from schemas.calls import Call, R
+from schemas.calls import DOCUMENT, MANY, Call, R
 from schemas.entities import (
     Angle,
     ClassInfo,
@@ -159,6 +159,8 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
 
+    LARGEST: ClassVar[int] = MANY
+
     names: tuple[str, ...]
     dry_run: bool = False
 
@@ -185,6 +187,8 @@ class Load(Command[Changed], frozen=True, tag="load"):
     A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
     when one part is refused, those before it stay, and the error says so.
     """
+
+    LARGEST: ClassVar[int] = DOCUMENT
 
     content: bytes
     filename: str = ""
@@ -370,13 +374,14 @@ TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
 class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
-    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts.
+    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts; with `as_of` those of then.
 
     It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
     """
 
     query: QueryText
     inferred: bool = False
+    as_of: When | None = None
     timeout: TimeLimit = 5.0
     limit: RowLimit = 10_000
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 from msgspec import Struct, structs
 
 from schemas import errors
-from schemas.calls import Call
+from schemas.calls import DOCUMENT, Call
 from schemas.entities import (
     Angle,
     CommandId,
@@ -253,6 +253,8 @@ class Transaction(
     settling). `undoes` are the commits that it takes back.
     """
 
+    LARGEST: ClassVar[int] = DOCUMENT
+
     VERB: ClassVar[str] = "commit"
     id: CommandId
     source: Source
@@ -278,10 +280,11 @@ MANY_TRIPLES = 20 * MANY_ENTITIES
 """A commit with more than either is abridged when it is passed on."""
 
 
-def abridged(commit: Commit) -> Commit:
-    """`commit` as it is passed on: one that is very large without its triples and entities."""
+def abridged(commit: Commit, *, always: bool = False) -> Commit:
+    """`commit` as it is passed on: one that is very large (or `always`) without its triples and entities."""
     triples = len(commit.inserted) + len(commit.retracted)
-    if triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES:
+    is_small = triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES
+    if is_small and not always:
         return commit
     return structs.replace(
         commit, abridged=commit.extent, places=None, retracted=(), inserted=(), changed=(), removed=()

@@ -180,6 +180,8 @@ def shortened(text: str, most: int = LONGEST_TEXT) -> str:
 
 
 SKIP_UNKNOWN = "; --skip-unknown leaves these out"
+_A_WORD = 4
+"""Letters of a word that may be looked for within others."""
 _FEW = 10
 _MANY = 30
 
@@ -191,7 +193,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Up to three of `known`, nearest first. A client, which knows few names, may be without RapidFuzz."""
+    """Up to three of `known`: those first that the word is a part of, then the nearest.
+
+    A client, which knows few names, may be without RapidFuzz.
+    """
     if len(word) > _LONGEST_WORD:
         return []  # nobody meant it, and to compare it takes as long as it is
     try:
@@ -200,10 +205,13 @@ def nearest(word: str, known: Iterable[str]) -> list[str]:
         import difflib
 
         return difflib.get_close_matches(word, list(known))
+    names, part = list(known), word.casefold()
     near = process.extract(
-        word, list(known), scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
+        word, names, scorer=fuzz.ratio, processor=utils.default_process, limit=3, score_cutoff=60
     )
-    return [name for name, _, _ in near]
+    longer = [name for name in names if part in name.casefold()] if len(part) >= _A_WORD else []
+    longer.sort(key=lambda name: (len(name), name))
+    return list(dict.fromkeys([*longer[:2], *(name for name, _, _ in near)]))[:3]
 
 
 def enumerated(names: Sequence[str]) -> str:

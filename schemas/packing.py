@@ -14,6 +14,8 @@ PACKED_FROM: Final = 32 << 20
 """Bytes; smaller files travel as they are."""
 LARGEST: Final = 1 << 30
 """Bytes that a file may have, packed or not: some millions of triples, and an end for what has none."""
+_MEMBERS: Final = 1000
+"""Pieces that a packed file may have: gzip files may be put one after the other, and each takes its time."""
 _MAGIC: Final = b"\x1f\x8b"
 """How gzip's format begins; no text does."""
 _GZIP: Final = 31
@@ -33,6 +35,10 @@ def unpacked(content: bytes, filename: str) -> bytes:
     size, rest = 0, content if content.startswith(_MAGIC) else b""
     try:
         while rest:
+            if len(members) == _MEMBERS:
+                raise BadFile(
+                    f"{_called(filename)} is packed in more than {_MEMBERS:,} pieces; pack it as one"
+                )
             member = zlib.decompressobj(wbits=_GZIP)
             members.append(member.decompress(rest, LARGEST + 1 - size))
             size += len(members[-1])

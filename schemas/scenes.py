@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta, Struct, field
 
-from schemas.calls import Call
+from schemas.calls import MANY, Call
 from schemas.entities import Name, Pose, Size
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
@@ -61,6 +61,8 @@ class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Spawn(Call[Spawned], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Make bodies, all in one go; each succeeds or fails by itself."""
 
+    LARGEST: ClassVar[int] = MANY
+
     VERB: ClassVar[str] = "spawn"
     bodies: tuple[BodyOrder, ...]
 
@@ -73,6 +75,8 @@ class Deleted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 class Delete(Call[Deleted], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take bodies away; one that is not there is no error."""
+
+    LARGEST: ClassVar[int] = MANY
 
     VERB: ClassVar[str] = "delete"
     names: tuple[str, ...]
@@ -95,6 +99,8 @@ class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Put bodies elsewhere: kinematically, then released to physics."""
+
+    LARGEST: ClassVar[int] = MANY
 
     VERB: ClassVar[str] = "move"
     placements: tuple[Placement, ...]

@@ -13,8 +13,11 @@ from tests.conftest import running, until
 
 @contextmanager
 def full(data, pid):
-    """The operating system lets the process make no file larger than the largest of the journal's."""
-    size = max(path.stat().st_size for path in data.glob("journal.sqlite*"))
+    """The operating system lets the process write nowhere beyond the size of the journal.
+
+    Its log is longer from the beginning.
+    """
+    size = (data / "journal.sqlite").stat().st_size
     limits = resource.prlimit(pid, resource.RLIMIT_FSIZE)
     resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, limits[1]))
     yield

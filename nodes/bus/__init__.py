@@ -3,6 +3,7 @@
 from nodes.bus import own_config
 from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
 from nodes.bus.lifelines import Lifelines, appear, follow_presence
+from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import (
@@ -24,7 +25,10 @@ from nodes.bus.session import (
 __all__ = [
     "DEFAULT_ENDPOINT",
     "FOREVER_S",
+    "MESSAGE",
     "PATIENCE_S",
+    "PIECE",
+    "PUBLISHED",
     "RESTART_S",
     "TIMEOUT_S",
     "TLS",

@@ -19,9 +19,11 @@ from typing import Any, Final, NoReturn
 import zenoh
 from msgspec import Struct
 
+from nodes.bus import pieces
 from nodes.bus.lifelines import Lifelines
 from nodes.bus.session import PATIENCE_S
 from schemas import codec, errors, keys
+from schemas.replies import Done
 
 log = logging.getLogger(__name__)
 
@@ -62,13 +64,14 @@ class Patience:
 class Encoded(Struct, frozen=True):
     """A message as it came: to be decoded, or passed on."""
 
-    payload: zenoh.ZBytes
+    payload: zenoh.ZBytes | bytearray
     encoding: zenoh.Encoding
     kind: Any
 
     def decode(self) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
-        return codec.decode(self.payload.to_bytes(), self.kind)
+        payload = self.payload
+        return codec.decode(payload if isinstance(payload, bytearray) else payload.to_bytes(), self.kind)
 
 
 def ask(
@@ -146,18 +149,23 @@ def _ask(
     target = zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING
     while True:
         asked_at_s = time.monotonic()
-        replies = _get(
-            session,
-            key,
-            lifelines.of(servers) if lifelines else None,
-            payload=payload,
-            encoding=encoding,
-            timeout=timeout_s,
-            target=target,
-        )
-        for reply in replies if meanwhile is None else _polled(replies, meanwhile):
+        replies: Any = ()
+        if (last := _sent_ahead(session, key, payload, encoding, lifelines)) is not None:
+            replies = _get(
+                session,
+                key,
+                lifelines.of(servers) if lifelines else None,
+                encoding=encoding,
+                timeout=timeout_s,
+                target=target,
+                **last,
+            )
+        gathered = pieces.Gathered()
+        for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
             if lifelines is None or lifelines.vouch(servers, reply):
-                return read_reply(key, reply, kind, timeout_s).decode()
+                if (whole := read_reply(key, reply, kind, timeout_s, gathered)) is not None:
+                    return whole.decode()
+                continue
             if not foreign:
                 foreign, deadline_s = True, time.monotonic() + patience_s
                 if lifelines.is_news(key):
@@ -176,6 +184,35 @@ def _ask(
         if meanwhile is not None:
             meanwhile()
         time.sleep(0.01)
+
+
+def _sent_ahead(
+    session: zenoh.Session,
+    key: str,
+    payload: bytes,
+    encoding: str,
+    lifelines: Lifelines | None,
+    source: zenoh.SourceInfo | None = None,
+) -> dict[str, Any] | None:
+    """What is left to be sent as the question itself: of a large payload, the last piece.
+
+    None if nobody has taken the others. Raises the error that a piece is answered with.
+    """
+    if len(payload) <= pieces.PIECE:
+        return {"payload": payload}
+    servers = keys.servers(*key.rsplit("/", 1))
+    for content, piece in pieces.cut(payload):
+        sent = {"payload": content, "attachment": codec.encode(piece)}
+        if piece.is_last:
+            return sent
+        lifeline = lifelines.of(servers) if lifelines else None
+        for reply in _get(session, key, lifeline, source, encoding=encoding, timeout=TIMEOUT_S, **sent):
+            if lifelines is None or lifelines.vouch(servers, reply):
+                read_reply(key, reply, Done, TIMEOUT_S)
+                break
+        else:
+            return None
+    return None
 
 
 def _get(
@@ -232,12 +269,26 @@ def ask_later(
     key = f"{prefix}/{verb}"
     waiting, servers = [answer], keys.servers(prefix, verb)
     foreign: list[zenoh.Reply] = []
+    gathered = pieces.Gathered()
 
     def on_reply(reply: zenoh.Reply) -> None:
         if lifelines is not None and not lifelines.vouch(servers, reply):
             foreign.append(reply)
-        elif waiting:
-            waiting.pop()(lambda: read_reply(key, reply, kind, timeout_s))
+        elif not waiting:
+            return
+        elif reply.ok is None or reply.ok.attachment is None:
+            waiting.pop()(lambda: read_whole(key, reply, kind, timeout_s))
+        else:
+            on_piece(reply)
+
+    def on_piece(reply: zenoh.Reply) -> None:
+        try:
+            whole = read_reply(key, reply, kind, timeout_s, gathered)
+        except errors.SemmapError as error:
+            waiting.pop()(partial(_raise, error))
+        else:
+            if whole is not None:
+                waiting.pop()(lambda: whole)
 
     def refuse() -> NoReturn:
         if foreign:
@@ -250,6 +301,14 @@ def ask_later(
 
     handler = zenoh.handlers.Callback(on_reply, on_end, indirect=False)
     payload, encoding = codec.encode(message), codec.encoding_of(message)
+    try:
+        last = _sent_ahead(session, key, payload, encoding, lifelines, source)
+    except errors.SemmapError as error:
+        answer(partial(_raise, error))
+        return
+    if last is None:
+        on_end()
+        return
     lifeline = lifelines.of(servers) if lifelines else None
     target = zenoh.QueryTarget.ALL if everybody else zenoh.QueryTarget.BEST_MATCHING
     _get(
@@ -258,17 +317,36 @@ def ask_later(
         lifeline,
         source,
         handler=handler,
-        payload=payload,
         encoding=encoding,
         timeout=timeout_s,
         target=target,
+        **last,
     )
 
 
-def read_reply(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
-    """The message of a reply, of type `kind`; raises the error that it carries."""
+def _raise(error: errors.SemmapError) -> NoReturn:
+    raise error
+
+
+def read_whole(key: str, reply: zenoh.Reply, kind: Any, timeout_s: float) -> Encoded:
+    """The message of a reply that came in one, of type `kind`; raises the error that it carries."""
+    whole = read_reply(key, reply, kind, timeout_s)
+    assert whole is not None
+    return whole
+
+
+def read_reply(
+    key: str, reply: zenoh.Reply, kind: Any, timeout_s: float, gathered: pieces.Gathered | None = None
+) -> Encoded | None:
+    """The message of a reply, of type `kind`; None for a piece after which others come.
+
+    Raises the error that it carries.
+    """
     if (sample := reply.ok) is not None:
-        return Encoded(sample.payload, sample.encoding, kind)
+        if gathered is None or (piece := pieces.piece_of(sample.attachment)) is None:
+            return Encoded(sample.payload, sample.encoding, kind)
+        whole = gathered.take(piece, sample.payload)
+        return None if whole is None else Encoded(whole, sample.encoding, kind)
     error = reply.err
     assert error is not None
     if str(error.encoding) != _ERROR_ENCODING:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import zenoh
 from msgspec import Struct, field
 
+from nodes.bus import pieces
 from nodes.bus.asking import Encoded
 from nodes.bus.pubsub import publisher
 from schemas import codec, errors, keys
-from schemas.replies import Ack, Document
+from schemas.calls import largest
+from schemas.replies import Ack, Document, Done
 
 _JSON = "application/json"
 
@@ -29,7 +32,7 @@ class Request(Struct, frozen=True):
     """
 
     verb: str
-    payload: bytes
+    payload: bytes | bytearray
     parameters: dict[str, str] = field(default_factory=dict)
     send: Callable[[Any, bool], None] = _send_nowhere
     plain: bool = False
@@ -39,6 +42,8 @@ class Request(Struct, frozen=True):
 
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
+        if len(self.payload) > (most := largest(kind)):
+            raise pieces.too_large(len(self.payload), most)
         parameters = {k: v for k, v in self.parameters.items() if (k, v) != ("format", "json")}
         if self.payload:
             if parameters:
@@ -55,15 +60,25 @@ class Request(Struct, frozen=True):
         self.send(errors.to_message(error), False)
 
 
-def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
+def _request_of_query(
+    prefix: str, query: zenoh.Query, arrivals: pieces.Arrivals, most: Most
+) -> Request | None:
+    """None for a piece after which others come. Raises what the query is to be refused with."""
     asked = str(query.key_expr)
     verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
-    payload = query.payload.to_bytes() if query.payload is not None else b""
+    payload: bytes | bytearray = query.payload.to_bytes() if query.payload is not None else b""
+    done = _nothing_to_do
+    if (piece := pieces.piece_of(query.attachment)) is not None:
+        whole = arrivals.take(piece, bytes(payload), most(verb))
+        if whole is None:
+            return None
+        payload, done = whole, partial(arrivals.done, len(whole))
     parameters = dict(query.parameters)  # type: ignore[call-overload]
     as_json = "format" in parameters or codec.looks_like_json(payload)
-    key = asked if who else f"{prefix}/{verb}" if "*" not in verb else prefix
+    key = _reply_key(prefix, asked, verb, who)
 
     def send(message: Any, ok: bool) -> None:
+        done()
         content: Any
         encoding: Any
         if isinstance(message, Encoded):
@@ -75,25 +90,91 @@ def _request_of_query(prefix: str, query: zenoh.Query) -> Request:
         else:
             content, encoding = codec.encode(message), codec.encoding_of(message)
         with query:
-            if ok:
-                query.reply(key, content, encoding=encoding)
-            else:
+            if not ok:
                 query.reply_err(content, encoding=encoding)
+            elif len(content) <= pieces.PIECE:
+                query.reply(key, content, encoding=encoding)
+            elif as_json:
+                _refuse(query, _too_long(len(content)), as_json=True)
+            else:
+                for part, which in pieces.cut(content):
+                    query.reply(key, part, encoding=encoding, attachment=codec.encode(which))
 
     return Request(verb, payload, parameters, send, plain=not as_json, who=who, **_from(query, who))
 
 
+def _nothing_to_do() -> None:
+    """Of a message that came in one."""
+
+
+def _reply_key(prefix: str, asked: str, verb: str, who: str) -> str:
+    return asked if who else f"{prefix}/{verb}" if "*" not in verb else prefix
+
+
+def _too_long(size: int) -> errors.Refused:
+    return errors.Refused(
+        f"the reply has {size >> 20:,} MB, and one in JSON may have {pieces.PIECE >> 20}; ask for less, or"
+        " with semmap's client, which takes it in pieces"
+    )
+
+
+def _refuse(query: zenoh.Query, error: errors.SemmapError, *, as_json: bool) -> None:
+    message = errors.to_message(error)
+    if as_json:
+        query.reply_err(codec.encode_json(message), encoding=_JSON)
+    else:
+        query.reply_err(codec.encode(message), encoding=codec.encoding_of(message))
+
+
+Most = Callable[[str], int]
+"""Of a verb: how many bytes a request may have."""
+
+
+def _whole(_: str) -> int:
+    return pieces.WHOLE
+
+
 def serve(
-    session: zenoh.Session, prefix: str, receive: Callable[[Request], None], *, verb: str = "*"
+    session: zenoh.Session,
+    prefix: str,
+    receive: Callable[[Request], None],
+    *,
+    verb: str = "*",
+    most: Most = _whole,
 ) -> None:
     """Queries on `prefix/<verb>` go to `receive`, on a thread of Zenoh's, so it should only queue them.
 
     One that is not answered counts as not having come here: another who serves the key may answer it. Who
-    serves a single verb is `complete` (Zenoh's word) for its key, so that it can be asked alone.
+    serves a single verb is `complete` (Zenoh's word) for its key, so that it can be asked alone. A request
+    that comes in pieces may have `most(verb)` bytes.
     """
-    session.declare_queryable(
-        f"{prefix}/{verb}", lambda query: receive(_request_of_query(prefix, query)), complete=verb != "*"
-    )
+    arrivals = pieces.Arrivals()
+
+    def on_query(query: zenoh.Query) -> None:
+        try:
+            request = _request_of_query(prefix, query, arrivals, most)
+        except Exception as error:  # one that raises here would never be answered
+            with query:
+                _refuse(query, _as_ours(error), as_json=False)
+            return
+        if request is not None:
+            receive(request)
+            return
+        asked = str(query.key_expr)
+        with query:
+            query.reply(asked, codec.encode(_TAKEN), encoding=codec.encoding_of(_TAKEN))
+
+    session.declare_queryable(f"{prefix}/{verb}", on_query, complete=verb != "*")
+
+
+_TAKEN = Done(text="go on")
+"""The answer to a piece after which others come."""
+
+
+def _as_ours(error: Exception) -> errors.SemmapError:
+    if isinstance(error, errors.SemmapError):
+        return error
+    return errors.BadRequest(f"the request cannot be read: {type(error).__name__}: {error}")
 
 
 def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
@@ -103,12 +184,16 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
     def on_put(sample: zenoh.Sample) -> None:
         key, payload = str(sample.key_expr), sample.payload.to_bytes()
         said = _envelope(payload)
-        verb = keys.last_chunk(key) if key != prefix else str(said.get("verb", ""))
+        verb = keys.last_chunk(key) if key != prefix else str(said.verb)
         encode = codec.encode_json if codec.looks_like_json(payload) else codec.encode
 
         def send(message: Any, ok: bool) -> None:
             reply, error = (message, None) if ok else (None, message)
-            acks.put(encode(Ack(id=str(said.get("id", "")), verb=verb, ok=ok, reply=reply, error=error)))
+            ack = encode(Ack(id=str(said.id), verb=verb, ok=ok, reply=reply, error=error))
+            if len(ack) > pieces.PIECE:
+                long = errors.to_message(_too_long(len(ack)))
+                ack = encode(Ack(id=str(said.id), verb=verb, ok=False, reply=None, error=long))
+            acks.put(ack)
 
         receive(Request(verb, payload, {}, send, **_from(sample)))
 
@@ -121,9 +206,16 @@ def _from(message: zenoh.Query | zenoh.Sample, who: str = "") -> dict[str, Any]:
     return {"asker": who or ("" if source is None else str(source.source_id.zid)), "source": source}
 
 
-def _envelope(payload: bytes) -> dict[str, Any]:
-    """What can be read of a message before its type is known."""
+class _Envelope(Struct):
+    """What can be read of a message before its type is known; nothing else of it is looked at."""
+
+    verb: str | int | float | bool | None = ""
+    id: str | int | float | bool | None = ""
+
+
+def _envelope(payload: bytes) -> _Envelope:
     try:
-        return dict(codec.decode(payload, dict[str, Any]))
+        said: _Envelope = codec.decode(payload, _Envelope)
+        return said
     except errors.BadRequest:
-        return {}
+        return _Envelope()

@@ -11,13 +11,13 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 import zenoh
 from msgspec import Struct
 from zenoh import Session as Session
 
-from nodes.bus import own_config
+from nodes.bus import own_config, pieces
 from nodes.identity import Identity
 from schemas import errors, keys
 from schemas.endpoints import DEFAULT_ENDPOINT as DEFAULT_ENDPOINT
@@ -31,6 +31,8 @@ FOREVER_S = math.inf
 _MEET_MS = 100
 """Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
+
+_LARGEST: Final = "transport/link/rx/max_message_size"
 
 _NOT_REACHED = ("Unable to connect", "Can not create a new", "deadline has elapsed")
 _HUNG_UP = "Read error on T"
@@ -87,6 +89,8 @@ class Network(Struct, frozen=True):
         if self.access is not None:
             values["access_control"] = self.access
         config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
+        if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
+            values[_LARGEST] = pieces.MESSAGE
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config

@@ -32,16 +32,20 @@ class Announcer:
         self._types = {entity.name: entity.types for entity in entities}
 
     def announce(self, commit: Commit, believed: Believed = UNCHANGED, *, told: bool) -> None:
-        """Tell of the commit, abridged if it is very large; of its entities only if somebody follows them.
+        """Tell of the commit, abridged if it is large; of its entities only if somebody follows them.
 
         `believed` is how what holds of places changed with it. If the coordinator is `told` of it by the
         reply, it is not told of it here.
         """
         passed_on = abridged(_with_places(commit, believed))
+        payload = codec.encode(passed_on)
+        if len(payload) > bus.PUBLISHED:
+            passed_on = abridged(commit, always=True)
+            payload = codec.encode(passed_on)
         if not told:
             effects = Effects.of(passed_on)
             self._untold.put(codec.encode(effects), encoding=codec.encoding_of(effects))
-        self._commits.put(codec.encode(passed_on), encoding=codec.encoding_of(passed_on))
+        self._commits.put(payload, encoding=codec.encoding_of(passed_on))
         if self._entities_are_watched():
             for gone in commit.removed:
                 self._delete(gone.name, self._types.get(gone.name, gone.types))
@@ -56,6 +60,8 @@ class Announcer:
         lost = set(self._types.get(entity.name, ())).difference(entity.types)
         self._delete(entity.name, sorted(lost))
         payload, encoding = codec.encode(entity), codec.encoding_of(entity)
+        if len(payload) > bus.PUBLISHED:
+            return  # whoever wants to know it asks
         for class_name in entity.types:
             self._session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
 

@@ -69,12 +69,13 @@ class Beliefs:
         self._formerly: set[Triple] = set()
         """What was withheld at `begin`, and has been looked at again since."""
         self._moved: set[Term] = set()
-        self._net: dict[tuple[Triple, bool], bool] = {}
-        """Of triples, as computed or as asserted, that came or went since `begin`: whether they hold now."""
+        self._net: dict[bool, dict[Triple, bool]] = {True: {}, False: {}}
+        """Of computed triples, and of asserted ones, that came or went since `begin`: do they hold now?"""
 
     def begin(self) -> None:
         """What differs is counted from here on."""
-        self._net.clear()
+        for net in self._net.values():
+            net.clear()
         self._moved.clear()
         self._newly.clear()
         self._formerly.clear()
@@ -83,8 +84,9 @@ class Beliefs:
     def believed(self) -> Believed:
         """What differs since `begin`."""
         found: dict[tuple[bool, bool], list[Triple]] = {}
-        for (triple, is_computed), holds in self._net.items():
-            found.setdefault((is_computed, holds), []).append(triple)
+        for is_computed, net in self._net.items():
+            for triple, holds in net.items():
+                found.setdefault((is_computed, holds), []).append(triple)
         return Believed(
             gone=tuple(found.get((True, False), ())),
             come=tuple(found.get((True, True), ())),
@@ -275,13 +277,16 @@ class Beliefs:
             self._moved.update(self._reasoner.believe(gone=gone, come=come, aside=aside, back=back).others)
         else:
             self._believe_in_parts(gone, come, aside, back)
-        net = self._net
         for triples, is_computed, holds in (
             (gone, True, False), (come, True, True), (aside, False, False), (back, False, True),
         ):  # fmt: skip
+            net = self._net[is_computed]
+            if net.keys().isdisjoint(triples):
+                net.update(dict.fromkeys(triples, holds))
+                continue
             for triple in triples:
-                if net.setdefault((triple, is_computed), holds) != holds:
-                    del net[triple, is_computed]
+                if net.setdefault(triple, holds) != holds:
+                    del net[triple]
 
     def _believe_in_parts(
         self,

@@ -29,7 +29,6 @@ from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.commits import Commit
-from schemas.health import LOADING
 
 CHECKPOINT_PERIOD_S = 10.0
 CHECKPOINT_DELAY_S = 3.0
@@ -53,7 +52,9 @@ class KnowledgeBase:
         )
         self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
-        self._asking = Asking(self.map, journal, self._sparql, self._standing_places)
+        self._asking = Asking(
+            self.map, journal, self._sparql, self._standing_places, asker=lambda: node.asker
+        )
         telling_of = self._telling_of
         changing = Changing(
             self.map, journal, spread=self._spread, not_written=self._not_written, telling_of=telling_of
@@ -108,11 +109,11 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     @contextmanager
-    def _telling_of(self, filename: str) -> Iterator[Tell]:
-        """Lets the heartbeat tell how far the loading of a file is."""
+    def _telling_of(self, work: str) -> Iterator[Tell]:
+        """Lets the heartbeat tell how far a large change is, and prepares for it."""
 
         def tell(text: str) -> None:
-            self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+            self._node.describe(f"{work}: {text}")
             self._node.beat()
 
         try:

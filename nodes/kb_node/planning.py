@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Collection
 from typing import NamedTuple
-
-from msgspec import structs
 
 from nodes.kb_node import preconditions
 from nodes.kb_node.entities import entity_writing
@@ -31,12 +30,12 @@ def of(state: MapState, transaction: Transaction) -> Plan | None:
     Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
     what makes no sense; Refused when it takes away from the TBox.
     """
-    transaction, notes = _spelled_out(state, transaction)
-    held = preconditions.held(state.reasoner, transaction, state.progress)
+    retract, insert, notes = _spelled_out(state, transaction)
+    held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
     preconditions.require(transaction, held)
-    wanted = dict.fromkeys(transaction.insert)
-    retracted = tuple(t for t in dict.fromkeys(transaction.retract) if t not in wanted and t in held)
-    inserted = tuple(t for t in wanted if t not in held) if held else tuple(wanted)
+    wanted = dict.fromkeys(insert)
+    retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
+    inserted = tuple([t for t in wanted if t not in held]) if held else tuple(wanted)
     if not retracted and not inserted:
         return None
     denied = state.places.taken_back(state.reasoner, state.classes, retracted, inserted)
@@ -67,11 +66,13 @@ def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False
     )
 
 
-def _spelled_out(state: MapState, transaction: Transaction) -> tuple[Transaction, tuple[str, ...]]:
-    """The transaction with its intents said in triples, too; and what is to be known of them."""
+def _spelled_out(
+    state: MapState, transaction: Transaction
+) -> tuple[Collection[Triple], Collection[Triple], list[str]]:
+    """The triples that a transaction takes away and adds, its intents said in triples, too; and notes."""
     remove, edit, add = transaction.remove, transaction.edit, transaction.add
     if not (remove or edit or add):
-        return transaction, ()
+        return transaction.retract, transaction.insert, []
     draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
     draft.remove([state.entity(name) for name in state.steadily(remove)])
     notes = list(state.places.left_behind(remove)) if remove else []
@@ -85,9 +86,6 @@ def _spelled_out(state: MapState, transaction: Transaction) -> tuple[Transaction
                 notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
     for new in state.steadily(add):
         draft.add(new)
-    spelled_out = structs.replace(
-        transaction,
-        retract=(*transaction.retract, *draft.retract),
-        insert=(*transaction.insert, *draft.insert),
-    )
-    return spelled_out, tuple(notes)
+    if not (transaction.retract or transaction.insert):
+        return draft.retract, draft.insert, notes
+    return [*transaction.retract, *draft.retract], [*transaction.insert, *draft.insert], notes

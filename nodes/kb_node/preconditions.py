@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Collection, Container, Iterable
 from itertools import chain, islice
 from operator import itemgetter
 
@@ -23,10 +23,10 @@ def subjects(*groups: Iterable[Triple]) -> set[Term]:
 
 
 def held(
-    reasoner: Reasoner, transaction: Transaction, progress: Callable[[], None] = lambda: None
+    reasoner: Reasoner, groups: Iterable[Collection[Triple]], progress: Callable[[], None] = lambda: None
 ) -> set[Triple]:
-    """Those of the transaction's triples that are asserted already. `progress` is called now and then."""
-    groups = transaction.require, transaction.retract, transaction.insert
+    """Those of some triples that are asserted already. `progress` is called now and then."""
+    groups = tuple(groups)
     known = reasoner.mentioned(subjects(*groups))
     found: set[Triple] = set()
     many: set[Term] = set()

@@ -27,7 +27,7 @@ from nodes import bus
 from nodes.runtime.fair_queue import FairQueue
 from nodes.runtime.heartbeat import Heartbeat
 from schemas import errors, keys
-from schemas.calls import Call, Handler, Relay, reply_type
+from schemas.calls import Call, Handler, Relay, largest, reply_type
 
 log = logging.getLogger(__name__)
 
@@ -96,7 +96,12 @@ class Node:
             if not leave(request.verb):
                 receive(request)
 
-        bus.serve(self.session, prefix, receive_query)
+        bus.serve(
+            self.session,
+            prefix,
+            receive_query,
+            most=lambda verb: largest(handlers[verb][0]) if verb in handlers else 0,
+        )
         if puts:
             bus.serve_puts(self.session, prefix, receive)
 
@@ -111,7 +116,7 @@ class Node:
             if request.verb == verb:  # and not one to all verbs
                 self._queue(request, lambda: self._handle(request, {verb: handler}))
 
-        bus.serve(self.session, prefix, receive, verb=verb)
+        bus.serve(self.session, prefix, receive, verb=verb, most=lambda _: largest(handler.kind))
 
     def while_there_is_room(self, has_room: Callable[[], bool]) -> None:
         """Let requests wait, the urgent ones apart, while `has_room()` does not hold; events go on."""
@@ -119,7 +124,8 @@ class Node:
 
     def _queue(self, request: bus.Request, handle: _Work, *, urgent: bool = False) -> None:
         """On a thread of Zenoh's: let a request wait, or refuse it."""
-        again_s = self._requests.put(request.asker, handle, size=len(request.payload), urgent=urgent)
+        size = min(len(request.payload), bus.PIECE)  # what came in pieces is bounded by itself
+        again_s = self._requests.put(request.asker, handle, size=size, urgent=urgent)
         if again_s is None:
             self._events.put(_wake)
         else:
@@ -155,7 +161,7 @@ class Node:
             if not is_full:  # else the event of the one that went is for this one
                 self._events.put(take)
 
-        bus.follow(self.session, topic, keep)
+        bus.follow(self.session, topic, keep, self._heartbeat.ignore)
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""

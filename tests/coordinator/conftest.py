@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from nodes.coordinator.door import Door
+from nodes.kb_node.answers import answers as kb_answers
 from nodes.kb_node.answers import trials
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.semantic_map import SemanticMap
@@ -29,7 +30,9 @@ TBOX = b"""
 :Kitchen a owl:Class ; rdfs:subClassOf :Location .
 :Object a owl:Class ; rdfs:subClassOf :Physical_Thing .
 :Furniture a owl:Class ; rdfs:subClassOf :Object .
-:Chair a owl:Class ; rdfs:subClassOf :Furniture ; rdfs:label "chair"@en .
+:Chair a owl:Class ; rdfs:subClassOf :Furniture , [ owl:onProperty :fits ; owl:hasValue :kitchen ] ;
+  rdfs:label "chair"@en .
+:fits a owl:ObjectProperty .
 :Living_Room_Table a owl:Class ; rdfs:subClassOf :Furniture .
 :Color a owl:Class ; rdfs:subClassOf :Property .
 :Coordinates a owl:Class ; rdfs:subClassOf :Property .
@@ -61,6 +64,7 @@ def door(semantic_map):
             else Outcome(commit=_effects(result))
             for result in semantic_map.commit_together(several.transactions)
         ),
+        "infer": lambda query: kb_answers.infer(semantic_map, query.name),
         "properties": lambda _: tuple(semantic_map.classes.stated.rows()),
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: _changed(

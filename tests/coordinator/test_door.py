@@ -268,6 +268,12 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
     assert set(door.map.entities) == {"chair1"}
 
 
+def test_an_undo_under_the_id_of_another_command_is_answered_as_that(door):
+    door.change(c.Add(class_="Chair", name="chair1", id="x"))
+    assert door.change(c.Undo(id="x")).text == "already done: add Chair chair1"
+    assert set(door.map.entities) == {"chair1"}
+
+
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
@@ -398,6 +404,8 @@ def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
 def test_what_takes_the_place_of_something_else_is_one_commit(door):
     with pytest.raises(errors.BadRequest, match="without --parts"):
         door.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
+    with pytest.raises(errors.BadRequest, match="--tbox makes one commit"):
+        door.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
 
 
 def test_a_property_is_set_and_unset(door):
@@ -413,6 +421,13 @@ def test_a_property_is_set_and_unset(door):
     add(door, name="chair2")
     none = door.change(c.Unset(name="chair2", property="isOpen"))
     assert none.text == "chair2: unchanged: isOpen is not set"
+    follows = door.change(c.Unset(name="chair2", property="fits"))
+    assert follows.text == (
+        "chair2: unchanged: fits is not set, but kitchen follows; for the reason:"
+        " semmap explain chair2 fits kitchen"
+    )
+    other = door.change(c.Unset(name="chair2", property="fits", value="chair1"))
+    assert other.text == "chair2: unchanged: fits is not set"
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not false"):
         door.change(c.Set(name="chair1", property="isOpen", values=(True,), if_is=False))
     with pytest.raises(errors.PreconditionFailed, match="isOpen is true, not unset"):

@@ -12,7 +12,9 @@ dm:color_blue a owl:NamedIndividual , dm:Color ; rdfs:label "blue"@en .
 dm:mood_blue a owl:NamedIndividual , dm:Property ; rdfs:label "blue"@en .
 dm:hasColor a owl:ObjectProperty ; rdfs:range dm:Color ; rdfs:label "has color"@en , "ha colore"@it .
 dm:hasMainColor a owl:ObjectProperty , owl:FunctionalProperty ; rdfs:subPropertyOf dm:hasColor .
+dm:Red a owl:Class ; rdfs:subClassOf dm:Color .
 dm:hasOnlyColor a owl:ObjectProperty ; rdfs:subPropertyOf dm:hasMainColor .
+dm:blushes a owl:ObjectProperty ; rdfs:subPropertyOf dm:hasColor ; rdfs:range dm:Red .
 dm:isOn a owl:ObjectProperty , owl:AsymmetricProperty , owl:IrreflexiveProperty .
 dm:isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:domain dm:Object ; rdfs:range xsd:boolean ;
     rdfs:label "is open"@en ; rdfs:comment "Whether it stands open." .

@@ -26,7 +26,8 @@ def test_what_is_there_is_held_wherever_it_is_named(reasoner):
     said = set(reasoner.asserted()).intersection(MANY)
     for where in ("require", "retract", "insert"):
         asked = transaction(1, **{where: (TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))})
-        assert preconditions.held(reasoner, asked) == {TYPE, *said}
+        groups = asked.require, asked.retract, asked.insert
+        assert preconditions.held(reasoner, groups) == {TYPE, *said}
 
 
 def test_what_is_required_must_be_held():

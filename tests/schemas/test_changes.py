@@ -3,7 +3,7 @@
 import pytest
 
 from schemas import codec
-from schemas.changes import Change, between, in_words, removed
+from schemas.changes import Change, between, in_words, of_properties, removed
 from schemas.entities import Entity, Pose, Provenance, orientation_from_yaw
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
@@ -84,3 +84,10 @@ def test_changes_are_the_same_after_the_wire():
     changes = tuple(between(was, entity(class_="Mug", pose=THERE, properties={"isOpen": False})))
     assert codec.decode(codec.encode(changes), tuple[Change, ...]) == changes
     assert len(changes) == 5
+
+
+def test_an_empty_text_is_a_value():
+    (said,) = of_properties("cup1", [("serial", "a", "")])
+    assert said.text == "serial: a → ''"
+    (said,) = of_properties("cup1", [("serial", "", None)])
+    assert said.text == "serial: '' → not set"

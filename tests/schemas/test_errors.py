@@ -53,6 +53,7 @@ def test_exit_status(kind, status):
         ("chair", "; did you mean Chair?"),
         ("chair_1", "; did you mean Chair?"),
         ("Cub", "; did you mean Cup?"),
+        ("erator", "; did you mean Refrigerator?"),
         ("Xylophone", ""),
         ("", ""),
         ("***", ""),

@@ -10,11 +10,12 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.plausibility import doubts, require_carrying, require_same_nature
 from nodes.coordinator.scene.hands import Hand
 from nodes.coordinator.scene.settled import Settled
+from ontology import vocabulary as v
 from ontology.name_index import Ambiguous, Named, NameIndex
 from schemas import changes, errors, wording
-from schemas.commands import Add, Clear, Command, Properties, Remove, Set, Unset, Update
+from schemas.commands import Add, Clear, Command, Infer, Properties, Remove, Set, Unset, Update
 from schemas.commits import Edit, Effects, Transaction
-from schemas.entities import ClassInfo, Entity, Pose
+from schemas.entities import ClassInfo, Entity, Pose, Value
 from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
@@ -112,7 +113,17 @@ def _as_it_is(entity: Entity, command: Set | Unset) -> Talk[str]:
         return UNCHANGED
     stated = entity.properties.get(name)
     is_ = "not set" if stated is None else changes.stated_in_words(stated)
+    if isinstance(command, Unset) and (value := (yield from _inferred(entity, name, command.value))):
+        is_ += f", but {value} follows; for the reason: semmap explain {entity.name} {name} {value}"
     return f"unchanged: {name} is {is_}"
+
+
+def _inferred(entity: Entity, property_: str, wanted: Value | None) -> Talk[str | None]:
+    """A value that follows, the one that is wanted or the first."""
+    inferred = yield from ask(Infer(name=entity.name))
+    found = [o for _, p, o in inferred.triples if v.local_name(p) == property_ and o.startswith("<")]
+    values = map(v.entity_name, found)
+    return next((value for value in values if wanted in (None, value)), None)
 
 
 def _said(was: Entity, made: Effects | None) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from nodes.kb_node.reasoner import Reasoner, datatypes
+from nodes.kb_node.entities import property_values
+from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.queries.text import query_prefixes
 from ontology import prefixes
@@ -120,14 +121,14 @@ def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     if (found := term(semantic_map, word)) is not None:
         return found
     if _is_data(semantic_map.reasoner, predicate):
-        return _literal(semantic_map.reasoner, predicate, word)
+        return _literal(semantic_map, predicate, word)
     return individual(semantic_map, word)
 
 
 def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     """A value that the subject does not have: an individual if there is one of that name."""
     if _is_data(semantic_map.reasoner, predicate):
-        return _literal(semantic_map.reasoner, predicate, word)
+        return _literal(semantic_map, predicate, word)
     found = (v.entity_iri(word), v.dm(word))
     return next((term for term in found if semantic_map.reasoner.mentioned({term})), found[0])
 
@@ -137,11 +138,10 @@ def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
     return any(reasoner.holds((predicate, v.RDF_TYPE, kind)) for kind in kinds)
 
 
-def _literal(reasoner: Reasoner, predicate: Term, text: str) -> Term:
-    """A value of the datatype that is the property's range, if it is known."""
-    ranges = (o for _, _, o in reasoner.asserted(predicate, v.RDFS_RANGE))
-    datatype = next((o for o in ranges if o.startswith(f"<{v.XSD}")), None)
-    literal = v.literal(text, datatype)
-    if datatype is not None and datatypes.is_ill_typed(literal):
-        raise errors.BadRequest(f"'{text}' is not a value of {v.local_name(datatype)}")
-    return literal
+def _literal(semantic_map: SemanticMap, predicate: Term, text: str) -> Term:
+    """The value that `text` denotes for a property, as `set` understands it; without a range a text."""
+    known = semantic_map.classes.stated.by_iri.get(predicate)
+    if known is not None:
+        return property_values.literal(known.name, known.ranges, text)
+    ranges = frozenset(o for _, _, o in semantic_map.reasoner.asserted(predicate, v.RDFS_RANGE))
+    return property_values.literal(v.local_name(predicate), ranges, text) if ranges else v.literal(text)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Final
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Final, NamedTuple
 
 from msgspec import structs
 
@@ -30,6 +30,22 @@ _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
     **PROPERTIES,
 }
 """The properties that `explain` has measured; of the inverse ones the object is the thing."""
+
+
+class Explained(NamedTuple):
+    """Why something holds; where measured facts are a reason, their sentences are still to be dated."""
+
+    explanation: Explanation
+    before: str = ""
+    measured: tuple[tuple[Fact, str], ...] = ()
+
+    def dated(self, began: Callable[[Collection[Fact]], Mapping[Fact, str]]) -> Explanation:
+        """With words for since when each measured fact holds, by `began`."""
+        if not self.measured:
+            return self.explanation
+        since = began([fact for fact, _ in self.measured])
+        told = (f"{text} ({since[fact]})" if fact in since else text for fact, text in self.measured)
+        return structs.replace(self.explanation, text=self.before + "; ".join(told))
 
 
 class Now:
@@ -100,7 +116,7 @@ class Now:
             raise errors.Refused(seen.text)
         return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
 
-    def explained(self, query: Explain, asked: questions.Asked) -> Explanation | None:
+    def explained(self, query: Explain, asked: questions.Asked) -> Explained | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
 
         Raises Refused when a measurement denies it.
@@ -118,18 +134,18 @@ class Now:
                 is_said = self._map.has(asked.triples[0]) and self.against(asked.triples[0]) is not None
                 aside = "; it was asserted, but is left out of what holds as long as it is not so"
                 raise errors.Refused(seen.text + (aside if is_said else ""))
-            return None if seen is None else self._measured(seen)
+            return None if seen is None else Explained(self._measured(seen))
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
-            return structs.replace(found, text=self._told(found.conclusion))
+            return Explained(found, measured=(self._told(found.conclusion),))
         if seen is not None and seen.relation == "touches" and not seen.holds:
             seen = None
         if seen is not None:
-            link = "; and" if seen.holds else "; but as it stands"
-            return structs.replace(found, text=f"{found.text.rstrip('.')}{link} {seen.text}")
-        told = [self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact)]
-        if not told:
-            return found
-        return structs.replace(found, text=f"{found.text.rstrip('.')}; measured: {'; '.join(told)}")
+            if not seen.holds:
+                text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
+                return Explained(structs.replace(found, text=text))
+            return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
+        told = tuple(self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact))
+        return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
 
     def against(self, triple: Triple) -> str | None:
         """What geometry says against a fact about a place, as a clause; None where it says nothing."""
@@ -158,16 +174,12 @@ class Now:
             conclusion=(subject, v.dm(seen.relation), object_), support=(), steps=(), text=seen.text
         )
 
-    def _told(self, fact: Triple) -> str:
-        """What was measured of a computed fact, and since which commit both are where they are.
-
-        The fact may be younger: what was on the way between them, or around both, may have gone since.
-        """
+    def _told(self, fact: Triple) -> tuple[Fact, str]:
+        """A computed fact, and what was measured of it."""
+        relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
-        seen = explained(self._map.places.space(), name, COMPUTED[fact[1]], other)
-        ends = self._map.entity(name), self._map.entity(other)
-        since = max(p.commit for end in ends for p in (end.pose_provenance, end.shape_provenance))
-        return v.spoken(fact) if seen is None else f"{seen.text} (placed so since commit {since})"
+        seen = explained(self._map.places.space(), name, relation, other)
+        return (name, relation, other), v.spoken(fact) if seen is None else seen.text
 
 
 class Then:

@@ -52,7 +52,8 @@ def of(
     changed: dict[str, Entity] = {}
     removed: list[Departed] = []
     reasoner, classes, _, progress = reading
-    at_sight, seen, unseen = _read_at_sight(change, reading, commit.provenance)
+    provenance = commit.provenance
+    at_sight, seen, unseen = _read_at_sight(change, reading, provenance)
     others = (owners - seen) | change.others | unseen
     about = entity_reading.about(reasoner, commit.inserted, others & new)
     concerned = (
@@ -66,10 +67,10 @@ def of(
         was = None if iri in new else known(before, iri)
         entity: Entity | None
         if moved and was is not None and iri not in moved:
-            entity = entity_reading.moved(reasoner, was, commit.provenance)
+            entity = entity_reading.moved(reasoner, was, provenance)
         else:
             entity = at_sight.get(iri) or entity_reading.read_entity(
-                reasoner, classes, iri, commit.provenance, about
+                reasoner, classes, iri, provenance, about
             )
             if entity is not None and entity.pose is None and was is not None and not _is_said(reasoner, iri):
                 entity = None  # only what is computed still speaks of it, and will not

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from itertools import islice
 
 from msgspec import structs
@@ -269,11 +269,11 @@ def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set
     return found
 
 
-def users(reasoner: Reasoner, node: Term) -> Iterator[Term]:
+def users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
     """The individuals in whose star `node` is; one that uses it twice comes twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
-        return (s for s, p, _ in incoming if p in stars.STAR_PROPERTIES)
+        return [s for s, p, _ in incoming if p in stars.STAR_PROPERTIES]
     return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 

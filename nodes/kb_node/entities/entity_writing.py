@@ -95,10 +95,12 @@ class Draft:
         """
         iri = v.iri(entity.iri)
         said = self._reasoner.about(iri)
-        if not self._tbox.isdisjoint((iri, p, o) for p, objects in said.items() for o in objects):
+        if not self._tbox.isdisjoint([(iri, p, o) for p, objects in said.items() for o in objects]):
             raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
-        self._require(entity.name, said, edit.only_if)
-        self._state(entity, said, edit)
+        if edit.only_if:
+            self._require(entity.name, said, edit.only_if)
+        if edit.unset or edit.set:
+            self._state(entity, said, edit)
         if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
             self._place(
                 entity, said.get(v.HAS_POSITION, ()), edit.pose_after(entity.pose), edit.size or entity.size_m

@@ -144,9 +144,17 @@ class PropertyTable:
             )
 
     def _called(self, classes: Iterable[Term]) -> tuple[str, ...]:
-        """Classes by the class table's names, datatypes by their own."""
-        named = filter(lambda c: c.startswith("<"), classes)
-        return tuple(sorted(self._class_names.get(c) or v.local_name(c) for c in named))
+        """Classes by the class table's names, datatypes by their own; not what follows from the others."""
+        named = [c for c in classes if c.startswith("<")]
+        narrow = [c for c in named if not any(self._is_below(d, c) for d in named)]
+        return tuple(sorted(self._class_names.get(c) or v.local_name(c) for c in narrow))
+
+    def _is_below(self, narrow: Term, wide: Term) -> bool:
+        """Is a class a subclass of another, and not the other way round?"""
+        holds, sub_class_of = self._reasoner.holds, v.RDFS_SUB_CLASS_OF
+        return (
+            narrow != wide and holds((narrow, sub_class_of, wide)) and not holds((wide, sub_class_of, narrow))
+        )
 
     def _individual(self, prop: Property, word: str) -> Term | None:
         """The TBox's individual of this name or label; of several that one which the range has."""

@@ -9,14 +9,21 @@ from collections.abc import Set
 from nodes.kb_node.reasoner import datatypes
 from ontology import vocabulary as v
 from schemas import errors
+from schemas.changes import value_in_words
 from schemas.entities import Stated as Stated
 from schemas.entities import Value
 from schemas.explanations import Term
 
 _TAGGED = re.compile(r"(.*)@([a-z]{2,3}(?:-[A-Za-z0-9]{1,8})*)", re.DOTALL)
 _LITERAL = re.compile(r'".*"(?:@[A-Za-z0-9-]+|\^\^<[^<>\s]+>)?', re.DOTALL)
-_BOOLEANS = {"true": "true", "yes": "true", "1": "true", "false": "false", "no": "false", "0": "false"}
+_BOOLEANS = {
+    **dict.fromkeys(("true", "yes", "on", "1"), "true"),
+    **dict.fromkeys(("false", "no", "off", "0"), "false"),
+}
 _FLOATS = frozenset((v.XSD_FLOAT, v.iri(f"{v.XSD}double")))
+_INFINITE = frozenset(("INF", "-INF", "+INF", "NaN"))
+"""How XML Schema writes what is no number."""
+_LARGEST_FLOAT = 3.4028234663852886e38
 _DECIMAL = v.iri(f"{v.XSD}decimal")
 _INTEGER = v.iri(f"{v.XSD}integer")
 _TEXTS = frozenset((v.RDF_LANG_STRING, v.iri(f"{v.RDF}PlainLiteral"), datatypes.LITERAL))
@@ -29,7 +36,12 @@ _OF_INTEGERS = frozenset(
         *("unsignedLong", "unsignedInt", "unsignedShort", "unsignedByte"),
     )
 )
-_SAID = {v.XSD_BOOLEAN: "true or false", v.XSD_FLOAT: "a number", _DECIMAL: "a decimal number"}
+_SAID = {
+    v.XSD_BOOLEAN: "true or false",
+    **dict.fromkeys(_FLOATS, "a number"),
+    _DECIMAL: "a decimal number",
+    _INTEGER: "a whole number",
+}
 
 
 def literal(name: str, ranges: Set[Term], text: str) -> Term:
@@ -50,7 +62,7 @@ def literal(name: str, ranges: Set[Term], text: str) -> Term:
     if datatype == v.XSD_BOOLEAN:
         written = _BOOLEANS.get(written.casefold(), written)
     elif datatype in _FLOATS:
-        written = _float(written)
+        written = _float(name, written, datatype)
     return _checked(name, ranges, text, v.literal(written, datatype))
 
 
@@ -83,8 +95,7 @@ def plain(term: Term) -> Value:
 
 def spoken(term: Term) -> str:
     """A term as people write it."""
-    value = plain(term)
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    return value_in_words(plain(term))
 
 
 def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
@@ -98,8 +109,10 @@ def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
 
 
 def _refusal(name: str, text: str, datatype: Term) -> errors.BadRequest:
-    said = _SAID.get(datatype) or f"xsd:{v.local_name(datatype)}"
-    return errors.BadRequest(f"{name} takes {said}, not '{text}'")
+    kind = f"xsd:{v.local_name(datatype)}"
+    if _LITERAL.fullmatch(text):
+        return errors.BadRequest(f"{name} takes a literal of {kind}, not {text}")
+    return errors.BadRequest(f"{name} takes {_SAID.get(datatype) or kind}, not '{text}'")
 
 
 def _text(text: str) -> Term:
@@ -117,9 +130,13 @@ def _guessed(text: str) -> Term:
     return _text(text)
 
 
-def _float(text: str) -> str:
+def _float(name: str, text: str, datatype: Term) -> str:
+    """The lexical form of a number. Raises BadRequest for one that is too large."""
     try:
         number = float(text)
     except ValueError:
         return text
+    largest = _LARGEST_FLOAT if datatype == v.XSD_FLOAT else math.inf
+    if (math.isinf(number) or abs(number) > largest) and text not in _INFINITE and text[-1].isdigit():
+        raise errors.BadRequest(f"{name} takes a number, and {text} is too large for one")
     return repr(number) if math.isfinite(number) else text

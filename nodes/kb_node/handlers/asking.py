@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import partial
 from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, questions, whereabouts
+from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.reasoner import Held
@@ -19,6 +19,7 @@ from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
+from nodes.runtime.fair_pool import FairPool
 from schemas import errors
 from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
@@ -57,16 +58,19 @@ class Asking:
         journal: Journal,
         sparql: SparqlService,
         standing_places: StandingPlaces,
+        asker: Callable[[], str] = str,
     ) -> None:
-        """`sparql` and `standing_places` are told of each commit by the node."""
+        """`sparql` and `standing_places` are told of each commit by the node; `asker()` is who asks."""
+        self._asker = asker
         self._map = semantic_map
         self._sparql = sparql
         self._standing_places = standing_places
+        self._journal = journal
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
-        self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._aside = FairPool(2, asker)
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -145,7 +149,13 @@ class Asking:
         if (measured := self._now.measured(query)) is not None:
             return measured
         asked = questions.of_explain(self._map, query)
-        return self._now.explained(query, asked) or self._tried(questions.explain, asked)
+        found = self._now.explained(query, asked)
+        if found is None:
+            return self._tried(questions.explain, asked)
+        if not found.measured:
+            return found.explanation
+        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, began)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""
@@ -194,8 +204,10 @@ class Asking:
         )
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
-        """A query, evaluated beside the node's own work."""
-        return self._sparql.ask(query, self._map.seq)
+        """A query, evaluated beside the node's own work; of the past, in a process of its own."""
+        if query.as_of is not None:
+            return self._aside.submit(map_then.ask_then, self._journal, self._past, query)
+        return self._sparql.ask(query, self._map.seq, self._asker())
 
     def on_watch(self, query: Watch) -> Watching | Future[Watching]:
         """A standing query, or a standing question of where things are."""
@@ -205,7 +217,7 @@ class Asking:
                 "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
             )
         if not asks_where:
-            return self._sparql.ask(query, self._map.seq)
+            return self._sparql.ask(query, self._map.seq, self._asker())
         if query.where is None or query.inferred:
             raise errors.BadRequest(
                 "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
@@ -218,4 +230,4 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
-        self._aside.shutdown(wait=False, cancel_futures=True)
+        self._aside.close()

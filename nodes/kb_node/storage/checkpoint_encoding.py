@@ -17,11 +17,10 @@ from msgspec import Struct, msgpack
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.reasoner.abox.columns import Columns
-from nodes.kb_node.storage import columns_encoding
+from nodes.kb_node.storage import columns_encoding, dense
 from nodes.kb_node.storage.columns_encoding import StoredColumns
 from nodes.kb_node.storage.frames import Compressing, unpacked
 from nodes.runtime.shared_parts import SharedParts
-from schemas import codec
 from schemas.entities import Entity
 from schemas.explanations import Triple
 
@@ -99,7 +98,7 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
 def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoint:
     """What was encoded; equal terms are one object, and entities share what they have in common."""
     if not body.startswith(_MARK):
-        old: _Whole = codec.decode(body, _Whole)
+        old: _Whole = dense.decode(body, _Whole)
         return Checkpoint(seq=old.seq, triples=old.triples, entities=old.entities, read_by=old.read_by)
     stored = _bodies.decode(memoryview(body)[len(_MARK) :])
     triples: list[Triple] = []

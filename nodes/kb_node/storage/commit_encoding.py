@@ -1,18 +1,18 @@
 """A commit as it stands in the journal, made while the rest of it is worked out.
 
 The triples of a large commit are most of it, and known before the entities that they change: another thread
-compresses them meanwhile. The outcome is what `codec.encode` makes of the whole, piece by piece.
+compresses them meanwhile. The outcome is what `dense.encode` makes of the whole, piece by piece.
 """
 
 from __future__ import annotations
 
-import sys
 import zlib
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
 from msgspec import Struct, structs
 
+from nodes.kb_node.storage import dense
 from schemas import codec
 from schemas.commits import Commit, Departed
 from schemas.entities import Entity
@@ -35,7 +35,7 @@ _MAP_OF_FEW: Final = 1
 
 def _plain(part: Commit | _Effects) -> bytes:
     """Never compressed by itself, however large it is."""
-    return codec.encode(part, dense_from=sys.maxsize)
+    return codec.encode(part)
 
 
 _NONE: Final = _plain(_Effects())[_MAP_OF_FEW:]
@@ -45,7 +45,7 @@ class EarlyBody:
     """The body of a commit of which only the effects are not known yet."""
 
     def __init__(self, commit: Commit) -> None:
-        self._deflate = zlib.compressobj(codec.DENSITY)
+        self._deflate = zlib.compressobj(dense.DENSITY)
         self._beside = ThreadPoolExecutor(1)
         whole = memoryview(_plain(structs.replace(commit, changed=(), removed=(), notes=())))
         assert whole[-len(_NONE) :] == _NONE

@@ -13,7 +13,6 @@ from nodes.kb_node.storage.checkpoint_encoding import Checkpoint
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from nodes.kb_node.storage.sqlite_file import NotWritten
-from schemas import codec
 from schemas.explanations import Triple
 
 
@@ -28,6 +27,7 @@ class Share(NamedTuple):
 class _Changes(Struct):
     """The triples of a commit."""
 
+    seq: int
     retracted: tuple[Triple, ...] = ()
     inserted: tuple[Triple, ...] = ()
 
@@ -50,7 +50,8 @@ def compact(journal: Journal, past: Past, until: int) -> None:
     up costs nothing but room.
     """
     map_id, begun_ns = journal.origin()
-    snapshot = Checkpoint(seq=until, triples=_abox(journal, until), entities=past.entities(until))
+    abox = asserted_after(journal, until).difference(rdf.parse(journal.tbox(until), "the TBox"))
+    snapshot = Checkpoint(seq=until, triples=tuple(abox), entities=past.entities(until))
     journal.begin_with(
         Beginning(
             seq=until,
@@ -65,16 +66,15 @@ def compact(journal: Journal, past: Past, until: int) -> None:
         journal.drop_compacted()
 
 
-def _abox(journal: Journal, until: int) -> tuple[Triple, ...]:
-    """What was asserted after a commit: that is what commits brought and did not take away."""
-    begins = journal.beginning.seq
-    triples = {*journal.snapshot().said(), *rdf.parse(journal.tbox(begins), "the TBox")}
+def asserted_after(journal: Journal, seq: int) -> set[Triple]:
+    """All that was asserted after a commit, the TBox with it: what commits brought and did not take away."""
+    start = journal.snapshot()
+    asserted = {*start.said(), *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}")}
     terms: dict[str, str] = {}
     share = terms.setdefault
-    for row in journal.rows():
-        if row.seq > until:
+    for changes in journal.outlines(_Changes):
+        if changes.seq > seq:
             break
-        changes: _Changes = codec.decode(row.body, _Changes)
-        triples.difference_update(changes.retracted)
-        triples.update((share(s, s), share(p, p), share(o, o)) for s, p, o in changes.inserted)
-    return tuple(triples.difference(rdf.parse(journal.tbox(until), "the TBox")))
+        asserted.difference_update(changes.retracted)
+        asserted.update((share(s, s), share(p, p), share(o, o)) for s, p, o in changes.inserted)
+    return asserted

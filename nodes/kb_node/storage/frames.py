@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 
-from schemas import codec
+from nodes.kb_node.storage import dense
 
 
 class Compressing:
@@ -27,7 +27,7 @@ class Compressing:
 
     def dense(self, frame: bytes) -> Future[bytes]:
         """A frame, compressed."""
-        return self._beside.submit(zlib.compress, frame, codec.DENSITY)
+        return self._beside.submit(zlib.compress, frame, dense.DENSITY)
 
 
 def unpacked(frames: Sequence[bytes]) -> Iterator[bytes]:

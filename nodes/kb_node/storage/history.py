@@ -44,9 +44,9 @@ class Past:
         seqs = self._of_span(query)
         beginning = self._journal.beginning.seq
         told = [seq for seq in seqs if seq > beginning]
-        if beginning in seqs and (query.name is None or query.name in self._at_the_beginning()):
+        if beginning in seqs and (query.name is None or query.name in self.at_the_beginning()):
             told.insert(0, beginning)
-        changes = Changelog(self._journal, self._at_the_beginning)
+        changes = Changelog(self._journal, self.at_the_beginning)
         return tuple(
             _beginning(self._journal)
             if seq == beginning
@@ -82,7 +82,7 @@ class Past:
 
         Raises Refused when there was no map, UnknownClass, BadRequest.
         """
-        there = self._there(self._commit_at(when))
+        there = self._there(self.commit_at(when))
         if class_name is None:
             return there
         classes = {t for entity in there for t in entity.types}.union(known)
@@ -94,7 +94,7 @@ class Past:
 
     def _there(self, seq: int) -> tuple[Entity, ...]:
         """The entities after a commit, in the order of names."""
-        there = dict(self._at_the_beginning())
+        there = dict(self.at_the_beginning())
         names_by_seq: dict[int, list[str]] = {}
         for name, touched in self._journal.last_touches(seq):
             names_by_seq.setdefault(touched, []).append(name)
@@ -107,12 +107,12 @@ class Past:
 
     def entity(self, name: str, when: When) -> Entity:
         """One entity as it was. Raises UnknownName, Refused when there was no map, BadRequest."""
-        seq = self._commit_at(when)
+        seq = self.commit_at(when)
         touching = self._journal.touching(name, until=seq)
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
         else:
-            entity = self._at_the_beginning().get(name)
+            entity = self.at_the_beginning().get(name)
         if entity is None:
             known = [there for there, _ in self._journal.last_touches(seq)]
             hint = errors.did_you_mean(name, known) if name not in known else ""
@@ -129,10 +129,10 @@ class Past:
             if entity is not None:
                 return sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self._at_the_beginning()[name], removed)
+        return sighting(self.at_the_beginning()[name], removed)
 
     def _require_known(self, name: str) -> None:
-        if name not in self._at_the_beginning() and not self._journal.touching(name):
+        if name not in self.at_the_beginning() and not self._journal.touching(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""
             raise errors.UnknownName(
@@ -144,7 +144,7 @@ class Past:
         """The last commit that is part of the snapshot which the history begins with; 0 if there is none."""
         return self._journal.beginning.seq
 
-    def _at_the_beginning(self) -> Mapping[str, Entity]:
+    def at_the_beginning(self) -> Mapping[str, Entity]:
         """The entities of the snapshot that the history begins with, else those that the first TBox says."""
         if self._first is None or self._first[0] != self._compacted:
             said = self._journal.snapshot().entities if self._compacted else self._said_by_the_first_tbox()
@@ -158,7 +158,7 @@ class Past:
         reasoner = Reasoner(tbox)
         return entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
 
-    def _commit_at(self, when: When) -> int:
+    def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > max(time.time_ns(), self._journal.latest_stamp() if moment.first_ns else 0):

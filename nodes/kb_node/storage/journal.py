@@ -17,19 +17,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import accumulate
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from msgspec import MsgspecError, Struct, structs
 
-from nodes.kb_node.storage import beginning, checkpoint_encoding, commit_encoding, index_check
+from nodes.kb_node.storage import beginning, checkpoint_encoding, commit_encoding, dense, index_check
 from nodes.kb_node.storage.beginning import Beginning
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint as Checkpoint
 from nodes.kb_node.storage.sqlite_file import ANEW, JournalFile, mend
-from schemas import codec, errors
+from schemas import errors
 from schemas.backups import Kind
 from schemas.commits import Commit
 
 log = logging.getLogger(__name__)
+T = TypeVar("T")
 
 FILENAME = "journal.sqlite"
 SCHEMA = """
@@ -255,7 +256,7 @@ class Journal:
                 db.execute(_TOUCH, touches[0])
             else:
                 db.executemany(_TOUCH, touches)
-            body = codec.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
+            body = dense.encode(commit, dense_from=_DENSE_FROM) if whole is None else whole.result()
             digest = chained(self._digest, body)
             db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (commit.seq, commit.id, body, digest))
             if tbox is not None:
@@ -281,6 +282,10 @@ class Journal:
     def commits(self, after: int | None = None) -> Iterator[Commit]:
         """The commits later than `after`, in order. Raises Damaged at the first damaged one."""
         return (_signed(row.body, row.digest) for row in self.rows(after))
+
+    def outlines(self, kind: type[T]) -> Iterator[T]:
+        """All commits in order, of each what `kind` has fields for. Raises Damaged at the first damaged."""
+        return (dense.decode(row.body, kind) for row in self.rows())
 
     def verify(self, progress: Callable[[], None] = lambda: None) -> None:
         """Read everything that counts. Raises Damaged at the first damaged commit, Refused for the rest."""
@@ -355,7 +360,7 @@ class Journal:
         """The numbers of the commits later than `after` that took others back, newest first; reads all."""
         query = "SELECT seq, body FROM commits WHERE seq > ? ORDER BY seq DESC"
         with self._file.reading() as db:
-            return [seq for seq, body in db.execute(query, (after,)) if codec.decode(body, _Undoing).undoes]
+            return [seq for seq, body in db.execute(query, (after,)) if dense.decode(body, _Undoing).undoes]
 
     def last_touches(self, until: int) -> list[tuple[str, int]]:
         """Each entity's name with the last commit up to `until` that touched it."""
@@ -390,7 +395,7 @@ class Journal:
         """Those of all commits: read once, as far as they are not known yet."""
         stamps = self._stamps
         while rows := self._page(self.beginning.seq + len(stamps), _PAGE):
-            stamps.extend(codec.decode(row.body, _Stamp).stamp_ns for row in rows)
+            stamps.extend(dense.decode(row.body, _Stamp).stamp_ns for row in rows)
         return stamps
 
     def stamp_of(self, seq: int) -> int:
@@ -399,7 +404,8 @@ class Journal:
             row = db.execute("SELECT body FROM commits WHERE seq = ?", (seq,)).fetchone()
         if row is None:
             raise Damaged(self.path, seq)
-        return codec.decode(row[0], _Stamp).stamp_ns
+        stamp: _Stamp = dense.decode(row[0], _Stamp)
+        return stamp.stamp_ns
 
     def checkpoint(self, checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> None:
         """Keep `checkpoint` as the place to start from, and of the older ones the last.
@@ -514,7 +520,7 @@ class _Undoing(Struct):
 
 
 def _signed(body: bytes, digest: bytes) -> Commit:
-    commit: Commit = codec.decode(body, Commit)
+    commit: Commit = dense.decode(body, Commit)
     return structs.replace(commit, digest=digest.hex())
 
 

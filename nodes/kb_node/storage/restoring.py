@@ -9,10 +9,10 @@ from datetime import datetime
 from pathlib import Path
 
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import seed
+from nodes.kb_node.storage import dense, seed
 from nodes.kb_node.storage.beginning import TABLE
 from nodes.kb_node.storage.journal import COMPACTED, FILENAME, FORMAT, SCHEMA, Journal
-from schemas import backups, codec, errors, wording
+from schemas import backups, errors, wording
 from schemas.backups import Opening, Piece
 from schemas.commits import Commit
 
@@ -78,7 +78,7 @@ def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callabl
     for row in rows:
         assert isinstance(row, Piece)
         if row.kind == "commit":
-            commit: Commit = codec.decode(row.content, Commit)
+            commit: Commit = dense.decode(row.content, Commit)
             db.executemany("INSERT INTO touches VALUES (?, ?)", [(name, row.seq) for name in commit.names])
             db.execute("INSERT INTO commits VALUES (?, ?, ?, ?)", (row.seq, row.id, row.content, row.digest))
             if row.seq % 20_000 == 0:

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from nodes.kb_node.documents import rdf
+from nodes.kb_node.storage import dense
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint
 from nodes.kb_node.storage.journal import Journal, Row, chained
-from schemas import codec, errors
+from schemas import errors
 from schemas.commits import Commit
 from schemas.explanations import Triple
 
@@ -64,7 +65,7 @@ def _proved(seq: int, row: Row, before: bytes, following: Row | None) -> Commit 
     `before` is the digest of the commit before, if there is one.
     """
     try:
-        commit: Commit = codec.decode(row.body, Commit)
+        commit: Commit = dense.decode(row.body, Commit)
         own = bytes.fromhex(commit.digest)
     except (errors.BadRequest, ValueError):
         return None

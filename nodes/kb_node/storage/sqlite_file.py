@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sqlite3
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 from schemas import errors
 
+_PAGE_BYTES: Final = 4096
+_LOG_BYTES: Final = 1025 * _PAGE_BYTES
+"""SQLite begins its write-ahead log anew after 1000 pages, and what the last commit wrote."""
 ANEW = "start a new map with --fresh (this one is kept)"
 
 
@@ -38,6 +43,9 @@ class JournalFile:
                 db.execute("PRAGMA locking_mode=EXCLUSIVE")
                 db.execute("PRAGMA journal_mode=WAL")
                 db.execute("PRAGMA synchronous=FULL")
+                db.execute("BEGIN IMMEDIATE")  # so that the log is there
+                db.execute("ROLLBACK")
+            _lengthen(path.with_name(f"{path.name}-wal"))
         except errors.Refused:
             self._db.close()
             raise
@@ -90,6 +98,20 @@ class JournalFile:
                 self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         except sqlite3.Error as error:
             raise NotWritten(f"{self._path} could not be made smaller: {error}") from None
+
+
+def _lengthen(log: Path) -> None:
+    """Let the write-ahead log be as long from the beginning as it will be once it is written anew.
+
+    A commit that makes the file longer waits for the file system's own journal, too: on a busy disk three
+    times as long. SQLite reads no further than the last frame that it wrote. Where there is no room, the log
+    grows as it is written.
+    """
+    with suppress(OSError), log.open("r+b", buffering=0) as file:
+        page = bytes(_PAGE_BYTES)  # at once it would be cached in large pieces, each written back as a whole
+        for _ in range(file.seek(0, os.SEEK_END), _LOG_BYTES, _PAGE_BYTES):
+            file.write(page)
+        os.fsync(file.fileno())
 
 
 def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:

@@ -164,7 +164,7 @@ def test_what_could_be(furnished, question, possible, text):
         (
             ("chair1_coordinates", "float_coordinates_x", "left"),
             errors.BadRequest,
-            "'left' is not a value of float",
+            "float_coordinates_x takes a number, not 'left'",
         ),
     ],
 )

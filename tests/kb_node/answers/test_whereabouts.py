@@ -2,24 +2,40 @@
 
 import pytest
 
-from nodes.kb_node.answers import questions, whereabouts
+from nodes.kb_node.answers import beginnings, questions, whereabouts
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.storage.history import Past
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.bridge import Entities
 from schemas.commands import Could, Explain
+from schemas.commits import Edit, NewEntity, Transaction
+from schemas.entities import Pose
 from schemas.relations import Where
 from tests.kb_node import home
 
 
-@pytest.fixture(scope="module")
-def flat(tmp_path_factory):
+def new_flat(folder):
     triples = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h")
-    made = home.new_map(tmp_path_factory.mktemp("flat"), triples)
+    made = home.new_map(folder, triples)
     made.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
     made.believe_places()
+    return made
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    made = new_flat(tmp_path_factory.mktemp("flat"))
+    yield made
+    home.close(made)
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A flat to change."""
+    made = new_flat(tmp_path)
     yield made
     home.close(made)
 
@@ -27,7 +43,15 @@ def flat(tmp_path_factory):
 def explained(semantic_map, name, predicate, value):
     query = Explain(name=name, predicate=predicate, value=value)
     now = whereabouts.Now(semantic_map)
-    return now.measured(query) or now.explained(query, questions.of_explain(semantic_map, query))
+    if (measured := now.measured(query)) is not None:
+        return measured
+    found = now.explained(query, questions.of_explain(semantic_map, query))
+    return found and found.dated(lambda facts: began(semantic_map, facts))
+
+
+def began(semantic_map, facts):
+    journal = semantic_map._journal
+    return beginnings.spoken(journal, Past(journal), facts, semantic_map.classes.limits)
 
 
 def refused(semantic_map, name, predicate, value):
@@ -52,10 +76,42 @@ def test_list_says_of_on_what_a_path_says_in_sparql(flat):
     assert listed == {v.entity_name(s) for s in all_on}
 
 
-def test_the_commit_is_that_of_the_poses(flat):
-    entity = flat.entity("milk1")
-    told = explained(flat, "milk1", "isOn", "counter1").text
-    assert told.endswith(f"(placed so since commit {entity.pose_provenance.commit})")
+def test_the_commit_is_the_one_since_which_the_relation_holds(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def since(name, other, predicate="isOn"):
+        return explained(own, name, predicate, other).text.rpartition(" (")[2]
+
+    def put(name, *at):
+        change(edit=(Edit(name=name, at=at),))
+
+    assert since("milk1", "counter1") == "since commit 1)"
+    change(
+        add=(NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(8.2, 0.3, 0.9))),)
+    )
+    put("cup9", 8.1, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 2)"
+    assert since("cup9", "kitchen1", "isLocatedIn") == "since commit 2)"
+    put("cup9", 8.2, 2.2, 0.74)
+    put("cup9", 8.2, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 5)"
+    assert "(since commit 5)" in explained(own, "counter1", "supports", "cup9").text
+
+
+def test_a_relation_may_begin_with_what_goes_from_between(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def new(class_, name, size, *at):
+        iri = v.bare(v.dm(class_))
+        return NewEntity(name=name, class_iri=iri, size=size, pose=Pose(position_m=at))
+
+    change(add=(new("Book", "book9", (0.2, 0.2, 0.02), 8.2, 0.3, 0.9),))
+    change(add=(new("Cup", "cup9", (0.08, 0.08, 0.1), 8.2, 0.3, 0.92),))
+    assert explained(own, "cup9", "isOn", "book9").text.endswith("(since commit 3)")
+    change(remove=("book9",))
+    assert explained(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
 
 
 def test_why_not_says_by_what_way(flat):

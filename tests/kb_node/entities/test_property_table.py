@@ -159,6 +159,7 @@ def test_the_rows_say_what_a_property_takes(stateful_map):
         values={},
     )
     assert rows["hasMainColor"].values == {"color_blue": "blue", "color_red": "red"}
+    assert rows["blushes"].range == ("Red",)
     assert not {"hasPosition", "lexicalReference", "float_coordinates_x"} & rows.keys()
 
 

@@ -6,7 +6,9 @@ from nodes.kb_node.entities.property_values import literal, plain, same
 from ontology import vocabulary as v
 from schemas import errors
 
-INTEGER, DECIMAL, BYTE, TIME = (v.iri(v.XSD + name) for name in ("integer", "decimal", "byte", "dateTime"))
+INTEGER, DECIMAL, DOUBLE, BYTE, TIME = (
+    v.iri(v.XSD + name) for name in ("integer", "decimal", "double", "byte", "dateTime")
+)
 ANY_TEXT = v.iri(f"{v.RDFS}Literal")
 
 
@@ -14,10 +16,14 @@ ANY_TEXT = v.iri(f"{v.RDFS}Literal")
     ("ranges", "text", "term", "shown"),
     [
         ({v.XSD_BOOLEAN}, "Yes", v.literal("true", v.XSD_BOOLEAN), True),
+        ({v.XSD_BOOLEAN}, "off", v.literal("false", v.XSD_BOOLEAN), False),
         ({v.XSD_BOOLEAN}, "0", v.literal("false", v.XSD_BOOLEAN), False),
         ({INTEGER}, " 12 ", v.literal("12", INTEGER), 12),
         ({INTEGER}, "9" * 30, v.literal("9" * 30, INTEGER), "9" * 30),
         ({v.XSD_FLOAT}, "12", v.literal("12.0", v.XSD_FLOAT), 12.0),
+        ({v.XSD_FLOAT}, "3e38", v.literal("3e+38", v.XSD_FLOAT), 3e38),
+        ({DOUBLE}, "1e39", v.literal("1e+39", DOUBLE), 1e39),
+        ({v.XSD_FLOAT}, "-INF", v.literal("-INF", v.XSD_FLOAT), "-INF"),
         ({v.XSD_FLOAT}, "NaN", v.literal("NaN", v.XSD_FLOAT), "NaN"),
         ({DECIMAL}, "1.50", v.literal("1.50", DECIMAL), 1.5),
         ({v.XSD_STRING}, "joe@it", v.literal("joe@it"), "joe@it"),
@@ -44,10 +50,14 @@ def test_text_is_typed_by_the_range(ranges, text, term, shown):
     [
         (v.XSD_BOOLEAN, "maybe", "p takes true or false, not 'maybe'"),
         (v.XSD_FLOAT, "heavy", "p takes a number, not 'heavy'"),
-        (INTEGER, "1.5", "p takes xsd:integer, not '1.5'"),
+        (DOUBLE, "fast", "p takes a number, not 'fast'"),
+        (v.XSD_FLOAT, "inf", "p takes a number, not 'inf'"),
+        (v.XSD_FLOAT, "1e39", "p takes a number, and 1e39 is too large for one"),
+        (DOUBLE, "-1e400", "p takes a number, and -1e400 is too large for one"),
+        (INTEGER, "1.5", "p takes a whole number, not '1.5'"),
         (BYTE, "300", "p takes xsd:byte, not '300'"),
         (TIME, "noon", "p takes xsd:dateTime, not 'noon'"),
-        (BYTE, '"x"', """p takes xsd:byte, not '"x"'"""),
+        (BYTE, '"x"', """p takes a literal of xsd:byte, not "x\""""),
     ],
 )
 def test_what_is_outside_the_range_is_refused(datatype, text, said):

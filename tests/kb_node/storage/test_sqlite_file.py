@@ -1,3 +1,4 @@
+import shutil
 import sqlite3
 import threading
 
@@ -39,6 +40,31 @@ def test_a_transaction_is_synced_to_the_disk(file):
     with file.reading() as db:
         assert db.execute("PRAGMA synchronous").fetchone() == (2,)
         assert db.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def log_of(folder):
+    return folder / "journal.sqlite-wal"
+
+
+def test_the_log_never_grows(file, tmp_path):
+    before = log_of(tmp_path).stat().st_size
+    for number in range(1500):
+        write(file, number)
+    assert log_of(tmp_path).stat().st_size == before
+    assert numbers(file) == list(range(1500))
+
+
+def test_what_was_written_is_there_after_a_kill(file, tmp_path):
+    write(file, 1)
+    left = tmp_path / "left"
+    left.mkdir()
+    for path in (tmp_path / "journal.sqlite", log_of(tmp_path)):
+        shutil.copy(path, left)
+    again = JournalFile(left / "journal.sqlite")
+    write(again, 2)
+    assert numbers(again) == [1, 2]
+    again.close()
+    assert not log_of(left).exists()
 
 
 @pytest.mark.parametrize("kind", [write, write_together])

@@ -20,6 +20,7 @@ from nodes.extern.cli.output.tables import (
     table,
 )
 from schemas import wording
+from schemas.changes import value_in_words
 from schemas.commits import Commit
 from schemas.entities import ClassInfo, Entity, PropertyInfo, Value
 from schemas.relations import Described, Relation
@@ -96,8 +97,7 @@ def _stated(e: Entity, properties: Mapping[str, PropertyInfo]) -> dict[str, str]
         values = stated if isinstance(stated, tuple) else (stated,)
         label = _english(known.labels) if known else ""
         rows[_labelled(name, label)] = ", ".join(
-            _labelled(str(value).lower() if isinstance(value, bool) else str(value), _label(known, value))
-            for value in values
+            _labelled(value_in_words(value), _label(known, value)) for value in values
         )
     return rows
 

@@ -243,6 +243,7 @@ def status(client: Client, format: str) -> None:
     metavar="N",
     help="Refuse results of more than N rows.",
 )
+@_as_of
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
     """Run a read-only SPARQL 1.1 query.

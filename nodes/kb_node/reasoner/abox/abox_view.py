@@ -119,10 +119,11 @@ class View:
         objects: dict[Term, list[Term]] = {}
         if types := [schema.classes[cls] for cls in self._given(node)]:
             objects[TYPE] = types
+        source, axioms, predicate = store.source, schema.axioms, store.predicate
+        terms, object_ = store.terms, store.object
         for edge in store.out.all(node):
-            if store.source[edge] == ASSERTED:
-                predicate = schema.axioms[store.predicate[edge]].term
-                objects.setdefault(predicate, []).append(store.terms[store.object[edge]])
+            if source[edge] == ASSERTED:
+                objects.setdefault(axioms[predicate[edge]].term, []).append(terms[object_[edge]])
         return objects
 
     def _asserted_types(self, s: Term | None, o: Term | None) -> Iterator[Triple]:

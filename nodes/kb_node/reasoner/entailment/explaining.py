@@ -24,7 +24,7 @@ _FACTS = 2000
 _SMALL = 5000
 """Triples that can be worked out anew in a second, for suppositions of the schema."""
 PATIENCE_S = 2.0
-"""How long a proof is looked for, and then again how long it is made smaller."""
+"""How long a proof is looked for, and then again how long it is made smaller, in time of the processor."""
 
 
 def nearby(reasoner: Reasoner, terms: Sequence[Term]) -> list[Triple]:
@@ -67,7 +67,7 @@ def why_entailed(
     support = [one for one in effort.seen if one in known]
     if not _suffice(support, triple):
         support = sorted(known)
-    support = _shrunk(support, lambda some: _suffice(some, triple), time.monotonic() + patience_s)
+    support = _shrunk(support, lambda some: _suffice(some, triple), time.thread_time() + patience_s)
     text = following(triple, support, words or reasoner.words)
     return Explanation(conclusion=triple, support=tuple(support), steps=(), text=text)
 
@@ -88,7 +88,7 @@ def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float
         traced = Effort(traced=True, anew=False)
         Prover(reasoner, traced).nothing_can_be(cls)
         support = [one for one in traced.seen if one in known]
-        support = _shrunk(support, partial(_suffices_for_empty, cls), time.monotonic() + PATIENCE_S)
+        support = _shrunk(support, partial(_suffices_for_empty, cls), time.thread_time() + PATIENCE_S)
         goal = (cls, _SUB_CLASS_OF, NOTHING)
         text = following(goal, support, reasoner.words)
         yield Explanation(conclusion=goal, support=tuple(support), steps=(), text=text)
@@ -111,12 +111,15 @@ def _suffice(triples: Sequence[Triple], goal: Triple) -> bool:
 def _shrunk(
     triples: list[Triple], suffice: Callable[[Sequence[Triple]], bool], until_s: float
 ) -> list[Triple]:
-    """Fewer triples that suffice, in their order: first large parts are left out, then single triples."""
+    """Fewer triples that suffice, in their order: first large parts are left out, then single triples.
+
+    `until_s` is a time of this thread's clock, so that what is told does not depend on who else is at work.
+    """
     size = len(triples)
-    while size > 1 and time.monotonic() < until_s:
+    while size > 1 and time.thread_time() < until_s:
         size = (size + 1) // 2
         start = 0
-        while start < len(triples) and time.monotonic() < until_s:
+        while start < len(triples) and time.thread_time() < until_s:
             rest = triples[:start] + triples[start + size :]
             if suffice(rest):
                 triples = rest

@@ -50,7 +50,7 @@ class Axioms:
             iri("owl:propertyDisjointWith"): lambda p, q: self._never_both([p, q]),
             iri("owl:inverseOf"): self._inverse,
             iri("owl:propertyChainAxiom"): self._chain,
-            iri("rdfs:domain"): lambda p, c: f"whatever {self._some(p)} is {self.a(c)}",
+            iri("rdfs:domain"): self._domain,
             iri("rdfs:range"): self._range,
         }
         self._kinds: Final[dict[Term, Callable[[Term], str]]] = {
@@ -242,6 +242,12 @@ class Axioms:
     def _chained(self, links: Sequence[Term], result: Term) -> str:
         said = " that ".join(self.verb(link).says_of("something") for link in links)
         return f"whatever {said} {self.verb(result).says_of('the latter')}"
+
+    def _domain(self, prop: Term, cls: Term) -> str:
+        verb = self.verb(prop)
+        if verb.kind == "is" and self._words.is_data(prop):  # of what is not open, too
+            return f"whatever has a value for “is {verb.rest}” {self.clause(cls)}"
+        return f"whatever {self._some(prop)} {self.clause(cls)}"
 
     def _range(self, prop: Term, cls: Term) -> str:
         verb = self.verb(prop)

@@ -42,7 +42,7 @@ _UNCOUNTABLE: Final = frozenset(
         *("coordinates", "headphones", "scissors", "stairs", "trousers"),
     )
 )
-"""Nouns that take no article, also as the last word of a label."""
+"""Nouns that take no article, also as the last word of a label; and so do all in -ware."""
 _BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
 
 
@@ -143,7 +143,8 @@ class Words:
 
 def is_uncountable(noun: str) -> bool:
     """Whether a noun takes neither "a" nor "every"."""
-    return noun.rpartition(" ")[2] in _UNCOUNTABLE
+    last = noun.rpartition(" ")[2]
+    return last in _UNCOUNTABLE or last.endswith("ware")
 
 
 def article(noun: str) -> str:

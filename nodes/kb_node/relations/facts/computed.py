@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Set
+from collections.abc import Callable, Collection, Iterable, Set
 from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.facts.place_facts import Fact, Facts
@@ -50,7 +50,7 @@ class Computed:
         self._was_flat = self.facts.space.is_flat
         denied = {t for t in self._take_up((), _of_places(said)) if self._is_so_no_more(t, known)}
         self.denied |= denied
-        return Step(set(self._triples(self.facts, known)), set(), denied, set())
+        return Step(self._triples(list(self.facts), known), set(), denied, set())
 
     def after(
         self,
@@ -76,19 +76,26 @@ class Computed:
         def as_it_is(name: str) -> Entity | None:
             return now.get(name) or before(name)
 
-        went = set(self._triples(gone, before))
-        came = set(self._triples(come, as_it_is))
+        went = self._triples(gone, before)
+        came = self._triples(come, as_it_is)
         retracted, inserted = _of_places(retracted), _of_places(inserted)
         came.update(triple for triple in retracted if self._still_holds(triple, as_it_is))
         touched = {*removed, *now, *shifted}
         newly, no_longer = self._judge(touched, gone | come, retracted, inserted, as_it_is)
         return Step(came - went, went - came, newly, no_longer)
 
-    def _triples(self, facts: Iterable[Fact], known: Known) -> Iterator[Triple]:
-        for name, relation, other_name in facts:
-            entity, other = known(name), known(other_name)
-            if relation in self._relations and entity is not None and other is not None:
-                yield v.iri(entity.iri), v.dm(relation), v.iri(other.iri)
+    def _triples(self, facts: Collection[Fact], known: Known) -> set[Triple]:
+        """Those about entities, by properties that the TBox has."""
+        properties = {relation: v.dm(relation) for relation in self._relations}
+        terms: dict[str, Term] = {}
+        for name in {name for fact in facts for name in (fact[0], fact[2])}:
+            if (entity := known(name)) is not None:
+                terms[name] = v.iri(entity.iri)
+        return {
+            (terms[name], properties[relation], terms[other])
+            for name, relation, other in facts
+            if relation in properties and name in terms and other in terms
+        }
 
     def _still_holds(self, triple: Triple, known: Known) -> bool:
         """Whether what is no longer asserted is computed."""

@@ -7,23 +7,28 @@ past moment give the same.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice
-from typing import NamedTuple
+from itertools import chain, islice
+from typing import Final, NamedTuple
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.facts.rules import RULES, About, Rule
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid
-from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.relations.measuring.broad_phase import by_place
 from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.survey import Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from schemas.entities import Entity
 from schemas.relations import RelationName
 
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
-_STEP = 500
+_STEP = 4000
 """Entities."""
+_MOST_AT_ONCE = 16_000
+"""So many are surveyed together where nobody waits: those around them are looked up less often."""
+MANY: Final = 64
+"""So many are worked out in arrays."""
 _FORGOTTEN = 8
 """Solids for each that an update touches."""
 _MOST_TO_FORGET = 1000
@@ -84,17 +89,32 @@ class Facts:
 
     def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
         """Begin with these, in steps of some tens of milliseconds."""
-        for some in parts(entities, _STEP, _nothing):
-            for entity in some:
-                self.space.put(entity)
+        for _ in self.space.put_all(entities):
             yield
         self.space.shifted()
-        for kept in self._kept:
-            for names in parts(tuple(self.space.solids), _STEP, _nothing):
-                kept.work_out(self.space, names, set(), set())
-                yield
+        gone, come = set[Fact](), set[Fact]()
+        for _ in self._working_out(self._things(self.space.solids), gone, come, _STEP):
+            come.clear()
+            yield
         for solid in self.space.solids.values():
             solid.forget()
+
+    def _things(self, names: Iterable[str]) -> list[Solid]:
+        """Those that are there and are no places."""
+        solids = self.space.solids
+        return [solid for name in names if (solid := solids.get(name)) is not None and not solid.is_place]
+
+    def _working_out(
+        self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact], step: int
+    ) -> Iterator[None]:
+        """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
+        space = self.space
+        for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
+            survey = Survey(space, some)
+            with space.remembering():
+                for kept in self._kept:
+                    kept.take(space, some, survey, gone, come)
+            yield
 
     def forget(self) -> None:
         """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
@@ -124,18 +144,33 @@ class Facts:
             moved[name] = None
             left += filter(None, (self._counted(name),))
             space.take(name)
-        for entity in changed:
-            moved[entity.name] = None
-            left += filter(None, (self._counted(entity.name),))
-            fresh += filter(None, (space.put(entity),))
+        changed = list(changed)
+        moved.update((entity.name, None) for entity in changed)
+        if space.solids:
+            left += filter(None, (self._counted(entity.name) for entity in changed))
+        if len(changed) < MANY:
+            fresh += filter(None, map(space.put, changed))
+        else:
+            fresh += chain.from_iterable(space.put_all(changed))
         shifted = space.shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
         moved.update((solid.name, None) for solid in shifted)
         gone: set[Fact] = set()
         come: set[Fact] = set()
-        for kept in self._kept:
-            kept.update(space, moved, left, fresh, gone, come)
-        self._to_forget += _FORGOTTEN * len(moved)
+        concerned = [kept.concerned(space, moved, left, fresh) for kept in self._kept]
+        if sum(map(len, concerned)) < MANY * len(concerned):
+            for kept, names in zip(self._kept, concerned, strict=True):
+                kept.work_out(space, names, gone, come)
+        else:
+            everybody = dict.fromkeys(chain.from_iterable(concerned))
+            things = self._things(everybody)
+            if len(things) < len(everybody):
+                left_over = everybody.keys() - {solid.name for solid in things}
+                for kept in self._kept:
+                    kept.work_out(space, left_over, gone, come)
+            for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
+                pass
+        self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
         if self._to_forget > _MOST_TO_FORGET:
             self.forget()
         self.shifted = frozenset(solid.name for solid in shifted)
@@ -161,28 +196,50 @@ class _Kept:
             for relation, other in found:
                 yield name, relation, other
 
-    def update(
-        self,
-        space: Space,
-        moved: Iterable[str],
-        left: Iterable[Solid],
-        fresh: Iterable[Solid],
-        gone: set[Fact],
-        come: set[Fact],
-    ) -> None:
-        """Work out again what may be otherwise, and add what is to `gone` and `come`."""
-        concerned: dict[str, None] = {}
-        for name in moved:
-            concerned.update(dict.fromkeys(self.about.get(name, ())))
-            concerned[name] = None
-        if not concerned.keys() >= space.solids.keys():
-            others: Sequence[Solid] = (*fresh, *left) if self.rule.when_gone else tuple(fresh)
-            if len(others) > crowds.MOST:
-                beside, others = space.by_crowds(others, self.rule.margin_m(space.limits))
-                concerned.update((solid.name, None) for solid in beside)
+    def concerned(
+        self, space: Space, moved: Iterable[str], left: Iterable[Solid], fresh: Iterable[Solid]
+    ) -> dict[str, None]:
+        """Of whom something else may hold now."""
+        found = dict.fromkeys(moved)
+        about = self.about
+        for name in moved if about else ():
+            if name in about:
+                found.update(about[name])
+        if found.keys() >= space.solids.keys():
+            return found
+        others: Sequence[Solid] = (*fresh, *left) if self.rule.when_gone else tuple(fresh)
+        if len(others) < MANY:
             for solid in others:
-                self._add_whom_it_concerns(space, solid, concerned)
-        self.work_out(space, concerned, gone, come)
+                self._add_whom_it_concerns(space, solid, found)
+        else:
+            beside = space.beside(others, self.rule.margin_m(space.limits))
+            found.update((solid.name, None) for solid in beside)
+        return found
+
+    def take(
+        self, space: Space, solids: Sequence[Solid], survey: Survey, gone: set[Fact], come: set[Fact]
+    ) -> None:
+        """Have the facts of those who were surveyed, and add what is otherwise to `gone` and `come`."""
+        facts, of, about = self.rule.facts, self.of, self.about
+        found = self.rule.of_many(survey)
+        if not of and found.count(()) == len(found):
+            return
+        for solid, known in zip(solids, found, strict=True):
+            now = tuple(facts(space, solid)) if known is None else known
+            name = solid.name
+            before = of.get(name, ())
+            if now == before:
+                continue
+            if before:
+                self._replace(name, before, now, gone, come)
+                continue
+            of[name] = now
+            for relation, other in now:
+                come.add((name, relation, other))
+                if other in about:
+                    about[other][name] = None
+                else:
+                    about[other] = {name: None}
 
     def work_out(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
         """Work out the facts of some, and add what is otherwise to `gone` and `come`."""

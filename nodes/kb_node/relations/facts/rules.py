@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.arrangement import attachments
 from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology import vocabulary as v
 from schemas.explanations import Term
@@ -21,6 +22,7 @@ About = tuple[RelationName, str]
 """What a fact says of its subject: ("isOn", "table1")."""
 
 
+_WHEREABOUTS: Final[tuple[RelationName, RelationName, RelationName]] = ("isInside", "isOn", "isLocatedIn")
 _ROUNDING = 1e-6
 """What is asked for here may be asked for in vain."""
 
@@ -32,6 +34,8 @@ class Rule(NamedTuple):
     """Each is a property of its name in the namespace of the household TBox."""
     facts: Callable[[Space, Solid], Iterator[About]]
     """What holds of a thing. It is not asked of places."""
+    of_many: Callable[[Survey], list[tuple[About, ...] | None]]
+    """The same for each of those who were surveyed; None where `facts` has to be asked."""
     concerns: Callable[[Space, Solid, Solid], bool]
     """Whether something may come to hold of the second because of the first, who is new there.
 
@@ -55,9 +59,35 @@ def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
         yield "isLocatedIn", place[0].name
 
 
+def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
+    rows = list(zip(survey.container.tolist(), survey.support.tolist(), survey.place.tolist(), strict=True))
+    solids = survey.solids
+    known = {
+        some: tuple(
+            (relation, solids[row].name)
+            for relation, row in zip(_WHEREABOUTS, some, strict=True)
+            if row != NOBODY
+        )
+        for some in set(rows)
+    }
+    found: list[tuple[About, ...] | None] = [known[some] for some in rows]
+    for row in survey.is_open.nonzero()[0].tolist():
+        found[row] = None
+    return found
+
+
 def _attachments(space: Space, solid: Solid) -> Iterator[About]:
     for other in attachments(space, solid):
         yield "isAttachedTo", other.name
+
+
+def _attachments_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
+    found: list[tuple[About, ...] | None] = [()] * len(survey.may_hang)
+    for row in survey.may_hang.nonzero()[0].tolist():
+        found[row] = None
+    for row, others in survey.hangs_on.items():
+        found[row] = tuple(("isAttachedTo", name) for name in sorted(survey.solids[k].name for k in others))
+    return found
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
@@ -81,9 +111,12 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
 
 
 RULES: Final[tuple[Rule, ...]] = (
-    Rule(("isInside", "isOn", "isLocatedIn"), _whereabouts, _may_bear, when_gone=True),
-    Rule(("isAttachedTo",), _attachments, _may_hold, lambda limits: limits.attached_m, when_gone=True),
-)
+    Rule(_WHEREABOUTS, _whereabouts, _whereabouts_of_many, _may_bear, when_gone=True),
+    Rule(
+        ("isAttachedTo",), _attachments, _attachments_of_many, _may_hold, lambda limits: limits.attached_m,
+        when_gone=True,
+    ),
+)  # fmt: skip
 
 COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}
 """The properties that are computed, where a TBox has them."""

@@ -192,9 +192,14 @@ def convex(
         ry += abs(y)
         rz += abs(z)
     if round_:
-        rx += math.sqrt(sum(v[0] * v[0] for v in round_))
-        ry += math.sqrt(sum(v[1] * v[1] for v in round_))
-        rz += math.sqrt(sum(v[2] * v[2] for v in round_))
+        sx = sy = sz = 0.0
+        for x, y, z in round_:
+            sx += x * x
+            sy += y * y
+            sz += z * z
+        rx += math.sqrt(sx)
+        ry += math.sqrt(sy)
+        rz += math.sqrt(sz)
     low, high = (cx - rx, cy - ry, cz - rz), (cx + rx, cy + ry, cz + rz)
     if points:
         ends = [(min(along), max(along)) for along in zip(*points, strict=True)]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ontology.model_shapes import ConvexPart, Interior, ModelShape, Surface, shapes
 from schemas.entities import Size, Vector
 
@@ -11,11 +14,11 @@ from schemas.entities import Size, Vector
 @lru_cache(maxsize=8192)
 def fitted(model: str, size: Size) -> ModelShape:
     """The shape of a model stretched to a size; the whole box of what has no model."""
-    own = shapes().get(model) if model else None
+    own = own_shape(model)
     if own is None:
         return box(size)
-    if own.turns and _is_turned(own.size_m, size):
-        own = _quarter_turned(own)
+    if _is_turned(own, size):
+        own = quarter_turned(own)
     if own.size_m == size:
         return own
     fx, fy, fz = (mine / its for mine, its in zip(size, own.size_m, strict=True))
@@ -51,6 +54,11 @@ def fitted(model: str, size: Size) -> ModelShape:
     )
 
 
+def own_shape(model: str) -> ModelShape | None:
+    """The shape of a model at its own size; None for what has no model."""
+    return shapes().get(model) if model else None
+
+
 def box(size: Size) -> ModelShape:
     """A box carries things on all of its top."""
     x, y, z = (extent / 2 for extent in size)
@@ -61,13 +69,22 @@ def box(size: Size) -> ModelShape:
     )
 
 
-def _is_turned(own: Size, size: Size) -> bool:
-    """Whether the simulator meets a size by turning the model a quarter (sim_node/models/library.py)."""
+def _is_turned(shape: ModelShape, size: Size) -> bool:
+    own = shape.size_m
     longer, shorter = max(own[:2]), min(own[:2])
-    return (own[0] - own[1]) * (size[0] - size[1]) < 0.0 and longer > 1.3 * shorter
+    return shape.turns and (own[0] - own[1]) * (size[0] - size[1]) < 0.0 and longer > 1.3 * shorter
 
 
-def _quarter_turned(shape: ModelShape) -> ModelShape:
+def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(N,) whether the simulator meets (N, 3) sizes by turning the model (sim_node/models/library.py)."""
+    own = shape.size_m
+    longer, shorter = max(own[:2]), min(own[:2])
+    may_turn = shape.turns and longer > 1.3 * shorter
+    turned: NDArray[np.bool_] = (own[0] - own[1]) * (sizes[:, 0] - sizes[:, 1]) < 0.0
+    return turned & may_turn
+
+
+def quarter_turned(shape: ModelShape) -> ModelShape:
     """The shape turned by -90 degrees about z: (x, y) becomes (y, -x)."""
     x, y, z = shape.size_m
 

@@ -25,24 +25,26 @@ _BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
 Matrix = tuple[Vector, Vector, Vector]
 Bounds = tuple[float, float, float, float]
 """Least x and y, greatest x and y [m]."""
-_WORKED_OUT = ("corners", "outline", "base", "parts")
 
 
 class Form:
     """A shape as it is turned, seen from the middle of its bottom [m]; the axes are those of the map.
 
-    Most things of a map stand upright like others of their model: what is worked out here is so once for all
-    of them.
+    Most things of a map stand upright like others of their model: what is worked out here is worked out once
+    for all of them, and not before somebody asks.
     """
 
+    __slots__ = (
+        "__dict__", "is_level", "is_upright", "model", "orientation", "rotation", "size", "users",
+    )  # fmt: skip
+
     def __init__(self, model: str | None, size: Size, wxyz: Quaternion) -> None:
-        """None has no parts, and "" is a box."""
+        """A `model` of None has no parts, and "" is a box."""
         self.model: Final = model
         self.size: Final = size
         self.orientation: Final = wxyz
         self.rotation: Final = _rotation(wxyz)
         """Map from body."""
-        self.shape: Final = _BOX if model is None else fitted(model, size)
         self.users = 0
         """How many solids have it, or had it."""
         self.is_level: Final = self.rotation[2][2] >= LEVEL
@@ -51,6 +53,11 @@ class Form:
     def is_of(self, model: str | None, size: Size, wxyz: Quaternion) -> bool:
         """Whether it is the form of a model at a size, turned so."""
         return self.orientation == wxyz and self.size == size and self.model == model
+
+    @lazily
+    def shape(self) -> ModelShape:
+        """The shape of its model at its size, in its own frame."""
+        return _BOX if self.model is None else fitted(self.model, self.size)
 
     def turned(self, vector: Vector) -> Vector:
         """A vector of its own frame along the axes of the map."""
@@ -142,9 +149,8 @@ class Form:
         return area(self.outline)
 
     def forget(self) -> None:
-        """Drop what takes most of the memory and can be worked out again."""
-        for name in _WORKED_OUT:
-            self.__dict__.pop(name, None)
+        """Drop what can be worked out again."""
+        del self.__dict__
 
 
 _EXACTLY = 1e-9
@@ -156,6 +162,7 @@ def form_of(model: str | None, size: Size, wxyz: Quaternion) -> Form:
     return Form(model, size, wxyz)
 
 
+@lru_cache(maxsize=1024)
 def _rotation(wxyz: Quaternion) -> Matrix:
     w, x, y, z = wxyz
     return (

@@ -14,11 +14,12 @@ from nodes.kb_node.relations.geometry.polygons import Point
 from ontology.model_shapes import Interior, own_size_m
 from schemas.entities import Entity, Size, Vector
 
+Extent = tuple[Bounds, float, float]
+"""Bounds, bottom and top."""
+UNMEASURED: Final[Size] = (0.02, 0.02, 0.02)
+"""The size of what has none: a point, nearly."""
 SAMPLES = 5
 """Points along each axis that stand for a volume."""
-_POINT: Final[Size] = (0.02, 0.02, 0.02)
-"""Of what nobody measured."""
-_WORKED_OUT = ("outline", "base", "centre", "supports", "parts", "samples")
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,21 @@ class Solid:
     but where its position is.
     """
 
-    def __init__(self, name: str, position: Vector, form: Form, is_place: bool, is_measured: bool) -> None:
+    __slots__ = (
+        "__dict__", "bottom", "bounds", "form", "is_level", "is_measured", "is_place", "name", "position",
+        "top",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        name: str,
+        position: Vector,
+        form: Form,
+        is_place: bool,
+        is_measured: bool,
+        extent: Extent | None = None,
+    ) -> None:
+        """`extent` is that of such a solid, where somebody has worked it out already."""
         self.name: Final = name
         self.position: Final = position
         self.form: Final = form
@@ -46,14 +61,24 @@ class Solid:
         form.users += 1
         self.is_level: Final = form.is_level
         """Whether it leans by less than a fifth of a degree."""
-        x, y, z = position
-        low_x, low_y, high_x, high_y = form.bounds
-        self.bounds: Final[Bounds] = (x + low_x, y + low_y, x + high_x, y + high_y)
+        bounds, bottom, top = extent or self._extent()
+        self.bounds: Final = bounds
         """Least x and y, greatest x and y [m]."""
-        self.bottom: Final = z + (form.bottom if is_measured and not is_place else form.lowest_corner)
+        self.bottom: Final = bottom
         """Its lowest point [m]."""
-        self.top: Final = z + form.top
+        self.top: Final = top
         """Its highest point [m], that of its box."""
+
+    def _extent(self) -> Extent:
+        form, (x, y, z) = self.form, self.position
+        low_x, low_y, high_x, high_y = form.bounds
+        bounds = (x + low_x, y + low_y, x + high_x, y + high_y)
+        return bounds, z + (form.bottom if self.has_parts else form.lowest_corner), z + form.top
+
+    @property
+    def has_parts(self) -> bool:
+        """Whether anything of it can be met: it is a thing, and its size is known."""
+        return self.is_measured and not self.is_place
 
     @property
     def rotation(self) -> Matrix:
@@ -137,14 +162,13 @@ class Solid:
     @lazily
     def parts(self) -> tuple[Convex, ...]:
         """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
-        if self.is_place or not self.is_measured:
+        if not self.has_parts:
             return ()
         return tuple([moved(part, self.position) for part in self.form.parts])
 
     def forget(self) -> None:
         """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
-        for name in _WORKED_OUT:
-            self.__dict__.pop(name, None)
+        del self.__dict__
         if self.form.users <= 1:
             self.form.forget()
 
@@ -178,13 +202,21 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     pose = entity.pose
     if pose is None:
         return None
-    is_place, model = entity.place, entity.model
-    size = entity.size_m or (None if is_place else own_size_m(model) if model else None)
-    known_as = None if size is None or is_place else model
-    extent, turn = size or _POINT, pose.orientation_wxyz
-    if before is not None and before.form.is_of(known_as, extent, turn):
+    model, size = shape_of(entity)
+    extent, turn = size or UNMEASURED, pose.orientation_wxyz
+    if before is not None and before.form.is_of(model, extent, turn):
         form = before.form
         form.users -= 1
     else:
-        form = form_of(known_as, extent, turn)
-    return Solid(entity.name, pose.position_m, form, is_place, size is not None)
+        form = form_of(model, extent, turn)
+    return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
+
+
+def shape_of(entity: Entity | Placed) -> tuple[str | None, Size | None]:
+    """What its form is of: its model, None without parts, and its size, or that of its model [m]."""
+    size = entity.size_m
+    if entity.place:
+        return None, size
+    if size is None and entity.model:
+        size = own_size_m(entity.model)
+    return None if size is None else entity.model, size

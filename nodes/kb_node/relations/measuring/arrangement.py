@@ -13,9 +13,9 @@ from nodes.kb_node.relations.measuring.space import Space
 
 _OPPOSITE = -math.cos(math.radians(60.0))
 """What is between two sees them in directions this far from one another: 120 degrees or more."""
-_BESIDE_M = 0.2
+BESIDE_M = 0.2
 """What is further from another thing is not beside it."""
-_ALONGSIDE = 0.5
+ALONGSIDE = 0.5
 """Of the height of what hangs that is alongside what it hangs on."""
 
 
@@ -108,10 +108,10 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     if solid.bottom <= other.bottom + limits.gap_m or solid.top <= solid.bottom:
         return None
     share = (min(solid.top, other.top) - solid.bottom) / (solid.top - solid.bottom)
-    if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, _BESIDE_M):
+    if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, BESIDE_M):
         return None
     apart = distance(solid.outline, other.outline)
-    holds = apart <= limits.attached_m and share >= _ALONGSIDE
+    holds = apart <= limits.attached_m and share >= ALONGSIDE
     return Measure(holds, apart, share, limit=limits.attached_m)
 
 

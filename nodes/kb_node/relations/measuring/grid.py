@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 
 from nodes.kb_node.relations.geometry.forms import Bounds
 from nodes.kb_node.relations.geometry.solids import Solid
@@ -38,6 +38,20 @@ class Grid:
             return
         for cell in cells:
             there = self._cells.setdefault(cell, {})
+            there[solid] = None
+            if len(there) > crowds.MOST:
+                self._crowd(cell, there, solid)
+
+    def add_to(self, cell: Cell, solids: Sequence[Solid]) -> None:
+        """File some under a cell that the bounds of each cover; `add` does so for all cells of one."""
+        there = self._cells.get(cell)
+        if there is None:
+            there = self._cells[cell] = {}
+        if len(there) + len(solids) <= crowds.MOST:
+            for solid in solids:
+                there[solid] = None
+            return
+        for solid in solids:
             there[solid] = None
             if len(there) > crowds.MOST:
                 self._crowd(cell, there, solid)
@@ -105,6 +119,24 @@ class Grid:
             if (its := solid.bounds)[0] <= x1 and its[2] >= x0 and its[1] <= y1 and its[3] >= y0
         ]
 
+    def filed_in(self, cells: Iterable[Cell]) -> list[Solid]:
+        """Once each who is filed under some cells, or is in none."""
+        found = dict(self._large)
+        for cell in cells:
+            found.update(self._cells.get(cell, {}))
+        return list(found)
+
+    def counted_in(self, cells: Iterable[Cell], also: Iterable[Solid] = ()) -> list[Solid]:
+        """Once each: `also`, and who counts in some cells, or is in none."""
+        found = dict.fromkeys(also)
+        for cell in (_LARGE, *cells):
+            crowd = self.crowds.get(cell)
+            if crowd is not None:
+                found.update(crowd.counted)
+            else:
+                found.update(self._large if cell is None else self._cells.get(cell, {}))
+        return list(found)
+
     def counts(self, solid: Solid) -> bool:
         """Whether it does anywhere."""
         if not self.crowds:
@@ -115,25 +147,6 @@ class Grid:
     def is_crowded(self, solid: Solid) -> bool:
         """Whether it is in a crowd, which may have members that do not count."""
         return bool(self.crowds) and not self.crowds.keys().isdisjoint(_cells(solid.bounds) or (_LARGE,))
-
-    def by_crowds(self, solids: Iterable[Solid], margin_m: float) -> tuple[dict[Solid, None], list[Solid]]:
-        """Of some: who may be beside those that are very many in one spot, and the others of them.
-
-        So nobody has to look at every pair of a crowd.
-        """
-        alike: dict[tuple[Cell, ...] | None, list[Solid]] = {}
-        for solid in solids:
-            x0, y0, x1, y1 = solid.bounds
-            cells = _cells((x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m))
-            alike.setdefault(None if cells is None else tuple(cells), []).append(solid)
-        beside: dict[Solid, None] = {}
-        others: list[Solid] = []
-        for key, some in alike.items():
-            if len(some) > crowds.MOST:
-                beside.update(dict.fromkeys(self._filed(None if key is None else list(key))))
-            else:
-                others += some
-        return beside, others
 
     def told_crowds(self, names: Collection[str] | None = None) -> list[str]:
         """Where not all count, a sentence each, the most crowded first; with `names`, where one of these is.

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
+from nodes.kb_node.progress import parts
+from nodes.kb_node.relations.geometry.columns import solids_of
 from nodes.kb_node.relations.geometry.forms import Bounds
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.broad_phase import beside, file
 from nodes.kb_node.relations.measuring.grid import Grid
 from nodes.kb_node.relations.measuring.measures import Measure
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from schemas.entities import Entity
 
 Found = tuple[Solid, Measure]
+_STEP = 2000
+"""Entities."""
 
 
 class Whereabouts(NamedTuple):
@@ -33,12 +38,28 @@ class Space:
     def __init__(self, entities: Iterable[Entity | Placed] = (), limits: Thresholds | None = None) -> None:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
-        self._grid = Grid()
+        self.grid: Final = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
         self._remembered: dict[str, Whereabouts] | None = None
-        for entity in entities:
-            self.put(entity)
+        for _ in self.put_all(entities):
+            pass
+
+    def put_all(self, entities: Iterable[Entity | Placed]) -> Iterator[list[Solid]]:
+        """`put` many, some thousand at a time; the solids of each step."""
+        for some in parts(entities, _STEP, _nothing):
+            newest = {entity.name: entity for entity in some}
+            for name in newest.keys() & self.solids.keys() if self.solids else ():
+                self.take(name)
+            solids = solids_of(newest.values())
+            self.solids.update((solid.name, solid) for solid in solids)
+            file(self.grid, solids)
+            self._raised.update(
+                solid.name
+                for solid in solids
+                if not solid.is_place and (solid.position[2] != 0.0 or newest[solid.name].size_m is not None)
+            )
+            yield solids
 
     def put(self, entity: Entity | Placed) -> Solid | None:
         """Add an entity, or have it where it is now; its solid, if it has a position."""
@@ -58,7 +79,7 @@ class Space:
         """Take an entity out, if it is there; its solid."""
         solid = self.solids.pop(name, None)
         if solid is not None:
-            self._grid.remove(solid)
+            self.grid.remove(solid)
             self._raised.discard(name)
         return solid
 
@@ -85,7 +106,7 @@ class Space:
 
     def shifted(self) -> list[Solid]:
         """Who came to count, or does not count any more, since this was asked last."""
-        grid = self._grid
+        grid = self.grid
         if not grid.shifted:
             return []
         found = list(grid.shifted)
@@ -94,35 +115,35 @@ class Space:
 
     def _add(self, solid: Solid) -> None:
         self.solids[solid.name] = solid
-        self._grid.add(solid)
+        self.grid.add(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
-        return [other for other in self._grid.around(solid.bounds, margin_m) if other is not solid]
+        return [other for other in self.grid.around(solid.bounds, margin_m) if other is not solid]
 
     def counted_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
-        return [other for other in self._grid.counted_around(solid.bounds, margin_m) if other is not solid]
+        return [other for other in self.grid.counted_around(solid.bounds, margin_m) if other is not solid]
 
     def counts(self, solid: Solid) -> bool:
         """Whether others look at it."""
-        return self._grid.counts(solid)
+        return self.grid.counts(solid)
 
     def is_crowded(self, solid: Solid) -> bool:
         """Whether there is more around it than is looked at."""
-        return self._grid.is_crowded(solid)
+        return self.grid.is_crowded(solid)
 
-    def by_crowds(self, solids: Iterable[Solid], margin_m: float) -> tuple[dict[Solid, None], list[Solid]]:
-        """Of some: who may be beside those that are very many in one spot, and the others of them."""
-        return self._grid.by_crowds(solids, margin_m)
+    def beside(self, solids: Sequence[Solid], margin_m: float) -> Iterable[Solid]:
+        """Who may be within a margin of many: all who are there or thereabouts."""
+        return beside(self.grid, solids, margin_m) or self.solids.values()
 
     def crowds(self, names: Collection[str] | None = None) -> list[str]:
         """Where not all count, a sentence each, the most crowded first; with `names`, where one is."""
-        return self._grid.told_crowds(names)
+        return self.grid.told_crowds(names)
 
     def within(self, bounds: Bounds) -> list[Solid]:
         """Whose bounds meet these."""
-        return self._grid.around(bounds)
+        return self.grid.around(bounds)
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
@@ -215,6 +236,10 @@ class Space:
         return (
             back is not None and back.holds and (abs(back.gap_m), solid.name) < (abs(made.gap_m), other.name)
         )
+
+
+def _nothing() -> None:
+    pass
 
 
 def _area(solid: Solid) -> tuple[float, str]:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
+
+from msgspec import structs
 
 from nodes import bus
 from nodes.kb_node.sparql.protocol import News
 from schemas import codec, keys
+
+_TOO_MUCH: Final = (
+    f"its rows changed by more than {bus.PUBLISHED >> 20} MB, which is more than is told at once; ask again"
+)
 
 
 class NewsStand:
@@ -22,6 +28,10 @@ class NewsStand:
             if news.watch not in self._publishers:
                 key = keys.query_key(news.watch)
                 self._publishers[news.watch] = bus.publisher(self._session, keys.QUERY, key)
-            self._publishers[news.watch].put(codec.encode(news.rows), encoding=codec.encoding_of(news.rows))
+            rows = news.rows
+            if len(payload := codec.encode(rows)) > bus.PUBLISHED:
+                rows = structs.replace(rows, appeared=(), disappeared=(), error=_TOO_MUCH)
+                payload = codec.encode(rows)
+            self._publishers[news.watch].put(payload, encoding=codec.encoding_of(rows))
         if news.ended and (publisher := self._publishers.pop(news.watch, None)) is not None:
             publisher.undeclare()

@@ -1,9 +1,11 @@
 """What follows although no rule derives it, with the asserted triples that it takes."""
 
+import time
+
 import pytest
 
 from nodes.kb_node.reasoner import Reasoner, entails
-from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed
+from nodes.kb_node.reasoner.entailment.explaining import _shrunk, nearby, why_entailed
 from tests.kb_node.reasoner.graphs import household, triple, triples
 
 TBOX = """
@@ -81,3 +83,13 @@ def test_a_value_that_is_there_needs_no_other_name():
     assert not entails(reasoner, [triple(":thing1 a :Elsewhere")])
     assert seen
     assert all(one is engine for one in seen)
+
+
+def test_a_busy_machine_makes_no_proof_longer():
+    many = [(f"<s{i}>", "<p>", "<o>") for i in range(16)]
+
+    def suffice(some):
+        time.sleep(0.01)  # others have the core
+        return many[7] in some
+
+    assert _shrunk(many, suffice, time.thread_time() + 0.03) == [many[7]]

@@ -39,6 +39,15 @@ HOLDS = {
         "f has affordance cooling, because f is a fridge (asserted), and every fridge has affordance "
         "cooling.",
     ),
+    ":a a dm:Object": (
+        ":a dm:isSwitchedOn false",
+        "a is an object, because it is not switched on (asserted), and whatever has a value for “is switched "
+        "on” is an object.",
+    ),
+    ":plate1 a dm:Tableware": (
+        ":plate1 a dm:Dishware",
+        "plate1 is tableware, because it is dishware (asserted), and whatever is dishware is tableware.",
+    ),
     ":door1 dm:isOpen true": (":door1 dm:isOpen true", "door1 is open (asserted)."),
     ":door1 dm:isOpen false": (":door1 dm:isOpen false", "door1 is not open (asserted)."),
     ":m owl:sameAs :m": (":m a dm:Milk", "m is the same as m (always)."),

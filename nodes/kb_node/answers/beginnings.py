@@ -1,0 +1,150 @@
+"""Since when a computed relation holds: read off the history of poses, so that a restart changes nothing.
+
+One pass through the journal. Relations are measured again only at commits that change something near the
+thing that they are about.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+from itertools import groupby
+
+from msgspec import Struct
+
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.facts.rules import RULES
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from nodes.kb_node.storage.history import Past
+from nodes.kb_node.storage.journal import Journal
+from ontology.model_shapes import own_size_m
+from schemas.entities import Entity, Pose, Size
+
+_MARGIN_M = 1.5
+"""Beyond what can touch the thing: so all of the cells of the spatial index that it is in are complete."""
+
+
+class _Stood(Struct, frozen=True):
+    """An entity as far as relations need it."""
+
+    name: str
+    iri: str
+    pose: Pose | None = None
+    size_m: Size | None = None
+    place: bool = False
+    model: str = ""
+
+    @property
+    def placed(self) -> Placed:
+        return Placed(**{field: getattr(self, field) for field in self.__struct_fields__})
+
+
+class _Left(Struct, frozen=True):
+    name: str
+
+
+class Moves(Struct, frozen=True):
+    """The part of a commit that tells who is where after it."""
+
+    seq: int
+    changed: tuple[_Stood, ...] = ()
+    removed: tuple[_Left, ...] = ()
+
+
+def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> dict[Fact, str]:
+    """Since when each fact has held without a break, in words, as far as the journal goes back."""
+    is_whole = journal.beginning.seq == 0
+    found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
+    before = f"since before commit {journal.first}"
+    return {fact: f"since commit {seq}" if seq else before for fact, seq in found.items()}
+
+
+def beginnings(
+    history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+) -> dict[Fact, int]:
+    """The commit since which each fact has held without a break, measured with these thresholds.
+
+    `history` are the commits in order, `first` the entities before them. What held before the first of
+    them is given as 0; what does not hold at the end is not among them.
+    """
+    there = {entity.name: Placed.of(entity) for entity in first}
+    by_name = groupby(sorted(facts), key=lambda fact: fact[0])
+    spots = [_Spot(name, frozenset(about), limits, there) for name, about in by_name]
+    since = {fact: 0 for spot in spots for fact in spot.holding()}
+    for moves in history:
+        before = {name: there.get(name) for name in _names(moves)}
+        for left in moves.removed:
+            there.pop(left.name, None)
+        there.update((stood.name, stood.placed) for stood in moves.changed)
+        shifted = {name: (was, there.get(name)) for name, was in before.items() if was != there.get(name)}
+        for spot in spots:
+            if spot.follow(shifted, there):
+                holding = spot.holding()
+                for fact in spot.facts:
+                    if fact not in holding:
+                        since.pop(fact, None)
+                    else:
+                        since.setdefault(fact, moves.seq)
+    return since
+
+
+def _names(moves: Moves) -> list[str]:
+    return [*(stood.name for stood in moves.changed), *(left.name for left in moves.removed)]
+
+
+class _Spot:
+    """A thing and what is near it."""
+
+    def __init__(
+        self, name: str, facts: frozenset[Fact], limits: Thresholds, there: dict[str, Placed]
+    ) -> None:
+        """`facts` are about the thing; `there` is everybody, as they are at first."""
+        self.facts = facts
+        self._name = name
+        self._limits = limits
+        self._begin(there)
+
+    def _begin(self, there: dict[str, Placed]) -> None:
+        self._own = there.get(self._name)
+        near = [placed for placed in there.values() if self._is_near(placed)]
+        self._space = Space(near, self._limits)
+
+    def follow(
+        self, shifted: dict[str, tuple[Placed | None, Placed | None]], there: dict[str, Placed]
+    ) -> bool:
+        """Take over who is somewhere else now; whether that matters here."""
+        if self._name in shifted:
+            self._begin(there)
+            return True
+        matters = False
+        for name, (was, now) in shifted.items():
+            if self._is_near(was) or self._is_near(now):
+                matters = True
+                if now is None:
+                    self._space.take(name)
+                else:
+                    self._space.put(now)
+        return matters
+
+    def holding(self) -> frozenset[Fact]:
+        """Which of the facts hold."""
+        solid = self._space.solids.get(self._name)
+        if solid is None or solid.is_place:
+            return frozenset()
+        found = {(self._name, *about) for rule in RULES for about in rule.facts(self._space, solid)}
+        return self.facts & found
+
+    def _is_near(self, placed: Placed | None) -> bool:
+        own = self._own
+        if placed is None or placed.pose is None or own is None or own.pose is None:
+            return False
+        apart = math.dist(placed.pose.position_m[:2], own.pose.position_m[:2])
+        return apart <= _reach(placed) + _reach(own) + _MARGIN_M
+
+
+def _reach(placed: Placed) -> float:
+    """How far from its position a thing may extend, however it is turned [m]."""
+    size = placed.size_m or own_size_m(placed.model)
+    return 0.0 if size is None else math.hypot(*size)

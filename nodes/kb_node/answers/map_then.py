@@ -1,0 +1,65 @@
+"""The map as it was, triple by triple, for queries of the past: from the journal, and for any thread."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.tbox import tbox_validation
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from nodes.kb_node.sparql.protocol import Surrounded
+from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.storage.compaction import asserted_after
+from nodes.kb_node.storage.history import Past
+from nodes.kb_node.storage.journal import Journal
+from schemas.commands import Sparql
+from schemas.entities import Entity
+from schemas.explanations import Triple
+from schemas.sparql import SparqlResult
+
+
+class MapThen(NamedTuple):
+    """What was asserted after commit `seq`, the TBox with it; and what was computed and set aside."""
+
+    seq: int
+    asserted: tuple[Triple, ...]
+    believed: Believed = UNCHANGED
+    placed: tuple[Placed, ...] = ()
+    limits: Thresholds | None = None
+
+
+def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapThen:
+    """The map after a commit; with `inferred` also what was computed, worked out again."""
+    asserted = asserted_after(journal, seq)
+    if not inferred:
+        return MapThen(seq, tuple(asserted))
+    tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
+    reasoner = tbox_validation.compiled(tbox)
+    limits = ClassTable(reasoner).limits
+    beliefs = Beliefs(reasoner, limits)
+    beliefs.change((), asserted - tbox, lenient=True)
+    there: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
+    beliefs.fill(there)
+    return MapThen(seq, tuple(asserted), beliefs.all(), tuple(map(Placed.of, there.values())), limits)
+
+
+def ask_then(journal: Journal, past: Past, query: Sparql) -> SparqlResult:
+    """The answer of a query about the map as of `query.as_of`, from a process of its own.
+
+    Raises the query's error; Refused when there was no map, BadRequest for what is no moment.
+    """
+    assert query.as_of is not None
+    then = map_then(journal, past, past.commit_at(query.as_of), inferred=query.inferred)
+    service = SparqlService(
+        lambda: then.asserted,
+        lambda _: None,
+        believed=lambda: then.believed,
+        surrounded=lambda: Surrounded(placed=then.placed, limits=then.limits or Thresholds()),
+    )
+    try:
+        return service.ask(query, then.seq).result()
+    finally:
+        service.close()

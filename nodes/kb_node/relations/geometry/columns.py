@@ -1,0 +1,80 @@
+"""Many solids at once, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from typing import Final
+
+import numpy as np
+
+from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
+from nodes.kb_node.relations.geometry.forms import Form, form_of
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import UNMEASURED, Solid, shape_of
+from schemas.entities import Entity, Vector
+
+_FAR_M = 2e4
+"""Beyond this, rounding is no longer far below all margins."""
+_THIN_M = 1e-4
+
+
+class Columns:
+    """Solids as arrays, a row each, in the order given; lengths in metres in the map."""
+
+    def __init__(self, solids: Sequence[Solid]) -> None:
+        self.solids: Final = solids
+        forms, row = _in_columns([solid.form for solid in solids])
+        self.forms: Final = forms
+        self.form: Final = row
+        """(N,) rows of `forms`."""
+        self.position: Final[Floats] = _flat([solid.position for solid in solids], 3)
+        """(N, 3)"""
+        self.bounds: Final[Floats] = _flat([solid.bounds for solid in solids], 4)
+        """(N, 4) least x and y, greatest x and y."""
+        self.bottom: Final[Floats] = np.array([solid.bottom for solid in solids])
+        self.top: Final[Floats] = np.array([solid.top for solid in solids])
+        self.is_place: Final[Bools] = np.array([solid.is_place for solid in solids], dtype=bool)
+        self.is_measured: Final[Bools] = np.array([solid.is_measured for solid in solids], dtype=bool)
+        self.volume: Final[Floats] = self.forms.volume[self.form]
+        self.is_near: Final[Bools] = np.abs(self.position).max(axis=1) < _FAR_M
+        """Whether it is near enough to the origin to be compared in arrays."""
+        is_upright: Bools = self.forms.is_plumb & (self.forms.size.min(axis=1, initial=np.inf) > _THIN_M)
+        self.is_sure: Final[Bools] = self.is_near & is_upright[self.form]
+        """Whether it also stands upright and has some size."""
+
+
+def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
+    """The solids of those entities that have a position: what `solid_of` makes of each."""
+    names: list[str] = []
+    positions: list[Vector] = []
+    forms: list[Form] = []
+    are_places: list[bool] = []
+    are_measured: list[bool] = []
+    for entity in entities:
+        pose = entity.pose
+        if pose is not None:
+            model, size = shape_of(entity)
+            names.append(entity.name)
+            positions.append(pose.position_m)
+            forms.append(form_of(model, size or UNMEASURED, pose.orientation_wxyz))
+            are_places.append(entity.place)
+            are_measured.append(size is not None)
+    columns, row = _in_columns(forms)
+    x, y, z = _flat(positions, 3).T
+    bounds = np.stack([x, y, x, y], axis=1) + columns.bounds[row]
+    bottom = z + np.where(columns.has_shape, columns.bottom, columns.lowest_corner)[row]
+    top = z + columns.top[row]
+    extents = zip(map(tuple, bounds.tolist()), bottom.tolist(), top.tolist(), strict=True)
+    return list(map(Solid, names, positions, forms, are_places, are_measured, extents))
+
+
+def _in_columns(forms: Sequence[Form]) -> tuple[FormColumns, Ints]:
+    """Each form once, as columns, and the rows in which they are."""
+    rows = {form: row for row, form in enumerate(dict.fromkeys(forms))}
+    return FormColumns(list(rows)), np.fromiter(map(rows.__getitem__, forms), np.int64, len(forms))
+
+
+def _flat(rows: Sequence[tuple[float, ...]], width: int) -> Floats:
+    """(N, width), faster than np.array has it."""
+    return np.fromiter(chain.from_iterable(rows), np.float64, width * len(rows)).reshape(-1, width)

@@ -1,0 +1,253 @@
+"""Many forms at once, as arrays: what `Form` works out of one, for all of them in a few passes of NumPy.
+
+Forms of one model are stretched and turned together. Bounds, bottom and top come out as `Form` has them, to
+the last bit, because the operations are the same and in the same order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nodes.kb_node.relations.geometry.fitting import are_turned, box, own_shape, quarter_turned
+from nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
+from ontology.model_shapes import ConvexPart, Corner, ModelShape
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_UNIT = box((1.0, 1.0, 1.0))
+_LEVEL_M = 5e-7
+_STEEP_M = 2e-6
+"""What rises less than the first is level for whoever asks, and what rises more than the second is not."""
+_BEYOND = 0.06
+"""The octagon that stands for a disc has corners a little further out than the disc reaches."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Convex parts, a row each; those of a form follow one another. Lengths [m] from the form's origin."""
+
+    first: Ints
+    """(F,) the first row of each form."""
+    count: Ints
+    """(F,) how many rows each form has."""
+    low: Floats
+    """(K, 3) and `high`: the box along the axes around it."""
+    high: Floats
+    lowest: Floats
+    """(K, 2) where its lowest point is; NaN where that is a matter of rounding."""
+    centre: Floats
+    """(K, 2) of its flat, level top, (`u`, `v`) being half its sides or semi-axes; NaN where it has none."""
+    u: Floats
+    v: Floats
+    is_disc: Floats
+    """(K,) 1 where that top is an ellipse, 0 where it is a parallelogram."""
+
+    SHAPES: ClassVar = ((3,), (3,), (2,), (2,), (2,), (2,), ())
+
+
+@dataclass(frozen=True)
+class Hollows:
+    """Interiors, a row each, as `Parts` has parts: floor and lid [m], and the parallelogram between walls."""
+
+    first: Ints
+    count: Ints
+    floor: Floats
+    lid: Floats
+    centre: Floats
+    u: Floats
+    v: Floats
+
+    SHAPES: ClassVar = ((), (), (2,), (2,), (2,))
+
+
+class FormColumns:
+    """Forms as arrays, a row each, in the order given; lengths in metres along the map's axes."""
+
+    def __init__(self, forms: Sequence[Form]) -> None:
+        self.size: Final[Floats] = np.array([form.size for form in forms]).reshape(-1, 3)
+        """(F, 3)"""
+        self.rotation: Final[Floats] = np.array([form.rotation for form in forms]).reshape(-1, 3, 3)
+        """(F, 3, 3) map from body."""
+        self.is_level: Final[Bools] = np.array([form.is_level for form in forms], dtype=bool)
+        self.has_shape: Final[Bools] = np.array([form.model is not None for form in forms], dtype=bool)
+        (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(self.rotation, 0, -1)
+        x, y, z = self.size.T
+        mid_x, mid_y = c * z / 2, f * z / 2
+        half_x = (np.abs(a) * x + np.abs(b) * y + np.abs(c) * z) / 2
+        half_y = (np.abs(d) * x + np.abs(e) * y + np.abs(f) * z) / 2
+        self.bounds: Final[Floats] = np.stack(
+            [mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y], axis=1
+        )
+        """(F, 4) least x and y, greatest x and y."""
+        self.top: Final[Floats] = np.maximum(0.0, i * z) + (np.abs(g) * x + np.abs(h) * y) / 2
+        base = np.min([g * (sx * x / 2) + h * (sy * y / 2) for sx in (-1, 1) for sy in (-1, 1)], axis=0)
+        self.lowest_corner: Final[Floats] = np.minimum(base + i * 0.0, base + i * z)
+        self.volume: Final[Floats] = x * y * z
+        self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0)
+        """Whether its z axis is that of the map, but for rounding."""
+        self.is_square: Final[Bools] = self.is_plumb & (
+            (np.maximum(np.abs(b), np.abs(d)) < 1e-9) | (np.maximum(np.abs(a), np.abs(e)) < 1e-9)
+        )
+        """Whether its outline is its bounds, too."""
+        self.u: Final[Floats] = np.stack([a * x / 2, d * x / 2], axis=1)
+        """(F, 2) and `v`: half the sides of its outline, if it is plumb."""
+        self.v: Final[Floats] = np.stack([b * y / 2, e * y / 2], axis=1)
+        self.bottom: Final[Floats] = self.lowest_corner.copy()
+        self.base: Final[Floats] = np.zeros((len(forms), 4))
+        """(F, 4) bounds that what it stands on does not reach beyond."""
+        self.footing: Final[Ints] = np.full(len(forms), -1)
+        """(F,) the row of the one part that it stands on; -1 where there are several."""
+        self.parts, self.hollows = self._shaped(forms)
+
+    def _shaped(self, forms: Sequence[Form]) -> tuple[Parts, Hollows]:
+        groups: dict[str, list[int]] = {}
+        for row, form in enumerate(forms):
+            if form.model is not None:
+                groups.setdefault(form.model, []).append(row)
+        parts = _Rows(len(forms), Parts.SHAPES)
+        hollows = _Rows(len(forms), Hollows.SHAPES)
+        for model, group in groups.items():
+            own, rows = own_shape(model) or _UNIT, np.array(group)
+            turned = are_turned(own, self.size[rows])
+            for shape, of in ((own, rows[~turned]), (quarter_turned(own), rows[turned])):
+                if len(of):
+                    self._add(shape, of, parts, hollows)
+        return (
+            Parts(parts.first, parts.count, *parts.columns()),
+            Hollows(hollows.first, hollows.count, *hollows.columns()),
+        )
+
+    def _add(self, shape: ModelShape, of: Ints, parts: _Rows, hollows: _Rows) -> None:
+        """The rows of those forms that have this shape, stretched and turned."""
+        rotation = self.rotation[of]
+        stretch = self.size[of] / np.array(shape.size_m)
+        if shape.interiors:
+            hollows.add(of, _hollows(shape, stretch, rotation))
+        if not shape.parts:
+            return
+        made = [_parts(alike, stretch, rotation) for alike in _alike(shape.parts)]
+        low, high, *others = (np.concatenate(column, axis=1) for column in zip(*made, strict=True))
+        parts.add(of, [low, high, *others])
+        self.bottom[of] = bottom = low[:, :, 2].min(axis=1)
+        is_lowest = low[:, :, 2] <= bottom[:, None] + LOWEST_M + _LEVEL_M
+        least = np.where(is_lowest[:, :, None], low[:, :, :2], np.inf).min(axis=1)
+        greatest = np.where(is_lowest[:, :, None], high[:, :, :2], -np.inf).max(axis=1)
+        beyond = (_BEYOND / 2 if any(part.round for part in shape.parts) else 0.0) * (greatest - least)
+        self.base[of] = np.concatenate([least - beyond, greatest + beyond], axis=1)
+        stands_on_one = is_lowest.sum(axis=1) == 1
+        self.footing[of] = np.where(stands_on_one, parts.first[of] + is_lowest.argmax(axis=1), -1)
+
+
+class _Rows:
+    """Several rows for each form, put one after the other."""
+
+    def __init__(self, forms: int, shapes: Sequence[tuple[int, ...]]) -> None:
+        """`shapes` are those of a row in each column."""
+        self.first = np.zeros(forms, dtype=np.int64)
+        self.count = np.zeros(forms, dtype=np.int64)
+        self._made: list[Sequence[Floats]] = [[np.zeros((0, *shape)) for shape in shapes]]
+        self._length = 0
+
+    def add(self, forms: Ints, columns: Sequence[Floats]) -> None:
+        """(N, M, ...) columns: M rows for each of N forms."""
+        each = columns[0].shape[1]
+        self.first[forms] = self._length + each * np.arange(len(forms))
+        self.count[forms] = each
+        self._made.append([column.reshape(-1, *column.shape[2:]) for column in columns])
+        self._length += each * len(forms)
+
+    def columns(self) -> Iterator[Floats]:
+        """All rows."""
+        return (np.concatenate(column) for column in zip(*self._made, strict=True))
+
+
+def _turned(vectors: Floats, rotation: Floats) -> Floats:
+    """(N, ..., 3) vectors of (N, 3, 3) forms' own frames, along the axes of the map."""
+    between = (1,) * (vectors.ndim - 2)
+    (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(rotation, 0, -1).reshape(3, 3, -1, *between)
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    found = np.empty_like(vectors)
+    found[..., 0] = a * x + b * y + c * z
+    found[..., 1] = d * x + e * y + f * z
+    found[..., 2] = g * x + h * y + i * z
+    return found
+
+
+def _alike(parts: Sequence[ConvexPart]) -> list[list[ConvexPart]]:
+    """Those together that are named by as many vectors."""
+    found: dict[tuple[int, int, int], list[ConvexPart]] = {}
+    for part in parts:
+        found.setdefault((len(part.straight), len(part.round), len(part.points)), []).append(part)
+    return list(found.values())
+
+
+def _parts(alike: Sequence[ConvexPart], stretch: Floats, rotation: Floats) -> list[Floats]:
+    """(N, P, ...) columns of `Parts` for (N, 3) stretches of P parts that are named by as many vectors."""
+
+    def placed(vectors: Sequence[Sequence[Corner]]) -> Floats:
+        own = np.array(vectors).reshape(len(alike), -1, 3)
+        return _turned(stretch[:, None, None, :] * own, rotation)
+
+    centre = placed([[part.centre] for part in alike])[:, :, 0]
+    straight, round_, points = (
+        placed([part.straight for part in alike]),
+        placed([part.round for part in alike]),
+        placed([part.points for part in alike]),
+    )
+    reach, squares = np.zeros_like(centre), np.zeros_like(centre)
+    for n in range(straight.shape[2]):
+        reach += np.abs(straight[:, :, n])
+    for n in range(round_.shape[2]):
+        squares += round_[:, :, n] * round_[:, :, n]
+    reach += np.sqrt(squares)
+    low, high = centre - reach, centre + reach
+    nothing, no_disc = np.full_like(centre[:, :, :2], np.nan), np.zeros_like(centre[:, :, 0])
+    if points.shape[2]:
+        low, high = low + points.min(axis=2), high + points.max(axis=2)
+        return [low, high, nothing, nothing, nothing, nothing, no_disc]
+    lowest, is_sure, is_flat_below = _lowest(centre, straight, round_)
+    top, u, v = nothing, nothing, nothing
+    is_disc = straight.shape[2] == 1 and round_.shape[2] == 2
+    if is_disc:
+        upright, u, v = straight[:, :, 0], round_[:, :, 0, :2], round_[:, :, 1, :2]
+    elif straight.shape[2] == 3 and not round_.shape[2]:
+        by_rise = np.argsort(np.abs(straight[:, :, :, 2]), axis=2)[:, :, :, None]
+        first, second, upright = np.moveaxis(np.take_along_axis(straight, by_rise, axis=2), 2, 0)
+        is_flat_below &= np.abs(second[:, :, 2]) <= _LEVEL_M
+        u, v = first[:, :, :2], second[:, :, :2]
+    if u is not nothing:
+        has_top = is_sure & is_flat_below & (np.abs(upright[:, :, :2]).max(axis=2) < _LEVEL_M)
+        has_top &= np.abs(upright[:, :, 2]) > _STEEP_M
+        top = np.where(has_top[:, :, None], centre[:, :, :2], np.nan)
+    return [low, high, lowest, top, u, v, no_disc + is_disc]
+
+
+def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, Bools, Bools]:
+    """(N, P, 2) where the lowest point is, NaN if not for certain; whether it is; what is round is level."""
+    rises = straight[:, :, :, 2:]
+    away = np.where(np.abs(rises) > _STEEP_M, np.sign(rises) * straight[:, :, :, :2], 0.0)
+    lowest = centre[:, :, :2] - away.sum(axis=2)
+    steepness = np.abs(rises[:, :, :, 0])
+    is_sure = ((steepness <= _LEVEL_M) | (steepness > _STEEP_M)).all(axis=2)
+    rise = np.sqrt((round_[:, :, :, 2] ** 2).sum(axis=2))
+    is_level: Bools = rise <= _LEVEL_M
+    is_sure = is_sure & (is_level | (rise > _STEEP_M))
+    along = (round_[:, :, :, :2] * round_[:, :, :, 2:]).sum(axis=2) / np.maximum(rise, _LEVEL_M)[:, :, None]
+    lowest -= np.where(is_level[:, :, None], 0.0, along)
+    return np.where(is_sure[:, :, None], lowest, np.nan), is_sure, is_level
+
+
+def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Floats]:
+    """(N, H, ...) columns of `Hollows` for (N, 3) stretches of one shape."""
+    low = stretch[:, None, :] * np.array([hollow.low for hollow in shape.interiors])
+    high = stretch[:, None, :] * np.array([hollow.high for hollow in shape.interiors])
+    middle, half = (low + high) / 2, (high - low) / 2
+    vectors = (middle * [1.0, 1.0, 0.0], half * [1.0, 0.0, 0.0], half * [0.0, 1.0, 0.0])
+    return [low[:, :, 2], high[:, :, 2], *(_turned(vector, rotation)[:, :, :2] for vector in vectors)]

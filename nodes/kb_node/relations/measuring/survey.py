@@ -1,0 +1,257 @@
+"""Where many solids are, at once: what `Space.whereabouts` finds of each, as far as it is plain.
+
+A relation is *plain* where the numbers behind it are further from every threshold than rounding can take
+them, and nothing decides it but upright boxes, discs and level tops: a cup in the middle of a table. That is
+seen in arrays. Who has anything beside it that is not plain is `open`, and is measured one by one, so that
+the outcome is the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain
+from typing import Final
+
+import numpy as np
+
+from nodes.kb_node.relations.geometry import planar
+from nodes.kb_node.relations.geometry.columns import Columns
+from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
+from nodes.kb_node.relations.geometry.planar import GUARD
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
+from nodes.kb_node.relations.measuring.bearing import bearing
+from nodes.kb_node.relations.measuring.broad_phase import BroadPhase, covered, differs, distinct, repeated
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.thresholds import Thresholds
+
+NOBODY: Final = -1
+_NEAREST_M = 0.01
+"""Gaps that differ by more than this are never equally near to a centimetre."""
+
+
+class Survey:
+    """What is plain of where some solids are, as arrays with a row for each of them."""
+
+    def __init__(self, space: Space, subjects: Sequence[Solid]) -> None:
+        """`subjects` are things of the space, no places."""
+        count = len(subjects)
+        self._space: Final = space
+        self._limits: Final = space.limits
+        self._columns: Final = Columns(_with_around(space, subjects))
+        self.solids: Final[Sequence[Solid]] = self._columns.solids
+        """The subjects, and then those around them: who is meant by a row below."""
+        self.is_open = np.zeros(count, dtype=bool)
+        """(S,) whether it has to be measured what each is inside, on and in."""
+        self.may_hang = np.zeros(count, dtype=bool)
+        """(S,) whether it has to be measured what each hangs on."""
+        self.hangs_on: dict[int, list[int]] = {}
+        """By row, what some hang on of whom that need not be."""
+        self.container: Final[Ints] = np.full(count, NOBODY)
+        """(S,) rows of `solids`: what each is inside, if it is not open; `NOBODY` for nothing."""
+        self.support: Final[Ints] = np.full(count, NOBODY)
+        self.place: Final[Ints] = np.full(count, NOBODY)
+        if _are_usual(space.limits):
+            with np.errstate(all="ignore"):  # what is very far away is not plain, whatever comes out of it
+                self._look()
+        else:
+            self.is_open[:] = self.may_hang[:] = True
+
+    def _look(self) -> None:
+        limits, columns, grid = self._limits, self._columns, self._space.grid
+        broad = BroadPhase(grid, columns.solids, columns.bounds, len(self.is_open))
+        one, other, unknown = broad.pairs(limits.attached_m)
+        self.is_open |= unknown
+        self.may_hang |= unknown
+        hanging = self._find_what_may_hold(one, other)
+        if grid.crowds:
+            one, other, _ = broad.pairs(0.0)
+        else:
+            its, their = columns.bounds[one], columns.bounds[other]
+            meets = (their[:, :2] <= its[:, 2:]).all(axis=1) & (their[:, 2:] >= its[:, :2]).all(axis=1)
+            one, other = one[meets], other[meets]
+        to_place = columns.is_place[other]
+        self._find_places(one[to_place], other[to_place])
+        self._find_bearers(one[~to_place], other[~to_place])
+        self._find_what_hangs(*hanging)
+
+    def _take_smallest(
+        self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]
+    ) -> None:
+        """Of several that one is in the smallest."""
+        rows = distinct(other).tolist()
+        sizes = [size(self.solids[row]) for row in rows]
+        rank = np.zeros(len(self.solids), dtype=np.int64)
+        rank[[rows[k] for k in sorted(range(len(rows)), key=sizes.__getitem__)]] = np.arange(len(rows))
+        order = np.lexsort((-rank[other], one))
+        into[one[order]] = other[order]  # the last one stays
+
+    # Places
+
+    def _find_places(self, one: Ints, other: Ints) -> None:
+        """The smallest place that enough of the footprint is in."""
+        columns, forms, limits = self._columns, self._columns.forms, self._limits
+        measured = columns.is_measured[other]
+        one, other = one[measured], other[measured]
+        form, its = columns.form[one], columns.form[other]
+        is_point = ~columns.is_measured[one]
+        sure = np.where(is_point, columns.is_near[one], columns.is_sure[one]) & columns.is_sure[other]
+        height = columns.position[one, 2] + np.where(is_point, 0.0, forms.size[form, 2] / 2)
+        level = np.minimum(height - columns.bottom[other], columns.top[other] - height) + limits.gap_m
+        out = level < -GUARD
+
+        u, v = forms.u[its], forms.v[its]
+        middle = columns.position[one, :2] - columns.position[other, :2]
+        s, t = planar.along(middle, u, v)
+        a, b = forms.u[form], forms.v[form]
+        inside = np.where(
+            is_point, planar.are_within(s, t), planar.are_within(*planar.reach(middle, a, b, u, v))
+        )
+        area = planar.spanned(a, b)
+        share = np.minimum(1.0, planar.common(columns.bounds[one], columns.bounds[other]) / area)
+        doubt = planar.doubt(columns.position[one], area)
+        is_exact = forms.is_square[form] & forms.is_square[its]
+        inside |= ~is_point & is_exact & (share > limits.place_share + doubt)
+        out |= np.where(
+            is_point, np.maximum(np.abs(s), np.abs(t)) > 1.0 + GUARD, share < limits.place_share - doubt
+        )
+        inside &= sure & (level > GUARD) & ~out
+        for k in np.flatnonzero(~inside & ~(sure & out)).tolist():
+            made = measures.within(self.solids[one[k]], self.solids[other[k]], limits)
+            inside[k] = made is not None and made.holds
+        self._take_smallest(
+            self.place, one[inside], other[inside], lambda solid: (solid.footprint, solid.name)
+        )
+
+    def _floor(self) -> tuple[Floats, Bools]:
+        """(S,) how far each is above the floor of its place, and whether it has one."""
+        bottom, has_place = self._columns.bottom, self.place != NOBODY
+        return bottom[: len(self.place)] - np.where(has_place, bottom[self.place], 0.0), has_place
+
+    # What is inside and on what
+
+    def _find_bearers(self, one: Ints, other: Ints) -> None:
+        columns, limits = self._columns, self._limits
+        below = columns.top[other] >= columns.bottom[one] - limits.gap_m - 2.0 * GUARD
+        below &= columns.is_measured[one]
+        one, other = one[below], other[below]
+        sure = columns.is_sure[one] & columns.is_near[other]
+        self.is_open[one[~sure]] = True
+        one, other = one[sure], other[sure]
+        self._find_containers(one, other)
+        found = bearing(columns, one, other, limits)
+        # What is inside something is on nothing that is not in there, and so smaller than that.
+        container = self.container[found.upper]
+        has_container = container != NOBODY
+        counts = ~has_container | (columns.volume[found.lower] < columns.volume[container])
+        self.is_open[found.upper[counts & (~found.holds | has_container)]] = True
+        counts &= found.holds
+        self._find_supports(found.upper[counts], found.lower[counts], found.gap_m[counts])
+
+    def _find_containers(self, one: Ints, other: Ints) -> None:
+        """The smallest hollow that enough of the volume is in."""
+        columns, forms, limits = self._columns, self._columns.forms, self._limits
+        count = forms.hollows.count[columns.form[other]]
+        may = (count > 0) & (columns.volume[one] < columns.volume[other])
+        one, other, count = one[may], other[may], count[may]
+        if not len(one):
+            return
+        pair, turn = repeated(count)
+        i, j = one[pair], other[pair]
+        form, its = columns.form[i], columns.form[j]
+        hollow = forms.hollows.first[its] + turn
+        z, floor, lid = columns.position[i, 2], forms.hollows.floor[hollow], forms.hollows.lid[hollow]
+        base = columns.position[j, 2]
+        height = np.minimum(base + lid, z + forms.size[form, 2]) - np.maximum(base + floor, z)
+        middle = columns.position[j, :2] + forms.hollows.centre[hollow]
+        u, v, a, b = forms.hollows.u[hollow], forms.hollows.v[hollow], forms.u[form], forms.v[form]
+        area = planar.spanned(a, b)
+        shared = planar.common(columns.bounds[i], planar.bounds_around(middle, u, v))
+        deep = np.maximum(height, 0.0) / columns.volume[i]
+        most = np.minimum(area, shared) * deep
+        covers = planar.are_within(*planar.reach(columns.position[i, :2] - middle, a, b, u, v))
+        is_exact = forms.is_square[form] & forms.is_square[its]
+        least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
+        begins = np.cumsum(count) - count
+        most, least = np.maximum.reduceat(most, begins), np.maximum.reduceat(least, begins)
+        doubt = planar.doubt(columns.position[one], area[begins])
+        sure = columns.is_sure[other]
+        inside = sure & (least > limits.inside_share + doubt)
+        for k in np.flatnonzero(~inside & ~(sure & (most < limits.inside_share - doubt))).tolist():
+            made = measures.inside(self.solids[one[k]], self.solids[other[k]], limits)
+            inside[k] = made is not None and made.holds
+        self._take_smallest(
+            self.container, one[inside], other[inside], lambda solid: (solid.volume, solid.name)
+        )
+
+    def _find_supports(self, one: Ints, other: Ints, gap: Floats) -> None:
+        """The nearest of what is below, the floor of its place included."""
+        floor, has_place = self._floor()
+        asked = np.zeros(len(floor), dtype=bool)
+        asked[one] = True
+        on_floor = np.flatnonzero(asked & has_place & (np.abs(floor) < self._limits.gap_m + GUARD))
+        one = np.concatenate([one, on_floor])
+        other = np.concatenate([other, np.full(len(on_floor), NOBODY)])
+        away = np.abs(np.concatenate([gap, floor[on_floor]]))
+        order = np.lexsort((away, one))
+        one, other, away = one[order], other[order], away[order]
+        is_nearest = differs(one)
+        self.support[one[is_nearest]] = other[is_nearest]
+        second = np.flatnonzero(is_nearest[:-1] & ~is_nearest[1:]) + 1
+        tied = second[away[second] - away[second - 1] < _NEAREST_M + GUARD]
+        self.is_open[one[tied]] = True
+
+    # What hangs
+
+    def _find_what_may_hold(self, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+        """Pairs of which the other plainly holds the one, unless something bears that."""
+        columns, forms, limits = self._columns, self._columns.forms, self._limits
+        asked = columns.is_measured[one] & ~columns.is_place[other]
+        one, other = one[asked], other[asked]
+        bottom, top = columns.bottom[one], columns.top[one]
+        alongside = (np.minimum(top, columns.top[other]) - bottom) / np.maximum(
+            top - bottom, 1e-12
+        ) - ALONGSIDE
+        above = bottom - columns.bottom[other] - limits.gap_m
+        is_near = columns.is_near[one] & columns.is_near[other]
+        may = ((alongside > -GUARD) & (above > -GUARD)) | ~is_near
+        one, other, alongside, above = one[may], other[may], alongside[may], above[may]
+        apart = np.maximum(
+            columns.bounds[one, :2] - columns.bounds[other, 2:],
+            columns.bounds[other, :2] - columns.bounds[one, 2:],
+        )
+        slack = min(limits.attached_m, BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
+        exact = is_near[may] & forms.is_square[columns.form[one]] & forms.is_square[columns.form[other]]
+        plain = exact & columns.is_sure[one] & (np.minimum(alongside, above) > GUARD) & (slack > GUARD)
+        self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True
+        return one[plain], other[plain]
+
+    def _find_what_hangs(self, one: Ints, other: Ints) -> None:
+        """Of those that something may hold, who is borne does not hang."""
+        floor, has_place = self._floor()
+        away = np.abs(floor) - self._limits.gap_m
+        is_borne = (self.container != NOBODY) | (self.support != NOBODY) | (has_place & (away < -GUARD))
+        may_be_borne = self.is_open | (has_place & (np.abs(away) <= GUARD))
+        self.may_hang &= self.is_open | ~is_borne
+        self.may_hang[one[may_be_borne[one]]] = True
+        hangs = ~is_borne[one] & ~self.may_hang[one]
+        for row, its in zip(one[hangs].tolist(), other[hangs].tolist(), strict=True):
+            self.hangs_on.setdefault(row, []).append(its)
+
+
+def _with_around(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:
+    """The subjects, and then all who may be beside them."""
+    if 2 * len(subjects) > len(space.solids):
+        return list(dict.fromkeys(chain(subjects, space.solids.values())))
+    return space.grid.counted_in(covered(subjects, space.limits.attached_m), subjects)
+
+
+def _are_usual(limits: Thresholds) -> bool:
+    """Whether what is plain under usual margins is so under these."""
+    return (
+        all(1e-3 <= share <= 1.0 for share in (limits.place_share, limits.inside_share))
+        and limits.base_share <= 1.0
+        and limits.contact_m < _NEAREST_M
+        and limits.contact_m <= limits.gap_m
+    )

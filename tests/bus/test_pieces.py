@@ -1,0 +1,156 @@
+"""What is larger than a message travels in pieces, and is bounded."""
+
+from __future__ import annotations
+
+import queue
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+import zenoh
+
+from nodes import bus
+from nodes.bus import pieces
+from schemas import codec, commands, errors, replies
+from tests.bus.conftest import PREFIX, answer
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """Pieces of a kilobyte."""
+    monkeypatch.setattr(pieces, "PIECE", 1000)
+
+
+def load(size):
+    return commands.Load(content=bytes(range(256)) * (size // 256))
+
+
+def echoed(request):
+    return replies.Document(content=request.read(commands.Load).content, media_type="x", triples=0, seq=0)
+
+
+@pytest.mark.parametrize("size", [256, 1024, 10_240, 102_400])
+def test_a_large_question_and_a_large_answer_arrive_whole(pair, small, size):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    reply = bus.ask(client, PREFIX, "load", load(size), replies.Document)
+    assert reply.content == load(size).content
+
+
+def test_so_they_do_without_waiting(pair, small):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    got = queue.SimpleQueue()
+    bus.ask_later(client, PREFIX, "load", load(10_240), replies.Document, got.put)
+    assert got.get(timeout=5)().decode().content == load(10_240).content
+
+
+def test_a_large_error_comes_to_who_asked_in_pieces(pair, small):
+    server, client = pair
+
+    def refuse(request):
+        raise errors.NameTaken(f"no: {len(request.read(commands.Load).content)}")
+
+    bus.serve(server, PREFIX, answer(refuse))
+    with pytest.raises(errors.NameTaken, match="no: 10240"):
+        bus.ask(client, PREFIX, "load", load(10_240), replies.Document)
+
+
+def test_real_pieces_go_through_a_session_that_takes_no_larger_message(pair):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    large = load(40 << 20)
+    assert bus.ask(client, PREFIX, "load", large, replies.Document).content == large.content
+
+
+def test_a_message_larger_than_a_session_takes_does_not_arrive(pair):
+    server, client = pair
+    came = queue.SimpleQueue()
+    server.declare_subscriber("semmap/large", lambda sample: came.put(len(sample.payload)))
+    time.sleep(0.3)
+    client.put(
+        "semmap/large", bytes(bus.MESSAGE + (1 << 20)), congestion_control=zenoh.CongestionControl.BLOCK
+    )
+    client.put("semmap/large", bytes(bus.PUBLISHED), congestion_control=zenoh.CongestionControl.BLOCK)
+    assert came.get(timeout=10) == bus.PUBLISHED
+
+
+def test_a_request_of_a_small_kind_is_refused_when_it_is_large(pair):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(lambda request: request.read(commands.Get)))
+    with pytest.raises(
+        errors.BadRequest, match=r"the message has 2\.0 MB or more; one of this kind may have up to 1 MB"
+    ):
+        bus.ask(client, PREFIX, "get", commands.Get(name="x" * (2 << 20)), replies.Document)
+
+
+def test_nor_is_it_put_together(pair, small):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed), most=lambda verb: 5000)
+    with pytest.raises(errors.BadRequest, match="one of this kind may have up to"):
+        bus.ask(client, PREFIX, "load", load(10_240), replies.Document)
+
+
+def test_several_at_once_are_kept_apart(pair, small):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    with ThreadPoolExecutor(8) as pool:
+        sizes = [256 * n for n in range(10, 42)]
+        asked = [pool.submit(bus.ask, client, PREFIX, "load", load(n), replies.Document) for n in sizes]
+        assert [len(a.result(20).content) for a in asked] == sizes
+
+
+def test_json_is_not_cut(pair, small):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(lambda request: replies.Done(text="x" * 2000)))
+    (reply,) = client.get(f"{PREFIX}/get?name=x;format=json")
+    assert "one in JSON may have" in reply.err.payload.to_bytes().decode()
+
+
+def test_a_strange_attachment_is_answered(pair):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    (reply,) = client.get(f"{PREFIX}/load", payload=b"x", attachment=b"strange")
+    assert codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage).code == "bad-request"
+
+
+def piece(number, count=4, of="a"):
+    return pieces.Piece(of=of, number=number, count=count)
+
+
+def test_pieces_are_counted_until_they_are_done_with():
+    arrivals = pieces.Arrivals(most=100)
+    for number in range(3):
+        assert arrivals.take(piece(number), b"x" * 20, 1000) is None
+    assert arrivals.take(piece(3), b"y" * 20, 1000) == b"x" * 60 + b"y" * 20
+    with pytest.raises(errors.Busy):
+        arrivals.take(piece(0, of="b"), b"x" * 21, 1000)
+    arrivals.done(80)
+    assert arrivals.take(piece(0, of="b"), b"x" * 21, 1000) is None
+
+
+@pytest.mark.parametrize("numbers", [[1], [0, 2], [0, 1, 1]])
+def test_what_is_missing_has_to_be_sent_again(numbers):
+    arrivals = pieces.Arrivals()
+    *before, last = numbers
+    for number in before:
+        arrivals.take(piece(number), b"x", 1000)
+    with pytest.raises(errors.Busy, match="send it again from its beginning"):
+        arrivals.take(piece(last), b"x", 1000)
+
+
+def test_what_does_not_go_on_is_given_up(monkeypatch):
+    arrivals = pieces.Arrivals(most=100)
+    arrivals.take(piece(0), b"x" * 80, 1000)
+    with pytest.raises(errors.Busy):
+        arrivals.take(piece(0, of="b"), b"x" * 80, 1000)
+    monkeypatch.setattr(pieces, "_GIVEN_UP_S", -1.0)
+    assert arrivals.take(piece(0, of="b"), b"x" * 80, 1000) is None
+
+
+def test_no_more_than_a_few_are_put_together_at_a_time():
+    arrivals = pieces.Arrivals()
+    for number in range(16):
+        arrivals.take(piece(0, of=str(number)), b"x", 1000)
+    with pytest.raises(errors.Busy):
+        arrivals.take(piece(0, of="one more"), b"x", 1000)

@@ -1,0 +1,80 @@
+"""Queries of the past: they see what was asserted and computed then."""
+
+import pytest
+
+from nodes.kb_node.answers.map_then import ask_then, map_then
+from nodes.kb_node.beliefs import Believed
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.history import Past
+from nodes.kb_node.storage.journal import Journal
+from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Sparql
+from schemas.commits import Edit, NewEntity, Transaction
+from schemas.entities import Pose
+
+TBOX = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
+FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
+ON_COUNTER = "SELECT ?x { ?x dm:isOn :counter1 } ORDER BY ?x"
+
+
+@pytest.fixture
+def flat(tmp_path):
+    journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(TBOX), "ntriples"))
+    made = SemanticMap(journal)
+    changes = [
+        {"insert": FLAT},
+        {
+            "add": (
+                NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(8.2, 0.3, 0.9))),
+            )
+        },
+        {"insert": ((v.entity_iri("cup9"), v.dm("isOn"), v.entity_iri("table1")),)},
+        {"edit": (Edit(name="cup9", at=(2.0, 2.0, 0.0)),)},
+        {"remove": ("cup9",)},
+    ]
+    for number, change in enumerate(changes):
+        made.commit(Transaction(id=str(number), source="operator", **change))
+    yield made
+    journal.close()
+
+
+def asked(flat, when, query=ON_COUNTER, *, inferred=True):
+    found = ask_then(flat._journal, Past(flat._journal), Sparql(query=query, as_of=when, inferred=inferred))
+    return found.seq, [v.entity_name(row[0]) for row in found.rows]
+
+
+def test_a_query_of_the_past_sees_what_was_computed_then(flat):
+    seq, before = asked(flat, 1)
+    assert seq == 1
+    assert "milk1" in before
+    assert asked(flat, 2)[1] == sorted([*before, "cup9"])
+    assert asked(flat, 4)[1] == before
+
+
+def test_without_inferred_it_sees_what_was_asserted_then(flat):
+    said = "SELECT ?x { ?x dm:isOn :table1 . FILTER(?x = :cup9) }"
+    assert asked(flat, 3, said, inferred=False) == (3, ["cup9"])
+    assert asked(flat, 3, said, inferred=True) == (3, [])  # which geometry denied then, too
+    assert asked(flat, 4, said, inferred=False) == (4, [])
+
+
+def test_what_is_measured_on_demand_is_measured_then(flat):
+    near = "SELECT ?x { ?x dm:isNextTo :cup9 }"
+    assert asked(flat, 2, near)[1]
+
+
+def test_the_last_commit_is_the_map_as_it_is(flat):
+    then = map_then(flat._journal, Past(flat._journal), 5, inferred=True)
+    assert set(then.asserted) == set(flat.reasoner.asserted())
+    now = flat.all_believed()
+    assert Believed(*map(set, then.believed)) == Believed(*map(set, now))
+
+
+def test_before_the_first_commit_there_was_no_map(flat):
+    with pytest.raises(errors.Refused, match="there was no map then"):
+        asked(flat, 0)
+    with pytest.raises(errors.Refused, match="there is no commit 9 yet"):
+        asked(flat, 9)
