@@ -10,7 +10,7 @@ import hashlib
 from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO, ClassVar, Final, Literal
+from typing import BinaryIO, Final, Literal
 
 import msgspec
 from msgspec import Struct
@@ -66,8 +66,6 @@ _decoder = msgspec.msgpack.Decoder(Frame)
 class BackupPart(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Some of the file; what comes after it is asked for by `next`, which is empty at the end."""
 
-    LARGEST: ClassVar[int] = 16 << 20
-    """Bytes that such a message may have, encoded."""
     content: bytes
     next: str = ""
 
