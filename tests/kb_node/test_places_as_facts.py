@@ -233,12 +233,15 @@ def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
     flat.replace_tbox(Transaction(id="tbox", source="operator"), tbox)
     iri, pose = v.bare(v.dm("Gadget")), Pose(position_m=(2.0, 2.0, 0.0))
     new = NewEntity(name="gadget1", class_iri=iri, pose=pose, size=(0.1, 0.1, 0.1))
-    flat.commit(Transaction(id="gadget", source="operator", add=(new,)))
+    located = (v.entity_iri("counter1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
+    flat.commit(Transaction(id="gadget", source="operator", add=(new,), insert=(located,)))
     said = flat.commit(Transaction(id="said", source="operator", insert=(on("gadget1", "counter1"),)))
     assert len(said.notes) == 1
     tidy = (v.entity_iri("kitchen1"), v.RDF_TYPE, v.dm("Tidy_Room"))
     before = state(flat)
-    with pytest.raises(errors.Inconsistent, match="gadget1 is on counter1"):
+    with pytest.raises(
+        errors.Inconsistent, match=r"it is on counter1 \(asserted\), counter1 is located in kitchen1"
+    ):
         flat.commit(Transaction(id="tidy", source="operator", insert=(tidy,)))
     assert state(flat) == before
 
