@@ -16,6 +16,7 @@ from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.handlers.asking import Asking
 from nodes.kb_node.handlers.changing import Changing, Tell
+from nodes.kb_node.handlers.keeping import Keeping
 from nodes.kb_node.handlers.loading import Loading
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.protocol import Surrounded
@@ -28,7 +29,6 @@ from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.commits import Commit
-from schemas.health import LOADING
 
 CHECKPOINT_PERIOD_S = 10.0
 CHECKPOINT_DELAY_S = 3.0
@@ -52,13 +52,21 @@ class KnowledgeBase:
         )
         self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
-        self._asking = Asking(self.map, journal, self._sparql, self._standing_places)
+        self._asking = Asking(
+            self.map, journal, self._sparql, self._standing_places, asker=lambda: node.asker
+        )
         telling_of = self._telling_of
         changing = Changing(
             self.map, journal, spread=self._spread, not_written=self._not_written, telling_of=telling_of
         )
         loading = Loading(self.map, journal, changing, self._sparql, telling_of=telling_of, notes=self._notes)
-        handlers = {**changing.handlers(), **loading.handlers(), **self._asking.handlers()}
+        self._keeping = Keeping(journal)
+        handlers = {
+            **changing.handlers(),
+            **loading.handlers(),
+            **self._asking.handlers(),
+            **self._keeping.handlers(),
+        }
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
@@ -101,11 +109,11 @@ class KnowledgeBase:
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     @contextmanager
-    def _telling_of(self, filename: str) -> Iterator[Tell]:
-        """Lets the heartbeat tell how far the loading of a file is."""
+    def _telling_of(self, work: str) -> Iterator[Tell]:
+        """Lets the heartbeat tell how far a large change is, and prepares for it."""
 
         def tell(text: str) -> None:
-            self._node.describe(f"{LOADING} {filename or 'a file'}: {text}")
+            self._node.describe(f"{work}: {text}")
             self._node.beat()
 
         try:
@@ -126,6 +134,7 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._asking.close()
+        self._keeping.close()
         with suppress(errors.Refused):
             self._checkpointing.close()
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 from nodes.kb_node import gc_pause
 from nodes.kb_node.documents.tbox import tbox_validation
@@ -15,8 +16,15 @@ from schemas.commits import Commit, Transaction
 from schemas.explanations import Triple
 
 
-def undo(semantic_map: SemanticMap, journal: Journal, command: TakeBack) -> Commit:
+def undo(
+    semantic_map: SemanticMap,
+    journal: Journal,
+    command: TakeBack,
+    working: Callable[[Commit], AbstractContextManager[object]] = nullcontext,
+) -> Commit:
     """Take back a commit with the settling that followed it, or the TBox that it let hold.
+
+    It is done within `working(commit)`, of the commit that is taken back.
 
     Raises Refused when there is nothing to take back, later commits rest on it, its author outranks who wants
     it undone, or the map does not fit the TBox before; Inconsistent.
@@ -27,7 +35,7 @@ def undo(semantic_map: SemanticMap, journal: Journal, command: TakeBack) -> Comm
     _require_authority(command, target)
     reverse = _reverse_tbox if target.tbox else _reverse
     try:
-        with gc_pause.uncollected():
+        with gc_pause.uncollected(), working(target):
             commit = reverse(semantic_map, journal, command, target)
     except errors.Inconsistent as error:
         raise errors.Inconsistent(
@@ -96,7 +104,7 @@ def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
 
 def _newest_asked(journal: Journal) -> Commit:
     """The newest commit that a client asked for and that was not taken back."""
-    backwards = (journal.commit(seq) for seq in range(journal.last, 0, -1))
+    backwards = (journal.commit(seq) for seq in range(journal.last, journal.first - 1, -1))
     for commit in _in_force(backwards):
         if commit.verb and not commit.undoes:
             return commit
@@ -108,6 +116,11 @@ def _newest_asked(journal: Journal) -> Commit:
 def _named(journal: Journal, seq: int) -> Commit:
     if seq > journal.last:
         raise errors.Refused(f"there is no commit {seq} yet; the last one is {journal.last}")
+    if seq < journal.first:
+        raise errors.Refused(
+            f"commit {seq} cannot be undone: it has been compacted, and the history begins with commit"
+            f" {journal.first}"
+        )
     return journal.commit(seq)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import partial
 from typing import TypeVar
 
@@ -19,6 +19,7 @@ from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
+from nodes.runtime.fair_pool import FairPool
 from schemas import errors
 from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
@@ -57,8 +58,10 @@ class Asking:
         journal: Journal,
         sparql: SparqlService,
         standing_places: StandingPlaces,
+        asker: Callable[[], str] = str,
     ) -> None:
-        """`sparql` and `standing_places` are told of each commit by the node."""
+        """`sparql` and `standing_places` are told of each commit by the node; `asker()` is who asks."""
+        self._asker = asker
         self._map = semantic_map
         self._sparql = sparql
         self._standing_places = standing_places
@@ -67,7 +70,7 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
-        self._aside = ThreadPoolExecutor(max_workers=2, thread_name_prefix="check")
+        self._aside = FairPool(2, asker)
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -204,7 +207,7 @@ class Asking:
         """A query, evaluated beside the node's own work; of the past, in a process of its own."""
         if query.as_of is not None:
             return self._aside.submit(map_then.ask_then, self._journal, self._past, query)
-        return self._sparql.ask(query, self._map.seq)
+        return self._sparql.ask(query, self._map.seq, self._asker())
 
     def on_watch(self, query: Watch) -> Watching | Future[Watching]:
         """A standing query, or a standing question of where things are."""
@@ -214,7 +217,7 @@ class Asking:
                 "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
             )
         if not asks_where:
-            return self._sparql.ask(query, self._map.seq)
+            return self._sparql.ask(query, self._map.seq, self._asker())
         if query.where is None or query.inferred:
             raise errors.BadRequest(
                 "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
@@ -227,4 +230,4 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
-        self._aside.shutdown(wait=False, cancel_futures=True)
+        self._aside.close()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from typing import Protocol, TypeVar
 
 from nodes.kb_node import undo
@@ -19,7 +19,7 @@ from schemas.commits import Commit, Effects, Transaction
 
 Tell = Callable[[str], None]
 TellingOf = Callable[[str], AbstractContextManager[Tell]]
-"""Of a file's name: lets the heartbeat tell how far the loading of it is."""
+"""Of a large change, which begins with a word of WORKING: lets the heartbeat tell how far it is."""
 
 
 class Spread(Protocol):
@@ -33,7 +33,7 @@ class Spread(Protocol):
 
 
 _FEW = 1000
-"""Entities that are added at once without a word on it."""
+"""Entities that are added or removed at once without a word on it."""
 C = TypeVar("C", Commit, Commit | None)
 
 
@@ -71,10 +71,12 @@ class Changing:
     def on_commit(self, transaction: Transaction) -> Effects | None:
         """One transaction."""
         term_syntax.require_triples(transaction.insert)
-        if len(transaction.add) <= _FEW:
+        coming, going = len(transaction.add), len(transaction.remove)
+        if coming + going <= _FEW:
             return self._transacted(transaction)
-        with self._telling_of(transaction.reason.removeprefix("load ")) as tell:
-            tell(f"{len(transaction.add):,} entities to check and write")
+        file = transaction.reason.removeprefix("load ") or "a file"
+        with self._telling_of(f"loading {file}" if coming else "removing entities") as tell:
+            tell(f"{coming or going:,} entities to check and write")
             return self._transacted(transaction)
 
     def _transacted(self, transaction: Transaction) -> Effects | None:
@@ -102,7 +104,22 @@ class Changing:
 
     def on_undo(self, command: TakeBack) -> Effects | None:
         """A commit that takes back another one."""
-        return self.changed(lambda: undo.undo(self._map, self._journal, command), command.dry_run)
+
+        def change() -> Commit:
+            return undo.undo(self._map, self._journal, command, self._undoing)
+
+        return self.changed(change, command.dry_run)
+
+    @contextmanager
+    def _undoing(self, target: Commit) -> Iterator[None]:
+        """Around the undoing of a commit."""
+        count = len(target.changed) + len(target.removed)
+        if count <= _FEW:
+            yield
+            return
+        with self._telling_of(f"undoing commit {target.seq}") as tell:
+            tell(f"{count:,} entities to check and write")
+            yield
 
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
         """The commits that some commands have made."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
@@ -59,7 +59,7 @@ class Loading:
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.foresee(load.id, content, v.ABOX)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
-        with self._telling_of(load.filename) as tell:
+        with self._telling_of(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
                 content,
                 load.filename,
@@ -85,7 +85,7 @@ class Loading:
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
-                names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
+                names=tuple(dict.fromkeys(name for commit in commits for name in _described(commit))),
                 skipped=tuple(sorted_out.skipped),
                 notes=(*sorted_out.notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
@@ -122,3 +122,8 @@ class Loading:
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._changing.published_if_new(lambda: self._map.commit(transaction), at_once=True)
+
+
+def _described(commit: Commit) -> Iterator[str]:
+    """The entities that a load says something of; that others are of other classes now may follow from it."""
+    return (entity.name for entity in commit.changed if entity.provenance.commit == commit.seq)

@@ -140,8 +140,9 @@ class CompiledEngine:
         except NotCompilable:
             self._undo(retraction, removed, added)
             raise
-        touched.update(self._moved())
-        abox.settle()
+        if abox.moved or abox.overlaid:
+            touched.update(self._moved())
+            abox.settle()
         if retraction is not None:
             retraction.release()
         self._size += len(added) - len(removed)

@@ -2,13 +2,17 @@
 
 A lane is a pair of sockets. Its other end the SPARQL process keeps for whichever reader minds it, so that a
 question that no reader has taken waits there for the next. A question has a lane to itself until it is
-answered, so that one that takes long delays none but those that come when no lane is left.
+answered.
+
+Whoever asks has a turn, and every query gets a lane soon: where all lanes are taken, only so many queries
+keep theirs that take long. Another is set aside, its reader ended, and begun anew when one of those is done;
+so what it costs not to know beforehand which queries take long is a moment for each.
 """
 
 from __future__ import annotations
 
 import threading
-from collections import deque
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
@@ -19,14 +23,22 @@ from typing import Any, Final
 
 from msgspec import msgpack
 
-from nodes.kb_node.sparql.protocol import Hire, Left, Outcome, Question, outcomes
+from nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, Question, outcomes
 from nodes.kb_node.sparql.readers import cause_of_death
+from nodes.runtime.fair_queue import FairQueue
 from schemas import codec, errors
 from schemas.commands import Sparql
 from schemas.sparql import SparqlResult
 
-LANES: Final = 4
+LANES: Final = 6
 """How many queries are evaluated at once."""
+AT_LENGTH: Final = 3
+"""How many of them may take long while others wait."""
+LONG_S: Final = 0.3
+"""What takes longer takes long."""
+_EACH: Final = 64
+_ALL: Final = 256
+"""Queries of one asker, and of all, that wait at most."""
 _SHORT: Final = 16_000
 """Bytes that a lane always takes without waiting: there are never two questions in one."""
 
@@ -34,7 +46,14 @@ _SHORT: Final = 16_000
 @dataclass
 class _Query:
     question: Question
+    asker: str = ""
     future: Future[SparqlResult] = field(default_factory=Future)
+    began_s: float = 0.0
+    was_set_aside: bool = False
+
+    def takes_long(self, now_s: float) -> bool:
+        """By what is known now."""
+        return self.was_set_aside or now_s - self.began_s >= LONG_S
 
 
 @dataclass
@@ -43,6 +62,8 @@ class _Lane:
     connection: Connection
     has_reader: bool = False
     query: _Query | None = None
+    is_closing: bool = False
+    """Its reader is being ended."""
 
 
 class Lanes:
@@ -55,14 +76,19 @@ class Lanes:
         self._lanes = [_Lane(number, here) for number, (here, _) in enumerate(pairs)]
         self.others: Sequence[Connection] = [there for _, there in pairs]
         """The other ends; who hands them over closes them here."""
-        self._waiting: deque[_Query] = deque()
+        self._waiting: FairQueue[_Query] = FairQueue(each=_EACH, everyone=_ALL)
+        self._set_aside: FairQueue[_Query] = FairQueue()
+        self._timer: threading.Timer | None = None
         self._numbers = count()
         self._lock = threading.Lock()
         for lane in self._lanes:
             threading.Thread(target=self._listen, args=(lane,), name="sparql", daemon=True).start()
 
-    def ask(self, command: Sparql, seq: int, demand: int = 0) -> Future[SparqlResult]:
-        """The answer as of commit `seq` or later, with what was demanded under that number."""
+    def ask(self, command: Sparql, seq: int, demand: int = 0, asker: str = "") -> Future[SparqlResult]:
+        """The answer as of commit `seq` or later, with what was demanded under that number.
+
+        Raises Busy when too many queries wait.
+        """
         question = Question(
             number=next(self._numbers),
             seq=seq,
@@ -72,9 +98,14 @@ class Lanes:
             timeout_s=command.timeout,
             demand=demand,
         )
-        query = _Query(question)
+        query = _Query(question, asker)
         with self._lock:
-            self._waiting.append(query)
+            again_s = self._waiting.put(asker, query)
+            if again_s is not None:
+                raise errors.Busy(
+                    f"{len(self._waiting)} SPARQL queries wait already; try again in {again_s:.1f} s",
+                    again_s=again_s,
+                )
             self._hand_out()
         return query.future
 
@@ -82,9 +113,10 @@ class Lanes:
         """A reader is no more."""
         lane = self._lanes[left.lane]
         with self._lock:
-            lane.has_reader = False
+            lane.has_reader = lane.is_closing = False
             query = lane.query
             if query is None:
+                self._hand_out()
                 return
             if not left.signal:  # it did not take the question, or has given it back
                 self._hire(lane)
@@ -96,8 +128,10 @@ class Lanes:
     def close(self, error: Exception) -> None:
         """There will be no more readers; nobody waits any longer."""
         with self._lock:
-            left = [*(lane.query for lane in self._lanes), *self._waiting]
-            self._waiting.clear()
+            waiting = [*iter(self._waiting.take, None), *iter(self._set_aside.take, None)]
+            left = [*(lane.query for lane in self._lanes), *waiting]
+            if self._timer is not None:
+                self._timer.cancel()
             for lane in self._lanes:
                 lane.query = None
         for query in filter(None, left):
@@ -105,12 +139,52 @@ class Lanes:
 
     def _hand_out(self) -> None:
         """Give the questions that wait to lanes that are free, those with readers first."""
-        free = [lane for lane in self._lanes if lane.query is None]
-        for lane in sorted(free, key=lambda lane: not lane.has_reader)[: len(self._waiting)]:
-            lane.query = self._waiting.popleft()
+        free = [lane for lane in self._lanes if lane.query is None and not lane.is_closing]
+        for lane in sorted(free, key=lambda lane: not lane.has_reader):
+            if (query := self._next()) is None:
+                return
+            lane.query, query.began_s = query, time.monotonic()
             if not lane.has_reader:
                 self._hire(lane)
-            self._put(lane, lane.query)
+            self._put(lane, query)
+        if len(self._waiting):
+            self._look_again()
+
+    def _next(self) -> _Query | None:
+        """The query that is to begin; one that was set aside if few enough are taking long."""
+        query = None
+        if len(self._set_aside) and len(self._taking_long(time.monotonic())) < AT_LENGTH:
+            query = self._set_aside.take()
+        return query or self._waiting.take()
+
+    def _taking_long(self, now_s: float) -> list[_Lane]:
+        """The lanes whose queries do: first those that were set aside before, then by their age."""
+        lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.takes_long(now_s)]
+        return sorted(lanes, key=lambda lane: (not lane.query.was_set_aside, lane.query.began_s))  # type: ignore[union-attr]
+
+    def _look_again(self) -> None:
+        """When the next query will have taken long."""
+        if self._timer is None:
+            now_s = time.monotonic()
+            quick = [lane.query for lane in self._lanes if lane.query and not lane.query.takes_long(now_s)]
+            wait_s = min((query.began_s + LONG_S - now_s for query in quick), default=LONG_S)
+            self._timer = threading.Timer(wait_s, self._make_room)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _make_room(self) -> None:
+        """Set aside what takes long, but for a few, as far as others wait."""
+        with self._lock:
+            self._timer = None
+            beyond = self._taking_long(time.monotonic())[AT_LENGTH:]
+            for lane in beyond[: len(self._waiting)]:
+                query, lane.query, lane.is_closing = lane.query, None, True
+                assert query is not None
+                query.was_set_aside = True
+                self._set_aside.put(query.asker, query)
+                self._send(Dismiss(lane=lane.number), None)
+            if len(self._waiting):
+                self._look_again()
 
     def _hire(self, lane: _Lane) -> None:
         lane.has_reader = True

@@ -81,6 +81,12 @@ class Hire(Struct, frozen=True, kw_only=True, tag=True):
     lane: int
 
 
+class Dismiss(Struct, frozen=True, kw_only=True, tag=True):
+    """The reader of a lane is to be ended: its query has been set aside."""
+
+    lane: int
+
+
 class Answered(Struct, frozen=True, kw_only=True, tag=True):
     """The answer: the command's reply, encoded, or the error."""
 
@@ -126,7 +132,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
     old: bool = False
 
 
-ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire
+ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire | Dismiss
 FromWorker = Answered | Left | News
 
 to_worker = msgpack.Decoder(ToWorker)

@@ -90,13 +90,13 @@ class SparqlService:
         """Commands about standing queries that came meanwhile."""
 
     @overload
-    def ask(self, command: Sparql, seq: int) -> Future[SparqlResult]: ...
+    def ask(self, command: Sparql, seq: int, asker: str = ...) -> Future[SparqlResult]: ...
     @overload
-    def ask(self, command: Watch, seq: int) -> Future[Watching]: ...
+    def ask(self, command: Watch, seq: int, asker: str = ...) -> Future[Watching]: ...
     @overload
-    def ask(self, command: Renew, seq: int) -> Future[Done]: ...
-    def ask(self, command: Sparql | Watch | Renew, seq: int) -> Future[Any]:
-        """The reply to a command about the map as it is now, after commit `seq`."""
+    def ask(self, command: Renew, seq: int, asker: str = ...) -> Future[Done]: ...
+    def ask(self, command: Sparql | Watch | Renew, seq: int, asker: str = "") -> Future[Any]:
+        """The reply to a command of `asker` about the map as it is now, after commit `seq`."""
         self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
@@ -110,7 +110,7 @@ class SparqlService:
             self._load()
         demand = 0 if isinstance(command, Renew) else self._demand(self._worker, command)
         if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
-            return self._worker.ask(command, seq, demand)
+            return self._worker.ask(command, seq, demand, asker)
         worker, future = self._worker, Future[Any]()
         self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
@@ -269,12 +269,12 @@ class _Worker:
         if self.is_alive:
             self._outbox.put((connection or self._connection, message))
 
-    def ask(self, command: Sparql | Watch | Renew, seq: int, demand: int = 0) -> Future[Any]:
+    def ask(self, command: Sparql | Watch | Renew, seq: int, demand: int = 0, asker: str = "") -> Future[Any]:
         """The reply, as of commit `seq` or later, with what was demanded under that number."""
         with self._lock:
             if self.is_alive:
                 if isinstance(command, Sparql):
-                    return self._lanes.ask(command, seq, demand)
+                    return self._lanes.ask(command, seq, demand, asker)
                 number, future = next(self._numbers), Future[Any]()
                 self._waiting[number] = (type(command), future)
                 self.send(Asked(number=number, command=command))

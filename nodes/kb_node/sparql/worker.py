@@ -26,6 +26,7 @@ from nodes.kb_node.sparql.protocol import (
     Asked,
     Committed,
     Demanded,
+    Dismiss,
     FromWorker,
     Hire,
     Left,
@@ -94,6 +95,10 @@ class Worker:
                 self._measure(message.demand)
             case Hire():
                 self._readers[message.lane] = self._reader(self._lanes[message.lane])
+            case Dismiss():
+                if (reader := self._readers.pop(message.lane, None)) is not None:  # else it has gone
+                    reader.end()
+                    self._send(Left(lane=message.lane, signal=0))
             case Asked():
                 try:
                     dataset = self._dataset

@@ -1,15 +1,18 @@
 """The node's ends of the lanes, with this test in the place of readers and of the process that forks them."""
 
 import signal
+import time
 
 import pytest
 from msgspec import Raw, msgpack
 
-from nodes.kb_node.sparql.lanes import LANES, Lanes
-from nodes.kb_node.sparql.protocol import Hire, Left, Outcome, questions
+from nodes.kb_node.sparql import lanes
+from nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
+from nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, questions
 from schemas import errors
 from schemas.commands import Sparql
 from schemas.sparql import SparqlResult
+from tests.conftest import until
 
 WAIT_S = 30.0
 
@@ -108,3 +111,59 @@ def test_in_the_end_nobody_waits(readers):
     for future in futures:
         with pytest.raises(errors.Refused, match="over"):
             future.result(WAIT_S)
+
+
+def begun(readers, count, name="long"):
+    """So many queries, each with a lane."""
+    futures = [readers.ask(f"{name} {number}") for number in range(count)]
+    return futures, [readers.take(lane) for lane in range(count)]
+
+
+def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew(readers, monkeypatch):
+    monkeypatch.setattr(lanes, "LONG_S", 0.05)
+    futures, taken = begun(readers, LANES)
+    quick = readers.ask("quick")
+    until(lambda: Dismiss(lane=AT_LENGTH) in readers.sent, "one is set aside")
+    readers.lanes.leave(Left(lane=AT_LENGTH, signal=0))
+    assert readers.sent[-1] == Hire(lane=AT_LENGTH)
+    question = readers.take(AT_LENGTH)
+    assert question.query == "quick"
+    readers.answer(AT_LENGTH, question)
+    assert quick.result(WAIT_S).verdict
+    assert not readers.lanes.others[AT_LENGTH].poll(0.1)  # still enough others take long
+    readers.answer(0, taken[0])
+    for lane in range(AT_LENGTH + 1, LANES):
+        readers.answer(lane, taken[lane])
+    again = [lane for lane in range(LANES) if readers.lanes.others[lane].poll(0.2)]
+    question = readers.take(again[0])
+    assert question == taken[AT_LENGTH]
+    readers.answer(again[0], question)
+    assert futures[AT_LENGTH].result(WAIT_S).verdict
+
+
+def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
+    monkeypatch.setattr(lanes, "LONG_S", 0.01)
+    begun(readers, LANES)
+    time.sleep(0.1)
+    assert all(isinstance(sent, Hire) for sent in readers.sent)
+
+
+def test_askers_take_turns(readers):
+    _, taken = begun(readers, LANES)
+    for number in range(5):
+        readers.lanes.ask(Sparql(query=f"a{number}"), 7, asker="a")
+    readers.lanes.ask(Sparql(query="b0"), 7, asker="b")
+    order = []
+    for _ in range(6):
+        readers.answer(0, taken[0])
+        taken[0] = readers.take(0)
+        order.append(taken[0].query)
+    assert order == ["a0", "b0", "a1", "a2", "a3", "a4"]
+
+
+def test_too_many_are_refused(readers):
+    begun(readers, LANES)
+    for _ in range(64):
+        readers.ask("x")
+    with pytest.raises(errors.Busy, match="64 SPARQL queries wait already"):
+        readers.ask("x")

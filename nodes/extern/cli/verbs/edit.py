@@ -132,7 +132,11 @@ def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
 @talks
 def clear(client: Client, dry_run: bool) -> None:
     """Remove all entities from the map and the scene."""
-    print_lines(lines.changed(client.clear(dry_run=dry_run)))
+    from nodes.extern.cli.output.progress import progress
+
+    with progress(client):
+        reply = client.clear(dry_run=dry_run)
+    print_lines(lines.changed(reply))
 
 
 @click.command()
@@ -151,7 +155,7 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
 
     A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
     """
-    from nodes.extern.cli.output.load_progress import progress
+    from nodes.extern.cli.output.progress import progress
 
     with progress(client):
         try:

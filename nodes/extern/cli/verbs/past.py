@@ -69,4 +69,8 @@ def undo(client: Client, commit: int | None, dry_run: bool) -> None:
 
     Without COMMIT it is the newest that a client requested.
     """
-    print_lines(lines.changed(client.undo(commit, dry_run=dry_run)))
+    from nodes.extern.cli.output.progress import progress
+
+    with progress(client):
+        reply = client.undo(commit, dry_run=dry_run)
+    print_lines(lines.changed(reply))

@@ -168,6 +168,20 @@ class Adjacency:
                 yield edge
                 edge = after[edge]
 
+    def gather(self, nodes: Iterable[int], most: int) -> list[int]:
+        """All edges of some nodes; of more than so many, at least one more."""
+        heads, after, group = self.heads, self.after, self.group
+        found: list[int] = []
+        for node in nodes:
+            first = heads[node]
+            while first != NONE and len(found) <= most:
+                edge = first
+                while edge != NONE and len(found) <= most:
+                    found.append(edge)
+                    edge = after[edge]
+                first = group[first]
+        return found
+
     def all(self, node: int) -> Iterator[int]:
         """All edges of a node."""
         first = self.heads[node]

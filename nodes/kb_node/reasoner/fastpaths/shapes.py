@@ -24,6 +24,8 @@ from nodes.kb_node.reasoner.terms import TYPE
 
 _MOST = 2000
 """Shapes remembered."""
+_FEW = 64
+"""Triples that are no more than a few runs."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
@@ -79,7 +81,7 @@ class Shapes:
         None, and nothing done, where they are few or not so plain, or holes in the store are to be filled.
         """
         store = self._abox.store
-        if store.holes > len(triples) - start:
+        if len(triples) - start < _FEW or store.holes > len(triples) - start:
             return [], len(triples)
         found, end = batches(self._runs, triples, start)
         end = max(end, start + 1)

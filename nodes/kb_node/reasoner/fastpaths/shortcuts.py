@@ -14,6 +14,9 @@ from nodes.kb_node.reasoner.abox.store import ASSERTED, DERIVED
 from nodes.kb_node.reasoner.explanations import Term, Triple
 from nodes.kb_node.reasoner.terms import TYPE
 
+_MOST = 256
+"""Edges that are looked at besides those asked for: who has more, as values or computed, is no plain case."""
+
 
 def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     """Forget individuals of which these are all assertions.
@@ -21,8 +24,8 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     Who they were; None, with nothing done, where it is not plain.
     """
     store = abox.store
-    wanted = set(triples)
-    going = {store.numbers.get(triple[0], NONE) for triple in triples}
+    wanted, subjects = set(triples), {triple[0] for triple in triples}
+    going = {store.numbers.get(subject, NONE) for subject in subjects}
     is_doubtful = NONE in going or len(wanted) < len(triples)
     edges = None if is_doubtful else _edges_of(abox, going, wanted)
     if edges is None or not _concern_nobody(abox, going, edges):
@@ -33,27 +36,28 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
         for node in last:
             abox.forget_spelling(node)
     store.erase(going, edges)
-    return {triple[0] for triple in triples}
+    return subjects
 
 
 def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | None:
     """The edges that leave from nodes; None if what was asserted of these is not exactly what is wanted."""
     store, classes, axioms = abox.store, abox.schema.classes, abox.schema.axioms
-    terms, kinds, source, predicate = store.terms, store.kind, store.source, store.predicate
-    edges: list[int] = []
+    terms, subject, predicate, object_ = store.terms, store.subject, store.predicate, store.object
     asserted = 0
     for node in nodes:
-        term = terms[node]
-        for cls in kinds[node].given:
-            if (term, TYPE, classes[cls]) not in wanted:
+        for cls in store.kind[node].given:
+            if (terms[node], TYPE, classes[cls]) not in wanted:
                 return None
             asserted += 1
-        for edge in store.out.all(node):
-            edges.append(edge)
-            if source[edge] == ASSERTED:
-                if (term, axioms[predicate[edge]].term, terms[store.object[edge]]) not in wanted:
-                    return None
-                asserted += 1
+    most, source = _MOST + 2 * len(wanted), store.source
+    edges = store.out.gather(nodes, most)
+    if len(edges) > most:
+        return None
+    for edge in edges:
+        if source[edge] == ASSERTED:
+            if (terms[subject[edge]], axioms[predicate[edge]].term, terms[object_[edge]]) not in wanted:
+                return None
+            asserted += 1
     return edges if asserted == len(wanted) else None
 
 
@@ -64,14 +68,15 @@ def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
         return False
     if not (abox.rest_on_node.keys().isdisjoint(nodes) and abox.rest_on_edge.keys().isdisjoint(edges)):
         return False
+    entering = store.into.gather(nodes, len(edges))
+    if not nodes >= {store.subject[edge] for edge in entering}:
+        return False
     source, object_ = store.source, store.object
     for edge in edges:
         node = object_[edge]
         if source[edge] == DERIVED or (node not in nodes and kinds[node].base is not kinds[node]):
             return False
-    if abox.spellings and not abox.equals.keys().isdisjoint(object_[edge] for edge in edges):
-        return False
-    return all(store.subject[edge] in nodes for node in nodes for edge in store.into.all(node))
+    return not abox.spellings or abox.equals.keys().isdisjoint(object_[edge] for edge in edges)
 
 
 def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:

@@ -22,6 +22,8 @@ from schemas.entities import Entity
 Found = tuple[Solid, Measure]
 _STEP = 2000
 """Entities."""
+MANY: Final = 100
+"""So many are put, and worked out, in arrays; for fewer these take longer."""
 
 
 class Whereabouts(NamedTuple):
@@ -49,6 +51,9 @@ class Space:
     def put_all(self, entities: Iterable[Entity | Placed]) -> Iterator[list[Solid]]:
         """`put` many, some thousand at a time; the solids of each step."""
         for some in parts(entities, _STEP, _nothing):
+            if len(some) < MANY:
+                yield [solid for entity in some if (solid := self.put(entity)) is not None]
+                continue
             newest = {entity.name: entity for entity in some}
             for name in newest.keys() & self.solids.keys() if self.solids else ():
                 self.take(name)
@@ -126,6 +131,13 @@ class Space:
         """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
         return [other for other in self.grid.counted_around(solid.bounds, margin_m) if other is not solid]
 
+    def bearers_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+        """Those of them who may bear and hold it; of what does not count itself, only what is larger."""
+        around = self.counted_around(solid, margin_m)
+        if not self.grid.crowds or self.grid.counts(solid):
+            return around
+        return [other for other in around if other.is_place or other.volume > solid.volume]
+
     def counts(self, solid: Solid) -> bool:
         """Whether others look at it."""
         return self.grid.counts(solid)
@@ -169,7 +181,7 @@ class Space:
         place: Found | None = None
         below: list[Found] = []
         least = solid.bottom - limits.gap_m - 1e-6
-        for other in self.counted_around(solid):
+        for other in self.bearers_around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
