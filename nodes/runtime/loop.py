@@ -161,7 +161,7 @@ class Node:
             if not is_full:  # else the event of the one that went is for this one
                 self._events.put(take)
 
-        bus.follow(self.session, topic, keep)
+        bus.follow(self.session, topic, keep, self._heartbeat.ignore)
 
     def every(self, period_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` each `period_s`, as well as the load allows."""

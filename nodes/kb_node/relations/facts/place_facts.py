@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.facts.rules import RULES, About, Rule
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.broad_phase import by_place
-from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.space import MANY, Space
 from nodes.kb_node.relations.measuring.survey import Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from schemas.entities import Entity
@@ -25,8 +25,8 @@ Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
 _STEP = 4000
 """Entities."""
-MANY: Final = 64
-"""So many are worked out in arrays."""
+_MOST_AT_ONCE = 16_000
+"""So many are surveyed together where nobody waits: those around them are looked up less often."""
 _FORGOTTEN = 8
 """Solids for each that an update touches."""
 _MOST_TO_FORGET = 1000
@@ -91,7 +91,7 @@ class Facts:
             yield
         self.space.shifted()
         gone, come = set[Fact](), set[Fact]()
-        for _ in self._working_out(self._things(self.space.solids), gone, come):
+        for _ in self._working_out(self._things(self.space.solids), gone, come, _STEP):
             come.clear()
             yield
         for solid in self.space.solids.values():
@@ -102,10 +102,12 @@ class Facts:
         solids = self.space.solids
         return [solid for name in names if (solid := solids.get(name)) is not None and not solid.is_place]
 
-    def _working_out(self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact]) -> Iterator[None]:
-        """Work out the facts of many, in steps, and add what is otherwise to `gone` and `come`."""
+    def _working_out(
+        self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact], step: int
+    ) -> Iterator[None]:
+        """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
         space = self.space
-        for some in parts(by_place(solids), _STEP, _nothing):
+        for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some)
             with space.remembering():
                 for kept in self._kept:
@@ -144,10 +146,7 @@ class Facts:
         moved.update((entity.name, None) for entity in changed)
         if space.solids:
             left += filter(None, (self._counted(entity.name) for entity in changed))
-        if len(changed) < MANY:
-            fresh += filter(None, map(space.put, changed))
-        else:
-            fresh += chain.from_iterable(space.put_all(changed))
+        fresh += chain.from_iterable(space.put_all(changed))
         shifted = space.shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
         moved.update((solid.name, None) for solid in shifted)
@@ -164,7 +163,7 @@ class Facts:
                 left_over = everybody.keys() - {solid.name for solid in things}
                 for kept in self._kept:
                     kept.work_out(space, left_over, gone, come)
-            for _ in self._working_out(things, gone, come):
+            for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
                 pass
         self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
         if self._to_forget > _MOST_TO_FORGET:
@@ -217,7 +216,10 @@ class _Kept:
     ) -> None:
         """Have the facts of those who were surveyed, and add what is otherwise to `gone` and `come`."""
         facts, of, about = self.rule.facts, self.of, self.about
-        for solid, known in zip(solids, self.rule.of_many(survey), strict=True):
+        found = self.rule.of_many(survey)
+        if not of and found.count(()) == len(found):
+            return
+        for solid, known in zip(solids, found, strict=True):
             now = tuple(facts(space, solid)) if known is None else known
             name = solid.name
             before = of.get(name, ())

@@ -34,7 +34,7 @@ class Rule(NamedTuple):
     """Each is a property of its name in the namespace of the household TBox."""
     facts: Callable[[Space, Solid], Iterator[About]]
     """What holds of a thing. It is not asked of places."""
-    of_many: Callable[[Survey], Iterator[tuple[About, ...] | None]]
+    of_many: Callable[[Survey], list[tuple[About, ...] | None]]
     """The same for each of those who were surveyed; None where `facts` has to be asked."""
     concerns: Callable[[Space, Solid, Solid], bool]
     """Whether something may come to hold of the second because of the first, who is new there.
@@ -59,23 +59,21 @@ def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
         yield "isLocatedIn", place[0].name
 
 
-def _whereabouts_of_many(survey: Survey) -> Iterator[tuple[About, ...] | None]:
-    names = [solid.name for solid in survey.solids]
-    known: dict[tuple[int, int, int], tuple[About, ...]] = {}
-    columns = (survey.container, survey.support, survey.place)
-    for is_open, *found in zip(survey.is_open.tolist(), *(c.tolist() for c in columns), strict=True):
-        if is_open:
-            yield None
-            continue
-        rows = (found[0], found[1], found[2])
-        facts = known.get(rows)
-        if facts is None:
-            facts = known[rows] = tuple(
-                (relation, names[row])
-                for relation, row in zip(_WHEREABOUTS, rows, strict=True)
-                if row != NOBODY
-            )
-        yield facts
+def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
+    rows = list(zip(survey.container.tolist(), survey.support.tolist(), survey.place.tolist(), strict=True))
+    solids = survey.solids
+    known = {
+        some: tuple(
+            (relation, solids[row].name)
+            for relation, row in zip(_WHEREABOUTS, some, strict=True)
+            if row != NOBODY
+        )
+        for some in set(rows)
+    }
+    found: list[tuple[About, ...] | None] = [known[some] for some in rows]
+    for row in survey.is_open.nonzero()[0].tolist():
+        found[row] = None
+    return found
 
 
 def _attachments(space: Space, solid: Solid) -> Iterator[About]:
@@ -83,9 +81,13 @@ def _attachments(space: Space, solid: Solid) -> Iterator[About]:
         yield "isAttachedTo", other.name
 
 
-def _attachments_of_many(survey: Survey) -> Iterator[tuple[About, ...] | None]:
-    for may_hang in survey.may_hang.tolist():
-        yield None if may_hang else ()
+def _attachments_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
+    found: list[tuple[About, ...] | None] = [()] * len(survey.may_hang)
+    for row in survey.may_hang.nonzero()[0].tolist():
+        found[row] = None
+    for row, others in survey.hangs_on.items():
+        found[row] = tuple(("isAttachedTo", name) for name in sorted(survey.solids[k].name for k in others))
+    return found
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:

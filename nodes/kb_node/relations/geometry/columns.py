@@ -24,13 +24,10 @@ class Columns:
 
     def __init__(self, solids: Sequence[Solid]) -> None:
         self.solids: Final = solids
-        count = len(solids)
-        rows: dict[Form, int] = {}
-        self.form: Final[Ints] = np.fromiter(
-            (rows.setdefault(solid.form, len(rows)) for solid in solids), np.int64, count
-        )
+        forms, row = _in_columns([solid.form for solid in solids])
+        self.forms: Final = forms
+        self.form: Final = row
         """(N,) rows of `forms`."""
-        self.forms: Final = FormColumns(list(rows))
         self.position: Final[Floats] = _flat([solid.position for solid in solids], 3)
         """(N, 3)"""
         self.bounds: Final[Floats] = _flat([solid.bounds for solid in solids], 4)
@@ -49,24 +46,33 @@ class Columns:
 
 def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
     """The solids of those entities that have a position: what `solid_of` makes of each."""
-    placed: list[tuple[str, Vector, Form, bool, bool]] = []
-    rows: dict[Form, int] = {}
-    form: list[int] = []
+    names: list[str] = []
+    positions: list[Vector] = []
+    forms: list[Form] = []
+    are_places: list[bool] = []
+    are_measured: list[bool] = []
     for entity in entities:
         pose = entity.pose
-        if pose is None:
-            continue
-        model, size = shape_of(entity)
-        its = form_of(model, size or UNMEASURED, pose.orientation_wxyz)
-        form.append(rows.setdefault(its, len(rows)))
-        placed.append((entity.name, pose.position_m, its, entity.place, size is not None))
-    forms, of = FormColumns(list(rows)), np.array(form, dtype=np.int64)
-    x, y, z = _flat([at for _, at, _, _, _ in placed], 3).T
-    bounds = np.stack([x, y, x, y], axis=1) + forms.bounds[of]
-    bottom = z + np.where(forms.has_shape, forms.bottom, forms.lowest_corner)[of]
-    top = z + forms.top[of]
+        if pose is not None:
+            model, size = shape_of(entity)
+            names.append(entity.name)
+            positions.append(pose.position_m)
+            forms.append(form_of(model, size or UNMEASURED, pose.orientation_wxyz))
+            are_places.append(entity.place)
+            are_measured.append(size is not None)
+    columns, row = _in_columns(forms)
+    x, y, z = _flat(positions, 3).T
+    bounds = np.stack([x, y, x, y], axis=1) + columns.bounds[row]
+    bottom = z + np.where(columns.has_shape, columns.bottom, columns.lowest_corner)[row]
+    top = z + columns.top[row]
     extents = zip(map(tuple, bounds.tolist()), bottom.tolist(), top.tolist(), strict=True)
-    return [Solid(*one, extent) for one, extent in zip(placed, extents, strict=True)]
+    return list(map(Solid, names, positions, forms, are_places, are_measured, extents))
+
+
+def _in_columns(forms: Sequence[Form]) -> tuple[FormColumns, Ints]:
+    """Each form once, as columns, and the rows in which they are."""
+    rows = {form: row for row, form in enumerate(dict.fromkeys(forms))}
+    return FormColumns(list(rows)), np.fromiter(map(rows.__getitem__, forms), np.int64, len(forms))
 
 
 def _flat(rows: Sequence[tuple[float, ...]], width: int) -> Floats:

@@ -162,6 +162,7 @@ def form_of(model: str | None, size: Size, wxyz: Quaternion) -> Form:
     return Form(model, size, wxyz)
 
 
+@lru_cache(maxsize=1024)
 def _rotation(wxyz: Quaternion) -> Matrix:
     w, x, y, z = wxyz
     return (

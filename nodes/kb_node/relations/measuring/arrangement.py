@@ -13,7 +13,7 @@ from nodes.kb_node.relations.measuring.space import Space
 
 _OPPOSITE = -math.cos(math.radians(60.0))
 """What is between two sees them in directions this far from one another: 120 degrees or more."""
-_BESIDE_M = 0.2
+BESIDE_M = 0.2
 """What is further from another thing is not beside it."""
 ALONGSIDE = 0.5
 """Of the height of what hangs that is alongside what it hangs on."""
@@ -90,7 +90,7 @@ def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
     highest = solid.bottom - space.limits.gap_m
     found = [
         other
-        for other in space.counted_around(solid, margin)
+        for other in space.bearers_around(solid, margin)
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
@@ -108,7 +108,7 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     if solid.bottom <= other.bottom + limits.gap_m or solid.top <= solid.bottom:
         return None
     share = (min(solid.top, other.top) - solid.bottom) / (solid.top - solid.bottom)
-    if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, _BESIDE_M):
+    if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, BESIDE_M):
         return None
     apart = distance(solid.outline, other.outline)
     holds = apart <= limits.attached_m and share >= ALONGSIDE

@@ -78,7 +78,7 @@ class BroadPhase:
         """`solids` are all of the grid that share a cell with one of the first `subjects` of them."""
         self._grid: Final = grid
         self._solids: Final = solids
-        self._bounds: Final = bounds
+        self._bounds: Final = np.asfortranarray(bounds)
         self._subjects: Final = subjects
         cells = Cells(bounds)
         self._low = cells.low
@@ -111,29 +111,37 @@ class BroadPhase:
 
     def pairs(self, margin_m: float) -> tuple[Ints, Ints, Bools]:
         """(M,) rows of subjects and of who counts beside each, once; and (S,) of whom not all is known."""
-        bounds = self._bounds[: self._subjects]
-        cells = Cells(bounds, margin_m)
+        cells = Cells(self._bounds[: self._subjects], margin_m)
         keys, subject = cells.entries(np.flatnonzero(cells.is_filed))
         begin = np.searchsorted(self._keys, keys)
         which, turn = repeated(np.searchsorted(self._keys, keys, side="right") - begin)
         one, other = subject[which], self._who[begin[which] + turn]
+        meets = self._meet(one, other, margin_m)
+        one, other, keys = one[meets], other[meets], keys[which[meets]]
         if self._grid.crowds:  # then it may not count in the first cell that they share
             joined = distinct(one * len(self._solids) + other)
             one, other = np.divmod(joined, max(len(self._solids), 1))
         else:
             first = np.maximum(cells.low[one], self._low[other])
-            is_first = key(first[:, 0], first[:, 1]) == keys[which]
+            is_first = key(first[:, 0], first[:, 1]) == keys
             one, other = one[is_first], other[is_first]
-        large = self._large
-        one = np.concatenate([one, np.repeat(np.arange(self._subjects), len(large))])
-        other = np.concatenate([other, np.tile(large, self._subjects)])
-        its, their = bounds[one], self._bounds[other]
-        meets = (
-            (their[:, 0] <= its[:, 2] + margin_m) & (their[:, 2] >= its[:, 0] - margin_m)
-            & (their[:, 1] <= its[:, 3] + margin_m) & (their[:, 3] >= its[:, 1] - margin_m)
-            & (one != other)
-        )  # fmt: skip
-        return one[meets], other[meets], ~cells.is_filed
+        if len(self._large):
+            by, large = (
+                np.repeat(np.arange(self._subjects), len(self._large)),
+                np.tile(self._large, self._subjects),
+            )
+            meets = self._meet(by, large, margin_m)
+            one, other = np.concatenate([one, by[meets]]), np.concatenate([other, large[meets]])
+        return one, other, ~cells.is_filed
+
+    def _meet(self, one: Ints, other: Ints, margin_m: float) -> Bools:
+        """Whether bounds meet, or are within a margin."""
+        low_x, low_y, high_x, high_y = self._bounds.T
+        found: Bools = one != other
+        for low, high in ((low_x, high_x), (low_y, high_y)):
+            found &= low[other] <= (high + margin_m)[one]
+            found &= high[other] >= (low - margin_m)[one]
+        return found
 
 
 def file(grid: Grid, solids: Sequence[Solid]) -> None:

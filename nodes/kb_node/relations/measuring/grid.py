@@ -44,9 +44,12 @@ class Grid:
 
     def add_to(self, cell: Cell, solids: Sequence[Solid]) -> None:
         """File some under a cell that the bounds of each cover; `add` does so for all cells of one."""
-        there = self._cells.setdefault(cell, {})
+        there = self._cells.get(cell)
+        if there is None:
+            there = self._cells[cell] = {}
         if len(there) + len(solids) <= crowds.MOST:
-            there.update(dict.fromkeys(solids))
+            for solid in solids:
+                there[solid] = None
             return
         for solid in solids:
             there[solid] = None

@@ -20,7 +20,7 @@ from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
 from nodes.kb_node.relations.geometry.planar import GUARD
 from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring import measures
-from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE
+from nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
 from nodes.kb_node.relations.measuring.bearing import bearing
 from nodes.kb_node.relations.measuring.broad_phase import BroadPhase, covered, differs, distinct, repeated
 from nodes.kb_node.relations.measuring.space import Space
@@ -46,6 +46,8 @@ class Survey:
         """(S,) whether it has to be measured what each is inside, on and in."""
         self.may_hang = np.zeros(count, dtype=bool)
         """(S,) whether it has to be measured what each hangs on."""
+        self.hangs_on: dict[int, list[int]] = {}
+        """By row, what some hang on of whom that need not be."""
         self.container: Final[Ints] = np.full(count, NOBODY)
         """(S,) rows of `solids`: what each is inside, if it is not open; `NOBODY` for nothing."""
         self.support: Final[Ints] = np.full(count, NOBODY)
@@ -59,12 +61,12 @@ class Survey:
     def _look(self) -> None:
         limits, columns, grid = self._limits, self._columns, self._space.grid
         broad = BroadPhase(grid, columns.solids, columns.bounds, len(self.is_open))
-        one, other, unknown = broad.pairs(limits.attached_m)
+        one, other, unknown = self._pairs(broad, limits.attached_m)
         self.is_open |= unknown
         self.may_hang |= unknown
-        self._find_what_may_hold(one, other)
+        hanging = self._find_what_may_hold(one, other)
         if grid.crowds:
-            one, other, _ = broad.pairs(0.0)
+            one, other, _ = self._pairs(broad, 0.0)
         else:
             its, their = columns.bounds[one], columns.bounds[other]
             meets = (their[:, :2] <= its[:, 2:]).all(axis=1) & (their[:, 2:] >= its[:, :2]).all(axis=1)
@@ -72,8 +74,17 @@ class Survey:
         to_place = columns.is_place[other]
         self._find_places(one[to_place], other[to_place])
         self._find_bearers(one[~to_place], other[~to_place])
-        is_borne = (self.container != NOBODY) | (self.support != NOBODY) | self._stands_on_floor()
-        self.may_hang &= self.is_open | ~is_borne
+        self._find_what_hangs(*hanging)
+
+    def _pairs(self, broad: BroadPhase, margin_m: float) -> tuple[Ints, Ints, Bools]:
+        """Who may bear and hold each, as `Space.bearers_around` has it, and of whom that is not known."""
+        columns, grid = self._columns, self._space.grid
+        one, other, unknown = broad.pairs(margin_m)
+        if grid.crowds:
+            counts = np.array([grid.counts(solid) for solid in self.solids[: len(unknown)]], dtype=bool)
+            bears = counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
+            one, other = one[bears], other[bears]
+        return one, other, unknown
 
     def _take_smallest(
         self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]
@@ -127,11 +138,6 @@ class Survey:
         """(S,) how far each is above the floor of its place, and whether it has one."""
         bottom, has_place = self._columns.bottom, self.place != NOBODY
         return bottom[: len(self.place)] - np.where(has_place, bottom[self.place], 0.0), has_place
-
-    def _stands_on_floor(self) -> Bools:
-        floor, has_place = self._floor()
-        found: Bools = has_place & (np.abs(floor) < self._limits.gap_m - GUARD)
-        return found
 
     # What is inside and on what
 
@@ -208,14 +214,40 @@ class Survey:
 
     # What hangs
 
-    def _find_what_may_hold(self, one: Ints, other: Ints) -> None:
-        columns = self._columns
+    def _find_what_may_hold(self, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+        """Pairs of which the other plainly holds the one, unless something bears that."""
+        columns, forms, limits = self._columns, self._columns.forms, self._limits
+        asked = columns.is_measured[one] & ~columns.is_place[other]
+        one, other = one[asked], other[asked]
         bottom, top = columns.bottom[one], columns.top[one]
-        alongside = (np.minimum(top, columns.top[other]) - bottom) / np.maximum(top - bottom, 1e-12)
-        may = columns.is_measured[one] & ~columns.is_place[other]
-        may &= columns.bottom[other] < bottom - self._limits.gap_m + GUARD
-        may &= (alongside > ALONGSIDE - GUARD) | ~columns.is_near[one]
-        self.may_hang[one[may]] = True
+        alongside = (np.minimum(top, columns.top[other]) - bottom) / np.maximum(
+            top - bottom, 1e-12
+        ) - ALONGSIDE
+        above = bottom - columns.bottom[other] - limits.gap_m
+        is_near = columns.is_near[one] & columns.is_near[other]
+        may = ((alongside > -GUARD) & (above > -GUARD)) | ~is_near
+        one, other, alongside, above = one[may], other[may], alongside[may], above[may]
+        apart = np.maximum(
+            columns.bounds[one, :2] - columns.bounds[other, 2:],
+            columns.bounds[other, :2] - columns.bounds[one, 2:],
+        )
+        slack = min(limits.attached_m, BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
+        exact = is_near[may] & forms.is_square[columns.form[one]] & forms.is_square[columns.form[other]]
+        plain = exact & columns.is_sure[one] & (np.minimum(alongside, above) > GUARD) & (slack > GUARD)
+        self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True
+        return one[plain], other[plain]
+
+    def _find_what_hangs(self, one: Ints, other: Ints) -> None:
+        """Of those that something may hold, who is borne does not hang."""
+        floor, has_place = self._floor()
+        away = np.abs(floor) - self._limits.gap_m
+        is_borne = (self.container != NOBODY) | (self.support != NOBODY) | (has_place & (away < -GUARD))
+        may_be_borne = self.is_open | (has_place & (np.abs(away) <= GUARD))
+        self.may_hang &= self.is_open | ~is_borne
+        self.may_hang[one[may_be_borne[one]]] = True
+        hangs = ~is_borne[one] & ~self.may_hang[one]
+        for row, its in zip(one[hangs].tolist(), other[hangs].tolist(), strict=True):
+            self.hangs_on.setdefault(row, []).append(its)
 
 
 def _with_around(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:

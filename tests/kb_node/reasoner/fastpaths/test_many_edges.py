@@ -10,6 +10,7 @@ from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.fastpaths import paths
 from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
 from nodes.kb_node.reasoner.terms import TYPE
+from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples
 from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, TRANSITIVE, World
 
@@ -115,6 +116,9 @@ def follow(seed, theme):
         else:
             taken += len(facts)
         assert state(pair[0]) == state(pair[1]), change
+    found = sorted(pair[0].inferred())
+    for fact in random_.sample(found, min(3, len(found))):
+        proofs.check(pair[0].explain(fact), list(pair[0].given()))
     return taken
 
 
@@ -209,14 +213,46 @@ def test_what_followed_and_is_computed_now_outlives_its_reason():
     assert not reasoner.holds(cup_in_kitchen)
 
 
-def test_most_of_a_home_is_not_looked_at_singly(monkeypatch):
+def test_nobody_looks_singly_at_a_home_in_which_nothing_is_wrong(monkeypatch):
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)
     asked = []
     monkeypatch.setattr(Saturation, "_look_at", lambda _, edge: asked.append(edge))
-    together(reasoner, come=[fact for fact in seen if fact[0] != triple(":chair :isOn :t0")[0]])
-    # that it is in the flat follows for each in the kitchen; no more does
-    assert len(asked) <= len(seen) / 2 + 6
+    together(reasoner, come=seen)
+    assert not asked
+    assert reasoner.holds(triple(":c5_6 :isIn :flat"))
+
+
+def test_what_chains_conclude_together_is_explained_and_goes_with_its_reasons():
+    said, seen = at_home(2, 2)
+    reasoner = Reasoner([*said, *triples(":flat :isPartOf :house .")])
+    together(reasoner, come=seen)
+    in_house = triple(":c1_1 :isIn :house")
+    proofs.check(reasoner.explain(in_house), list(reasoner.given()))
+    reasoner.believe(gone=[triple(":c1_1 :isIn :kitchen")])
+    assert reasoner.holds(in_house)  # as what it is on is there
+    reasoner.believe(gone=[triple(":t1 :isIn :kitchen")])
+    assert not reasoner.holds(in_house)
+
+
+@pytest.mark.parametrize(
+    ("first", "then"),
+    [
+        ([":cup :isOn :tray", ":tray :isIn :kitchen"], []),
+        ([":cup :isOn :tray"], [":tray :isIn :kitchen"]),
+        ([":tray :isIn :kitchen"], [":cup :isOn :tray"]),
+        ([":tray :bears :cup"], [":kitchen :has :tray"]),  # seen from the other end
+        ([":kitchen :has :tray"], [":tray :bears :cup"]),
+    ],
+)
+def test_a_chain_is_made_of_what_came_in_any_order_and_way(first, then):
+    reasoner = Reasoner([*HOME, *triples(":has owl:inverseOf :isIn .")])
+    for come in (first, then):
+        together(reasoner, come=[triple(text) for text in come])
+    explanation = reasoner.explain(triple(":cup :isIn :flat"))
+    proofs.check(explanation, list(reasoner.given()))
+    assert {triple(text) for text in (*first, *then)} < set(explanation.support)
+    assert not any(reasoner.inferred(triple(":flat :isIn :cup")[0], triple(":flat :isIn :cup")[1]))
 
 
 def test_holes_are_filled_before_there_are_more_edges():

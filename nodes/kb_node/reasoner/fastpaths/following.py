@@ -1,0 +1,209 @@
+"""What follows from new edges, column by column.
+
+A rule is tried for all edges of a column with a few look-ups each. Widened kinds, values that come with
+classes, and what chains conclude are worked out here. An edge from which more may follow, or a contradiction,
+is *doubtful*: the rules look at it like at any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from nodes.kb_node.reasoner.abox.abox import ABox
+from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.kinds import Kind
+from nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
+from nodes.kb_node.reasoner.abox.store import DERIVED, VALUE
+from nodes.kb_node.reasoner.explain.reasons import Edge
+from nodes.kb_node.reasoner.explanations import Term
+from nodes.kb_node.reasoner.fastpaths.edge_columns import Column, Ends
+from nodes.kb_node.reasoner.tbox.axioms import Chain, Role
+
+Pair = tuple[int, int]
+
+
+class Following:
+    """What follows from columns that are in the store now, in an ABox in which no nodes are the same."""
+
+    def __init__(self, abox: ABox, columns: Sequence[Column], before: Ends) -> None:
+        """`before` is of all ends of the columns, as they were before, for all predicates `looked_for`."""
+        self._abox = abox
+        self._columns = columns
+        self._before = before
+        self._now = before.with_columns(columns)
+        self._implied: dict[int, set[Pair]] = {}
+        self._made: dict[int, dict[Pair, tuple[Edge, Edge]]] = {}
+        self._valued: dict[int, None] = {}
+
+    def take(self, column: Column, edges: Sequence[int]) -> Iterable[int]:
+        """Widen the kinds of a column's ends, and note what its edges make; which places are doubtful."""
+        doubtful = self._widen(column, edges)
+        rules = self._abox.steps.rules(column.predicate)
+        if rules is None:
+            return doubtful
+        if rules.limits:
+            is_alone = self._abox.store.out.is_alone
+            return doubtful.union(
+                at for at, edge in enumerate(edges) if not (rules.of_values and is_alone(edge))
+            )
+        doubtful.update(self._excluded(column, rules))
+        if rules.irreflexive:
+            ends = zip(column.subjects, column.objects, strict=True)
+            doubtful.update(at for at, (s, o) in enumerate(ends) if s == o)
+        for is_head, chains in ((True, rules.heads), (False, rules.tails)):
+            for forwards, chain in chains:
+                self._conclude(column, edges, chain, is_head, forwards)
+        return doubtful
+
+    def made(self) -> Iterator[Column]:
+        """The edges that follow from those that were taken, and are not there."""
+        for result, pairs in self._made.items():
+            subjects, objects = zip(*pairs, strict=True)
+            yield Column(result, DERIVED, subjects, objects, claims=list(pairs.values()))
+        yield from self._values()
+
+    def _values(self) -> Iterator[Column]:
+        """The edges that classes come with (cls-hv1), and that nothing else implies."""
+        abox, store = self._abox, self._abox.store
+        having: dict[tuple[int, Term], list[int]] = {}
+        for node in self._valued:
+            for said in store.kind[node].values:
+                having.setdefault(said, []).append(node)
+        for (predicate, term), owners in having.items():
+            group, value = abox.steps.group((predicate, False)), store.node(term)
+            may_have = Ends.of(store, owners, {*group.out, *group.into}).along(group)
+            without = [
+                node
+                for node in owners
+                if node not in may_have or abox.find(node, (predicate, False), value) == NONE
+            ]
+            if without:
+                yield Column(predicate, VALUE, without, [value] * len(without))
+
+    # Classes
+
+    def _widen(self, column: Column, edges: Sequence[int]) -> set[int]:
+        """Widen the kinds of the ends; which edges say more than that."""
+        abox = self._abox
+        kind_of = abox.store.kind.__getitem__
+        kinds = list(zip(map(kind_of, column.subjects), map(kind_of, column.objects), strict=True))
+        steps = {pair: abox.steps.step(column.predicate, *pair) for pair in set(kinds)}
+        for which, ends in ((0, column.subjects), (1, column.objects)):
+            masks = {
+                pair: now.mask
+                for pair, step in steps.items()
+                if (now := (step.subject, step.object)[which]) is not pair[which]
+            }
+            if masks:
+                told = zip(ends, kinds, strict=True)
+                for node, mask in {(node, masks[pair]) for node, pair in told if pair in masks}:
+                    self._widen_one(node, mask)
+        special = {pair for pair, step in steps.items() if step.special or pair[1].excluded is not None}
+        return {
+            at
+            for at, pair in enumerate(kinds if special else ())
+            if pair in special and not self._is_all_told(steps[pair], pair, edges[at])
+        }
+
+    def _widen_one(self, node: int, mask: int) -> None:
+        """Widen a kind; nobody needs to look at the node's edges if what is new says nothing of them."""
+        abox, store = self._abox, self._abox.store
+        before, is_awaited = store.kind[node], node in abox.dirty
+        abox.widen(node, mask)
+        now = store.kind[node]
+        if is_awaited or now is before or now.clash:
+            return
+        new = now.mask & ~before.mask
+        concerned = abox.steps.concerned
+        if not any(
+            concerned(p)[which] & new
+            for which, side in enumerate((store.out, store.into))
+            for p in side.firsts(node)
+        ):
+            del abox.dirty[node]
+            if now.values != before.values:
+                self._valued[node] = None
+
+    def _is_all_told(self, step: Step, pair: tuple[Kind, Kind], edge: int) -> bool:
+        """Whether nothing is left of a step of an edge once the kinds are widened."""
+        is_plain = not step.special or (step.of_values and self._abox.store.out.is_alone(edge))
+        return is_plain and pair[1].excluded is None
+
+    # Pairs
+
+    def _excluded(self, column: Column, rules: EdgeRules) -> Iterator[int]:
+        """The edges beside which there is one that must not be."""
+        abox = self._abox
+        others = [other for _, other in rules.exclusive]
+        groups = [abox.steps.group(other) for other in others]
+        subjects = set(column.subjects)
+        may_have = set[int]().union(*(subjects & self._now.along(group) for group in groups))
+        if may_have:
+            for at, (s, o) in enumerate(zip(column.subjects, column.objects, strict=True)):
+                if s in may_have and any(abox.find(s, other, o) != NONE for other in others):
+                    yield at
+
+    def _conclude(
+        self, column: Column, edges: Sequence[int], chain: Chain, is_head: bool, forwards: bool
+    ) -> None:
+        """Note what a chain makes that edges begin, or that they end."""
+        abox, role = self._abox, _role_beside(chain, is_head)
+        group = abox.steps.group(role)
+        ends = column.subjects, column.objects
+        outer, middle = ends if is_head == forwards else ends[::-1]
+        # a new edge that it ends is among those that begin it
+        joined = (self._now if is_head else self._before).along(group).intersection(middle)
+        if not joined:
+            return
+        beyond = {node: [(end, edge) for edge, _, end in abox.related(node, group)] for node in joined}
+        roles, result = ((chain.first, False), (chain.second, False)), (chain.result, False)
+        there, made = self._pairs(chain.result), self._made.get(chain.result, {})
+        for edge, node, between in zip(edges, outer, middle, strict=True):
+            for end, other in beyond.get(between, ()):
+                x, z = pair = (node, end) if is_head else (end, node)
+                if (
+                    pair not in there
+                    and pair not in made
+                    and not abox.is_literal(x)
+                    and abox.find(x, result, z) == NONE
+                ):
+                    first, second = (edge, other) if is_head else (other, edge)
+                    made[pair] = Edge(first, roles[0]), Edge(second, roles[1])
+        if made:
+            self._made[chain.result] = made
+
+    def _pairs(self, result: int) -> set[Pair]:
+        """Between whom the new edges imply a property."""
+        if (found := self._implied.get(result)) is None:
+            group = self._abox.steps.group((result, False))
+            found = self._implied[result] = set()
+            for column in self._columns:
+                if column.predicate in group.out:
+                    found.update(zip(column.subjects, column.objects, strict=True))
+                if column.predicate in group.into:
+                    found.update(zip(column.objects, column.subjects, strict=True))
+        return found
+
+
+def looked_for(abox: ABox, columns: Iterable[Column]) -> set[int]:
+    """The predicates of edges that matter to whether something follows from new ones, and their own."""
+    found: set[int] = set()
+    for predicate in {column.predicate for column in columns}:
+        found.add(predicate)
+        for role in _roles_beside(abox.steps.rules(predicate)):
+            group = abox.steps.group(role)
+            found.update(group.out, group.into)
+    return found
+
+
+def _roles_beside(rules: EdgeRules | None) -> Iterator[Role]:
+    """The roles of other edges that rules look for."""
+    if rules is not None:
+        yield from (other for _, other in rules.exclusive)
+        yield from (_role_beside(chain, True) for _, chain in rules.heads)
+        yield from (_role_beside(chain, False) for _, chain in rules.tails)
+
+
+def _role_beside(chain: Chain, is_head: bool) -> Role:
+    """How a chain goes on from the middle, seen from its first edge or else its second."""
+    return (chain.second, False) if is_head else (chain.first, True)
