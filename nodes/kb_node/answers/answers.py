@@ -131,7 +131,7 @@ def withheld(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterato
     """The facts about places, or one entity's, that would contradict the map, and how, a sentence each."""
     beliefs = semantic_map.beliefs
     for fact in sorted(beliefs.withheld):
-        if entity is None or v.iri(entity.iri) == fact[0]:
+        if entity is None or v.iri(entity.iri) in (fact[0], fact[2]):
             yield beliefs.told(fact)
 
 
