@@ -249,7 +249,7 @@ class SemanticMap(MapState):
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
         self.believe_places()
         self._schedule.pictured()
-        columns = self.reasoner.columns()
+        columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
             seq=self.seq,
             triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),

@@ -441,3 +441,15 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
     assert state(semantic_map) == before
     assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
     assert state(home.reopened(semantic_map)) == state(semantic_map)
+
+
+def test_what_a_map_declares_survives_a_start_from_a_checkpoint(semantic_map):
+    said = turtle(":swivel a owl:Class ; rdfs:subClassOf dm:Seat . :chair1 a :swivel .")
+    semantic_map.commit(transaction(1, said))
+    before = state(semantic_map), set(semantic_map.inferred())
+    semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert (state(again), set(again.inferred())) == before
+    again.commit(transaction(2, turtle(":chair2 a :swivel .")))
+    assert "Seat" in again.entity("chair2").types
+    home.close(again)
