@@ -24,5 +24,7 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Of the knowledge base: the number of the last commit, so that a follower notices what it has missed."""
     digest: str = ""
     """That of the last commit, so that a follower notices one that was never made."""
+    ignored: int = 0
+    """Publications that were no messages, since its start."""
     notes: tuple[str, ...] = ()
     """What whoever runs the system should know once, and `status` goes on to show."""

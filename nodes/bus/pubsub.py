@@ -33,10 +33,15 @@ def watched(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:
     return lambda: publisher.matching_status.matching  # type: ignore[attr-defined]
 
 
-def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, Any], None]) -> Any:
+def follow(
+    session: zenoh.Session,
+    topic: keys.Topic,
+    receive: Callable[[str, Any], None],
+    ignored: Callable[[], None] = lambda: None,
+) -> Any:
     """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
 
-    A malformed one is dropped: whoever sent it is not one of ours.
+    A malformed one is dropped: whoever sent it is not one of ours. `ignored()` is told of each.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
@@ -46,6 +51,7 @@ def follow(session: zenoh.Session, topic: keys.Topic, receive: Callable[[str, An
         try:
             message = codec.decode(sample.payload.to_bytes(), topic.message)
         except errors.BadRequest:
+            ignored()
             return
         receive(str(sample.key_expr), message)
 

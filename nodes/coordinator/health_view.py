@@ -6,6 +6,7 @@ import time
 
 from schemas.health import Health
 from schemas.replies import NodeStatus
+from schemas.wording import counted
 
 SILENT_AFTER_S = 3.0
 _HEARD_WITHIN_S = 2.0
@@ -46,7 +47,13 @@ class HealthView:
             pid=health.pid,
             uptime_s=round((time.time_ns() - health.started_ns) / 1e9, 1),
             heartbeat_age_s=round(age_s, 2),
-            detail=health.detail,
+            detail=_detail(health),
             last_error=health.last_error,
             notes=health.notes,
         )
+
+
+def _detail(health: Health) -> str:
+    if not health.ignored:
+        return health.detail
+    return f"{health.detail}; {counted(health.ignored, 'malformed message')} ignored"

@@ -10,12 +10,12 @@ from typing import Any, TypeVar
 
 from msgspec import structs
 
-from nodes import bus
 from nodes.coordinator import admission, authority
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
 from nodes.coordinator.door import Door
+from nodes.coordinator.early_commands import EarlyCommands
 from nodes.coordinator.health_view import HealthView
 from nodes.coordinator.kb_client import Bridge
 from nodes.coordinator.scene.reconciler import Keeping
@@ -26,7 +26,7 @@ from nodes.runtime.class_names import ClassNames
 from nodes.runtime.following import Begun, Follower
 from nodes.runtime.futures import settle, then
 from nodes.runtime.loop import Node, open_node
-from schemas import calls, errors, keys, wording
+from schemas import calls, keys, wording
 from schemas import commands as c
 from schemas.entities import BodyState
 from schemas.health import Health
@@ -56,7 +56,7 @@ class Coordinator:
         self._keeping = Keeping(config, self._door, self._turns.change, self._ask_sim, node.report)
         self._health = HealthView()
         self._has_map = False
-        self._early: list[tuple[float, Callable[[], Any], Future[Any]]] = []
+        self._early = EarlyCommands(lambda: node.is_there("kb_node"))
         self._waiting: list[tuple[str, float, Changed, Future[Changed]]] = []
         door = self._door
         answers = Answers(config.truth, door, self._keeping, self._health, self._bridge)
@@ -91,6 +91,8 @@ class Coordinator:
             c.Sparql.answered_by(relay),
             c.Watch.answered_by(relay),
             c.Renew.answered_by(relay),
+            c.Backup.answered_by(relay),
+            c.Compact.answered_by(relay),
         )
         handlers = {
             **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
@@ -135,7 +137,7 @@ class Coordinator:
     def _tick(self) -> None:
         if not self._health.alive("sim_node"):
             self._keeping.lose_scene()
-        self._answer_early()
+        self._early.go_on(has_map=self._has_map)
         self._turns.go_on()  # however busy the node is
         self._keep()
 
@@ -203,27 +205,10 @@ class Coordinator:
             return made
         return then(made, lambda changed: structs.replace(changed, notes=(*changed.notes, note)))
 
-    def _once_there_is_a_map(self, execute: Callable[[], Any]) -> Future[Any]:
-        """For a moment after a start the map is not known yet: commands wait for it rather than fail."""
-        future: Future[Any] = Future()
-        self._early.append((time.monotonic() + bus.RESTART_S, execute, future))
-        return future
-
-    def _answer_early(self) -> None:
-        early, self._early = self._early, []
-        for deadline, execute, future in early:
-            if not self._has_map and time.monotonic() < deadline:
-                self._early.append((deadline, execute, future))
-            elif not self._has_map:
-                error = errors.NoAnswer("the knowledge base is not answering; see: semmap status")
-                future.set_exception(error)
-            else:
-                settle(future, execute)
-
     def _with_map(self, handle: Callable[[Any], Any]) -> Callable[[Any], Any]:
         def guarded(command: Any) -> Any:
             if not self._has_map:
-                return self._once_there_is_a_map(lambda: guarded(command))
+                return self._early.wait(lambda: guarded(command))
             if isinstance(command, Change):
                 return handle(command)
             return self._turns.after(lambda: handle(command))

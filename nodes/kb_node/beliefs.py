@@ -9,6 +9,7 @@ When it is so again it comes back, unless it contradicts what was asserted since
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
+from itertools import islice
 from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
@@ -20,6 +21,7 @@ from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.facts.rules import COMPUTED
 from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
+from ontology import stars
 from ontology import vocabulary as v
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
@@ -28,6 +30,12 @@ _STEP = 2000
 """Entities that are compared in some tens of milliseconds."""
 PART = 20_000
 """Facts that the reasoner takes in at once, in some tenths of a second."""
+
+
+FEW_ASIDE = 100
+"""What is set aside: so much is looked at for whatever is asserted, some hundredths of a second."""
+_MEASURES = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
+"""What is asserted by these joins no individuals."""
 
 
 class Believed(NamedTuple):
@@ -151,7 +159,14 @@ class Beliefs:
                 self._reasoner.believe(aside=given, come=gone)
 
     def _aside_about(self, asserted: Iterable[Triple]) -> list[Triple]:
-        """What is set aside of those that triples are about, of those that this is about, and so on."""
+        """What is set aside and may contradict triples: all of it, as long as that is not much.
+
+        Of very much it is what is about the same individuals, about those that this is about, and so on.
+        """
+        about = [triple for triple in asserted if triple[1] not in _MEASURES]
+        aside = list(islice(self._reasoner.set_aside(), FEW_ASIDE + 1))
+        if about and len(aside) <= FEW_ASIDE:
+            return sorted(aside)
         waiting = {term for s, _, o in asserted for term in (s, o)}
         found: set[Triple] = set()
         while waiting:

@@ -34,6 +34,7 @@ class Heartbeat:
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
+        self._ignored = 0
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
     def beat(self) -> None:
@@ -54,6 +55,7 @@ class Heartbeat:
             notes=self._notes,
             commit=commit,
             digest=digest,
+            ignored=self._ignored,
         )
         notify(health)
         self._health.put(codec.encode(health))
@@ -75,6 +77,10 @@ class Heartbeat:
     def head(self, head: Callable[[], tuple[int, str]]) -> None:
         """Tell the number and the digest of the last commit with each beat, from the next one on."""
         self._head = head
+
+    def ignore(self) -> None:
+        """Count a publication that is no message. Any thread may do so: a count that is lost is no harm."""
+        self._ignored += 1
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Say this of what the node works with, from now on."""

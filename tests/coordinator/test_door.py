@@ -268,6 +268,12 @@ def test_an_undo_sent_again_is_answered_with_its_result(door):
     assert set(door.map.entities) == {"chair1"}
 
 
+def test_an_undo_under_the_id_of_another_command_is_answered_as_that(door):
+    door.change(c.Add(class_="Chair", name="chair1", id="x"))
+    assert door.change(c.Undo(id="x")).text == "already done: add Chair chair1"
+    assert set(door.map.entities) == {"chair1"}
+
+
 def in_their_turn(door: Door, changes: list) -> list:
     """The results or errors of changes that come at the same time."""
 
@@ -398,6 +404,8 @@ def test_a_scene_in_parts_is_several_commits(door, monkeypatch):
 def test_what_takes_the_place_of_something_else_is_one_commit(door):
     with pytest.raises(errors.BadRequest, match="without --parts"):
         door.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
+    with pytest.raises(errors.BadRequest, match="--tbox makes one commit"):
+        door.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
 
 
 def test_a_property_is_set_and_unset(door):

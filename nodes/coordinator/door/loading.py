@@ -40,7 +40,8 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
     if command.source == "operator":
         command = structs.replace(command, source="file")
     if command.parts and (command.replace or command.tbox):
-        raise errors.BadRequest("--replace makes one commit; load it without --parts")
+        how = "--tbox" if command.tbox else "--replace"
+        raise errors.BadRequest(f"{how} makes one commit; load it without --parts")
     if command.parts and command.dry_run:
         raise errors.BadRequest("a dry run covers one commit; try it without --parts")
     if command.tbox:

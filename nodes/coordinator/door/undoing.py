@@ -5,7 +5,7 @@ from __future__ import annotations
 from nodes.coordinator.dialogues import Talk, ask
 from nodes.coordinator.door.committing import changed, once, taken_with_classes
 from nodes.coordinator.door.known_map import KnownMap
-from schemas import wording
+from schemas import errors, wording
 from schemas.bridge import TakeBack
 from schemas.commands import Undo
 from schemas.replies import Changed
@@ -26,6 +26,11 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
     )
     if commit is None:  # a dry run of what was done before
         return Changed(commit=None, text="nothing is left to undo")
+    if not commit.undoes:
+        raise errors.Refused(
+            f"the id '{command.id}' is that of commit {commit.seq}, which took nothing back;"
+            " give each command an id of its own"
+        )
     yield from taken_with_classes(view, commit)
     first, *settling = commit.undoes
     text = f"undid commit {first}"

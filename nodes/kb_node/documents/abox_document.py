@@ -52,8 +52,10 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         raise errors.BadFile("it declares classes but no entities; to load a TBox use --tbox")
     unknown = sorted((s, o) for s, o in types if o not in known)
     users: dict[str, list[str]] = {}
+    namesakes = set(classes.names.values())
     for s, c in unknown:
-        users.setdefault(v.local_name(c), []).append(_called(s))
+        name = v.local_name(c)
+        users.setdefault(c if name in namesakes else name, []).append(_called(s))
     if unknown and not skip_unknown:
         raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]

@@ -129,12 +129,12 @@ class _Gathering:
         iri = v.bare(term)
         if (given := self._given.get(_plain(term))) is not None:
             return given.resolve()
-        if iri.startswith("file:") and (path := Path(unquote(urlsplit(iri).path))).is_file():
-            return path.resolve()
         for path in self._named:
             if self._is(path, term):
                 return path
         folders = dict.fromkeys((beside, *(path.parent for path in self._named)))
+        if (at := _file_below(folders, iri)) is not None:
+            return at
         for folder in folders:
             if (found := catalogue.find(folder, iri)) is not None:
                 return found
@@ -180,6 +180,14 @@ def read(path: Path, label_prefix: str = "") -> list[Triple]:
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
     return rdf.parse(unpacked(content, str(path)), str(path), label_prefix=label_prefix)
+
+
+def _file_below(folders: Iterable[Path], iri: str) -> Path | None:
+    """The file of a `file:` IRI, if it is below one of these folders: no ontology has any other file read."""
+    if not iri.startswith("file:"):
+        return None
+    path = Path(unquote(urlsplit(iri).path)).resolve()
+    return path if path.is_file() and any(map(path.is_relative_to, folders)) else None
 
 
 def _files_of(path: Path) -> list[Path]:

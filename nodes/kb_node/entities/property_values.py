@@ -36,7 +36,12 @@ _OF_INTEGERS = frozenset(
         *("unsignedLong", "unsignedInt", "unsignedShort", "unsignedByte"),
     )
 )
-_SAID = {v.XSD_BOOLEAN: "true or false", v.XSD_FLOAT: "a number", _DECIMAL: "a decimal number"}
+_SAID = {
+    v.XSD_BOOLEAN: "true or false",
+    **dict.fromkeys(_FLOATS, "a number"),
+    _DECIMAL: "a decimal number",
+    _INTEGER: "a whole number",
+}
 
 
 def literal(name: str, ranges: Set[Term], text: str) -> Term:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
@@ -85,7 +85,7 @@ class Loading:
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
-                names=tuple(dict.fromkeys(entity.name for commit in commits for entity in commit.changed)),
+                names=tuple(dict.fromkeys(name for commit in commits for name in _described(commit))),
                 skipped=tuple(sorted_out.skipped),
                 notes=(*sorted_out.notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
@@ -104,8 +104,16 @@ class Loading:
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
+        noted: list[str] = []
+
+        def replace() -> Commit:
+            return self._map.replace_tbox(transaction, tbox)
+
         try:
-            made = self._changing.changed(lambda: self._map.replace_tbox(transaction, tbox), load.dry_run)
+            if load.dry_run:
+                tried = trials.of(self._map, replace, lambda: noted.extend(self._notes()))
+                return Loaded(commit=tried, skipped=(), notes=tuple(noted))
+            made = self._changing.changed(replace, dry_run=False)
             return Loaded(commit=made, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
@@ -114,3 +122,8 @@ class Loading:
 
     def _commit(self, transaction: Transaction) -> Commit | None:
         return self._changing.published_if_new(lambda: self._map.commit(transaction), at_once=True)
+
+
+def _described(commit: Commit) -> Iterator[str]:
+    """The entities that a load says something of; that others are of other classes now may follow from it."""
+    return (entity.name for entity in commit.changed if entity.provenance.commit == commit.seq)

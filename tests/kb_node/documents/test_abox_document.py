@@ -31,6 +31,12 @@ def test_all_unknown_classes_are_named(classes):
     )
 
 
+def test_an_unknown_class_with_a_namesake_is_told_by_its_iri(classes):
+    with pytest.raises(errors.UnknownClass) as caught:
+        abox_document.sort_out(turtle(":c a <http://lab.org/x#Chair> ."), classes, skip_unknown=False)
+    assert caught.value.text.startswith("unknown class '<http://lab.org/x#Chair>' (of c)")
+
+
 def test_what_is_skipped_takes_its_own_star_along(classes):
     kept = turtle(":d a dm:Door ; dm:hasPreferredReference :shared . :shared dm:lexicalReference 'it' .")
     skipped = turtle(

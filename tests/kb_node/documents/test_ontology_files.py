@@ -230,3 +230,18 @@ def test_nameless_nodes_of_two_files_in_functional_syntax_stay_apart(tmp_path):
     assert nodes["one"].isdisjoint(nodes["two"])
     assert len({o for _, p, o in found if p == v.iri(f"{v.OWL}onProperty")}) == 2
     assert len({s for s, p, _ in found if p == v.iri(f"{v.OWL}onProperty")}) == 2
+
+
+def test_an_import_by_its_path_is_read_only_below_the_ontology(write, tmp_path):
+    write("secret.txt", "root:x:0:0\n")
+    below = write("onto/parts/more.ttl", ontology("http://things.org/more"))
+    away = write("away/far.ttl", ontology("http://things.org/far"))
+    path = write(
+        "onto/all.ttl",
+        ontology("http://all.org", below.as_uri(), away.as_uri(), (tmp_path / "secret.txt").as_uri()),
+    )
+    gathered = gather([path], {})
+    assert gathered.files == (path, below)
+    assert set(gathered.missing) == {away.as_uri(), (tmp_path / "secret.txt").as_uri()}
+    assert set(gather([path], {away.as_uri(): away}).files) == {path, below, away}
+    assert set(gather([path, away], {}).files) == {path, below, away}

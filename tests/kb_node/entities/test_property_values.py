@@ -50,10 +50,11 @@ def test_text_is_typed_by_the_range(ranges, text, term, shown):
     [
         (v.XSD_BOOLEAN, "maybe", "p takes true or false, not 'maybe'"),
         (v.XSD_FLOAT, "heavy", "p takes a number, not 'heavy'"),
+        (DOUBLE, "fast", "p takes a number, not 'fast'"),
         (v.XSD_FLOAT, "inf", "p takes a number, not 'inf'"),
         (v.XSD_FLOAT, "1e39", "p takes a number, and 1e39 is too large for one"),
         (DOUBLE, "-1e400", "p takes a number, and -1e400 is too large for one"),
-        (INTEGER, "1.5", "p takes xsd:integer, not '1.5'"),
+        (INTEGER, "1.5", "p takes a whole number, not '1.5'"),
         (BYTE, "300", "p takes xsd:byte, not '300'"),
         (TIME, "noon", "p takes xsd:dateTime, not 'noon'"),
         (BYTE, '"x"', """p takes a literal of xsd:byte, not "x\""""),

@@ -22,6 +22,13 @@ def escaped_json(text: str) -> str:
     return _CONTROLS_IN_JSON.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
+def write(document: str) -> None:
+    """Write a document as it is, or to a terminal without what would command that."""
+    if sys.stdout.isatty():
+        document = "".join(c if c in "\r\n\t" else escaped(c) for c in document)
+    sys.stdout.write(document)
+
+
 def say(text: str, *, file: TextIO | None = None) -> None:
     """Print lines of text, at once."""
     print("\n".join(map(escaped, text.split("\n"))), file=file or sys.stdout, flush=True)

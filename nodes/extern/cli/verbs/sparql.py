@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from nodes.extern.cli import output
 from nodes.extern.cli.output.formats import Format
-from nodes.extern.cli.output.printable import say
+from nodes.extern.cli.output.printable import say, write
 from nodes.extern.files import read_file
 from ontology import vocabulary as v
 from schemas import errors
@@ -47,7 +47,7 @@ def ask(
     result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit, as_of=as_of)
     format = format or ("turtle" if result.kind == "graph" else "table")
     if format != "table" or result.kind == "ask":
-        sys.stdout.write(output.sparql_formats.text(result, format))
+        write(output.sparql_formats.text(result, format))
         return
     if result.rows:
         _print_rows(result.variables, result.rows)

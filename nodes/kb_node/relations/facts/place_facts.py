@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.facts.rules import RULES, About, Rule
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.kb_node.relations.measuring.broad_phase import by_place
-from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.relations.measuring.space import MANY, Space
 from nodes.kb_node.relations.measuring.survey import Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from schemas.entities import Entity
@@ -27,8 +27,6 @@ _STEP = 1000
 """Entities that are worked out in some tens of milliseconds."""
 _MOST_AT_ONCE = 16_000
 """So many are surveyed together where nobody waits: those around them are looked up less often."""
-MANY: Final = 64
-"""So many are worked out in arrays."""
 _FORGOTTEN = 8
 """Solids for each that an update touches."""
 _MOST_TO_FORGET = 1000
@@ -190,10 +188,7 @@ class Facts:
         moved.update((entity.name, None) for entity in changed)
         if space.solids:
             left += filter(None, (self._counted(entity.name) for entity in changed))
-        if len(changed) < MANY:
-            fresh += filter(None, map(space.put, changed))
-        else:
-            fresh += chain.from_iterable(space.put_all(changed))
+        fresh += chain.from_iterable(space.put_all(changed))
         shifted = space.shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
         moved.update((solid.name, None) for solid in shifted)

@@ -279,22 +279,19 @@ def _across(normal: Floats) -> Floats:
 
 def _between_boxes(one: Convex, other: Convex) -> Contact:
     """The same of two boxes along the axes: from corner to corner, or along the axis that separates best."""
-    apart = [
-        max(low - its_high, its_low - high)
-        for low, high, its_low, its_high in zip(one.low, one.high, other.low, other.high, strict=True)
-    ]
-    least = max(apart)
+    (x0, y0, z0), (x1, y1, z1), (x, y, z) = one.low, one.high, one.centre
+    (a0, b0, c0), (a1, b1, c1), (a, b, c) = other.low, other.high, other.centre
+    dx, dy, dz = max(x0 - a1, a0 - x1), max(y0 - b1, b0 - y1), max(z0 - c1, c0 - z1)
+    least = max(dx, dy, dz)
     if least > 0.0:
-        reach = [max(along, 0.0) for along in apart]
-        distance = length = math.hypot(*reach)
+        dx, dy, dz = max(dx, 0.0), max(dy, 0.0), max(dz, 0.0)
+        distance = length = math.hypot(dx, dy, dz)
     else:
-        reach = [float(axis == apart.index(least)) for axis in range(3)]
+        along = 0 if dx == least else 1 if dy == least else 2
+        dx, dy, dz = float(along == 0), float(along == 1), float(along == 2)
         distance, length = least, 1.0
-    x, y, z = (
-        math.copysign(along / length, here - there)
-        for along, here, there in zip(reach, one.centre, other.centre, strict=True)
-    )
-    return Contact(distance, (x, y, z))
+    away = math.copysign
+    return Contact(distance, (away(dx / length, x - a), away(dy / length, y - b), away(dz / length, z - c)))
 
 
 def _exact_normals(one: Convex, other: Convex) -> Floats:

@@ -90,7 +90,7 @@ def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
     highest = solid.bottom - space.limits.gap_m
     found = [
         other
-        for other in space.counted_around(solid, margin)
+        for other in space.bearers_around(solid, margin)
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place

@@ -9,7 +9,11 @@ from typing import Final
 from nodes.kb_node.relations.geometry.solids import Solid
 
 MOST: Final = 100
-"""Things in one cell of the grid that others look at; the rest bears, holds and is near nothing."""
+"""Things in one cell of the grid that others look at; the rest bears, holds and is near nothing.
+
+And only what is larger bears or holds one of the rest, so that in a heap of things of one size not every one
+has to be compared with so many.
+"""
 _WHAT: Final = "on, inside or beside"
 
 

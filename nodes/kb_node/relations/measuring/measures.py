@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from nodes.kb_node.relations.geometry.convex import contact, over_flat_top
+from nodes.kb_node.relations.geometry.convex import Convex, contact, over_flat_top
 from nodes.kb_node.relations.geometry.forms import LOWEST_M, Bounds
 from nodes.kb_node.relations.geometry.polygons import area, clipped, contains, covers, distance, hull
 from nodes.kb_node.relations.geometry.solids import Solid
@@ -102,6 +102,8 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
     for part in bearing:
         if part.is_square and _is_amid(upper.bounds, (*part.low[:2], *part.high[:2])):
             return 1.0
+    if len(bearing) == len(upper.parts) == 1 and bearing[0].is_square and upper.parts[0].is_square:
+        return _share_of_box(upper.parts[0], bearing[0])
     base = upper.base
     tops = [part.shadow for part in bearing]
     for top in tops:
@@ -109,6 +111,14 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
             return 1.0
     whole = area(base)
     return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
+
+
+def _share_of_box(upper: Convex, lower: Convex) -> float:
+    """The share of one box, from above, that is over another; both are along the axes."""
+    (x0, y0, _), (x1, y1, _) = upper.low, upper.high
+    (a0, b0, _), (a1, b1, _) = lower.low, lower.high
+    wide, deep = min(x1, a1) - max(x0, a0), min(y1, b1) - max(y0, b0)
+    return wide * deep / ((x1 - x0) * (y1 - y0)) if wide > 0.0 and deep > 0.0 else 0.0
 
 
 def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:

@@ -61,12 +61,12 @@ class Survey:
     def _look(self) -> None:
         limits, columns, grid = self._limits, self._columns, self._space.grid
         broad = BroadPhase(grid, columns.solids, columns.bounds, len(self.is_open))
-        one, other, unknown = broad.pairs(limits.attached_m)
+        one, other, unknown = self._pairs(broad, limits.attached_m)
         self.is_open |= unknown
         self.may_hang |= unknown
         hanging = self._find_what_may_hold(one, other)
         if grid.crowds:
-            one, other, _ = broad.pairs(0.0)
+            one, other, _ = self._pairs(broad, 0.0)
         else:
             its, their = columns.bounds[one], columns.bounds[other]
             meets = (their[:, :2] <= its[:, 2:]).all(axis=1) & (their[:, 2:] >= its[:, :2]).all(axis=1)
@@ -75,6 +75,16 @@ class Survey:
         self._find_places(one[to_place], other[to_place])
         self._find_bearers(one[~to_place], other[~to_place])
         self._find_what_hangs(*hanging)
+
+    def _pairs(self, broad: BroadPhase, margin_m: float) -> tuple[Ints, Ints, Bools]:
+        """Who may bear and hold each, as `Space.bearers_around` has it, and of whom that is not known."""
+        columns, grid = self._columns, self._space.grid
+        one, other, unknown = broad.pairs(margin_m)
+        if grid.crowds:
+            counts = np.array([grid.counts(solid) for solid in self.solids[: len(unknown)]], dtype=bool)
+            bears = counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
+            one, other = one[bears], other[bears]
+        return one, other, unknown
 
     def _take_smallest(
         self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from nodes.extern.cli.calling import complain, print_json, print_lines
-from nodes.extern.cli.output.printable import say
+from nodes.extern.cli.output.printable import say, write
 
 CLEAR = "\x1b[2J\x1b]0;owned\x07 \x9b31m \x7f \u202e"
 
@@ -32,3 +32,14 @@ def test_lines_and_letters_stay(capsys):
 def test_json_is_still_the_same_json(capsys):
     print_json({"text": CLEAR})
     assert json.loads(capsys.readouterr().out) == {"text": CLEAR}
+
+
+def test_a_document_is_exact_in_a_file_and_harmless_on_a_terminal(capsys, monkeypatch):
+    document = f"a,b\r\n\t{CLEAR}\n"
+    write(document)
+    assert capsys.readouterr().out == document
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    write(document)
+    shown = capsys.readouterr().out
+    assert commands(shown.replace("\r", "").replace("\t", "")) == []
+    assert shown.startswith("a,b\r\n\t\\x1b[2J")

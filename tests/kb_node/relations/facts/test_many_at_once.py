@@ -2,6 +2,7 @@
 
 import math
 import random
+from contextlib import contextmanager
 from unittest.mock import patch
 
 import pytest
@@ -14,7 +15,7 @@ from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.columns import solids_of
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import solid_of
-from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.relations.measuring import crowds, space
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -35,14 +36,14 @@ STEPS = (0.0, 1e-12, -1e-12, 1e-9, 5e-7, -5e-7, 1e-6, 2e-6, -2e-6, 1e-4)
 
 def one_by_one(entities, limits=None):
     """The facts as they are without this."""
-    with patch.object(place_facts, "MANY", 10**9):
+    with many(10**9):
         facts = Facts(limits)
         facts.update(entities)
         return facts
 
 
 def at_once(entities, limits=None):
-    with patch.object(place_facts, "MANY", 1):
+    with many(1):
         facts = Facts(limits)
         facts.update(entities)
         return facts
@@ -53,6 +54,13 @@ def in_steps(entities, limits=None):
     for _ in facts.filling(entities):
         pass
     return facts
+
+
+@contextmanager
+def many(count):
+    """Within, so many are worked out in arrays."""
+    with patch.object(place_facts, "MANY", count), patch.object(space, "MANY", count):
+        yield
 
 
 def kept(facts):
@@ -187,7 +195,7 @@ def test_step_by_step(seed, most, step):
     world = World(seed, extent=1.0)
     made = {entity.name: entity for entity in world.things(30)}
     names = list(made)
-    with patch.object(crowds, "MOST", most), patch.object(place_facts, "MANY", step):
+    with patch.object(crowds, "MOST", most), many(step):
         facts, held = Facts(), set()
         for _ in range(6):
             some = world.dice.sample(names, world.dice.randrange(1, 20))
@@ -221,8 +229,8 @@ def test_in_an_ordinary_map_nothing_has_to_be_measured_one_by_one():
             for n, model in enumerate(("cup", "book", "bottle")):
                 at = (x - 0.2 + 0.2 * n, y, top)
                 made.append(world.entity(f"{model}{room}{k}", model, at, None, turn))
-    space = Space(made)
-    survey = Survey(space, [solid for solid in space.solids.values() if not solid.is_place])
+    there = Space(made)
+    survey = Survey(there, [solid for solid in there.solids.values() if not solid.is_place])
     assert not survey.is_open.any()
     assert not survey.may_hang.any()
     assert (survey.place != NOBODY).all()

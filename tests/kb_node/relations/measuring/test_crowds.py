@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.facts.said import denial
-from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.relations.measuring import crowds, measures
 from nodes.kb_node.relations.measuring.broad_phase import BroadPhase
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
@@ -78,6 +78,18 @@ def test_a_heap_that_comes_into_a_large_map_is_not_compared_pair_by_pair():
         facts.update(heap(1500))
     assert len(looks) < 2 * (crowds.MOST + 10)
     assert ("cup1499", "isOn", "table1") in set(facts)
+
+
+def test_of_things_of_one_size_only_those_that_count_are_compared_with_one_another():
+    facts = Facts()
+    facts.update([ROOM, TABLE, *heap(1000, "book")])
+    counted = next(f"book{k}" for k in range(1000) if facts.space.counts(facts.space.solids[f"book{k}"]))
+    compared = []
+    on = measures.on
+    with patch.object(measures, "on", lambda *args: compared.append(args) or on(*args)):
+        facts.update([thing(counted, (0.31, 0.3, TOP), "book")])
+    assert len(compared) < 2 * crowds.MOST**2 + 2 * 1000
+    assert ("book999", "isOn", "table1") in set(facts)
 
 
 def test_a_crowd_that_goes_is_none_any_more():

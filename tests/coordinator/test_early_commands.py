@@ -1,0 +1,50 @@
+import pytest
+
+from nodes import bus
+from nodes.coordinator.early_commands import EarlyCommands
+from schemas import errors
+
+
+@pytest.fixture
+def early(monkeypatch):
+    monkeypatch.setattr(bus, "RESTART_S", -1.0)
+    made = EarlyCommands(lambda: made.there)
+    made.there = True
+    return made
+
+
+def test_what_waits_is_executed_once_there_is_a_map(early):
+    done = early.wait(lambda: "done")
+    early.go_on(has_map=False)
+    assert not done.done()
+    early.go_on(has_map=True)
+    assert done.result(0) == "done"
+
+
+def test_a_knowledge_base_at_work_is_waited_for(early):
+    done = early.wait(lambda: "done")
+    for _ in range(3):
+        early.go_on(has_map=False)
+    assert not done.done()
+    early.there = False
+    early.go_on(has_map=False)
+    with pytest.raises(errors.NoAnswer, match="the knowledge base is not answering"):
+        done.result(0)
+
+
+def test_one_that_is_restarted_is_waited_for(early, monkeypatch):
+    monkeypatch.setattr(bus, "RESTART_S", 10.0)
+    early.there = False
+    done = early.wait(lambda: "done")
+    early.go_on(has_map=False)
+    assert not done.done()
+
+
+def test_what_fails_says_why(early):
+    def fail():
+        raise errors.Refused("no")
+
+    done = early.wait(fail)
+    early.go_on(has_map=True)
+    with pytest.raises(errors.Refused):
+        done.result(0)

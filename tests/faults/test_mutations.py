@@ -1,0 +1,34 @@
+"""Broken payloads on every key: no node dies, and each is answered in a sentence or ignored and counted."""
+
+from __future__ import annotations
+
+import pytest
+
+from schemas import keys
+from tests.conftest import running, until
+from tests.faults.mutations import Mutator, pids, queries, send, topics
+
+
+def test_every_key_of_the_table_gets_some():
+    prefixes = {key.rpartition("/")[0] for key in queries()}
+    assert prefixes == {keys.CMD, keys.BRIDGE, keys.SIM}
+    assert set(topics()) >= {keys.COMMIT.key, keys.POSES.key, keys.ACK.key, keys.health_key("x")}
+    payloads = [Mutator(7).payload(kind) for kind in queries().values()]
+    assert payloads == [Mutator(7).payload(kind) for kind in queries().values()]
+
+
+@pytest.mark.parametrize("count", [400, pytest.param(20_000, marks=pytest.mark.long)])
+def test_no_node_dies_and_every_payload_is_answered_or_counted(tmp_path, count):
+    with running(tmp_path / "data", "--no-record") as system:
+        before = pids(system)
+        outcome = send(system.endpoint, count, seed=count)
+        assert outcome.wrong == []
+        assert pids(system) == before
+        assert set(outcome.answered) > {"ok", "bad-request"}
+        with system.client() as client:
+            until(
+                lambda: any(
+                    n.node == "coordinator" and "malformed message" in n.detail for n in client.status().nodes
+                ),
+                "what was ignored is counted",
+            )

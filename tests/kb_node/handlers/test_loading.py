@@ -1,0 +1,55 @@
+"""Loading documents, without the wire."""
+
+from contextlib import nullcontext
+
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.handlers.changing import Changing
+from nodes.kb_node.handlers.loading import Loading
+from ontology import stars
+from ontology import vocabulary as v
+from schemas.bridge import LoadDocument
+from schemas.entities import Pose
+
+
+class NoSparql:
+    def foresee(self, *document):
+        """Nothing."""
+
+    def forget(self):
+        """Nothing."""
+
+
+def loading(semantic_map, said):
+    def telling_of(work):
+        return nullcontext(lambda text: said.append(f"{work}: {text}"))
+
+    changing = Changing(
+        semantic_map,
+        semantic_map._journal,
+        spread=lambda commit, **how: None,
+        not_written=said.append,
+        telling_of=telling_of,
+    )
+    return Loading(
+        semantic_map, semantic_map._journal, changing, NoSparql(), telling_of=telling_of, notes=lambda: ()
+    )
+
+
+def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
+    said = []
+    star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(6.3, 0.98, 0.1)))
+    document = LoadDocument(
+        id="1",
+        source="file",
+        content=rdf.serialise(star, "ntriples"),
+        filename="apple.nt",
+        replace=False,
+        skip_unknown=False,
+    )
+    loaded = loading(flat, said).on_load(document)
+    assert {entity.name for entity in loaded.commit.changed} == {
+        "apple9",
+        "bin1",
+    }  # which is a Filled_Thing now
+    assert loaded.names == ("apple9",)
+    assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"
