@@ -165,7 +165,7 @@ class MapState:
         if self._follows_all:
             return False
         following, self._following = self._following or self._follow(), None
-        with gc_pause.uncollected():
+        with gc_pause.uncollected(freeze=True):
             for _ in following:
                 self._following = following
                 return True

@@ -97,8 +97,8 @@ def test_what_is_computed_for_a_commit_holds_at_once(restarted):
 
 def test_a_commit_that_is_refused_leaves_all(restarted):
     begin(restarted)
+    add = (new(restarted, "more1", (0.0, 0.0, 0.0)),)
     with pytest.raises(errors.NameTaken):
-        add = (new(restarted, "more1", (0.0, 0.0, 0.0)),)
         restarted.commit(Transaction(id="taken", source="operator", add=add))
     restarted.follow_places()
     assert agrees(restarted)
