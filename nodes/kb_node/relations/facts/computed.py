@@ -52,7 +52,7 @@ class Computed:
     def of(self, names: Iterable[str], known: Known) -> set[Triple]:
         """The triples about some names as subjects."""
         facts = self.facts
-        return self._triples([(name, *about) for name in names for about in facts.of(name)], known)
+        return set(self._triples([(name, *about) for name in names for about in facts.of(name)], known))
 
     def begin(self, known: Known, said: Iterable[Triple]) -> Step:
         """All facts are new, and so is all that is said of places."""
