@@ -130,7 +130,7 @@ class SemanticMap(MapState):
             ) from error
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        self.follow_places()
+        self.follow_enough(transaction)
         plan = planning.of(self, transaction)
         if plan is None:
             return None
@@ -277,7 +277,7 @@ class SemanticMap(MapState):
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
         self.believe_places()
         self._schedule.pictured()
-        columns = self.reasoner.columns()
+        columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
             seq=self.seq,
             triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),

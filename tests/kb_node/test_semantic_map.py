@@ -468,3 +468,15 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     assert {e.name for e in again.snapshot().entities} == {"chair1", *(["chair2"] if is_there else [])}
     assert again.commit(transaction("a", chair("chair2"))).seq == 2
     home.close(again)
+
+
+def test_what_a_map_declares_survives_a_start_from_a_checkpoint(semantic_map):
+    said = turtle(":swivel a owl:Class ; rdfs:subClassOf dm:Seat . :chair1 a :swivel .")
+    semantic_map.commit(transaction(1, said))
+    before = state(semantic_map), set(semantic_map.inferred())
+    semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert (state(again), set(again.inferred())) == before
+    again.commit(transaction(2, turtle(":chair2 a :swivel .")))
+    assert "Seat" in again.entity("chair2").types
+    home.close(again)

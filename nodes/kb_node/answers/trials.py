@@ -17,12 +17,21 @@ _FEW = 50
 """Entities of which it is said what follows."""
 
 
-def of(semantic_map: SemanticMap, change: Callable[[], Commit | None]) -> Effects | None:
+def of(
+    semantic_map: SemanticMap,
+    change: Callable[[], Commit | None],
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Effects | None:
     """The effects of what `change` would commit, with nothing done; None if it changes nothing.
 
-    Raises what `change` raises.
+    `meanwhile` is called while the map is as it would be. Raises what `change` raises.
     """
-    seen = semantic_map.try_out(change, lambda commit: _After(semantic_map, commit))
+
+    def look(commit: Commit) -> _After:
+        meanwhile()
+        return _After(semantic_map, commit)
+
+    seen = semantic_map.try_out(change, look)
     if seen is None:
         return None
     held = _asserted(semantic_map, seen.concerned)
