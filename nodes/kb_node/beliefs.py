@@ -91,16 +91,11 @@ class Beliefs:
     @property
     def believed(self) -> Believed:
         """What differs since `begin`."""
-        found: dict[tuple[bool, bool], list[Triple]] = {}
-        for is_computed, net in self._net.items():
-            for triple, holds in net.items():
-                found.setdefault((is_computed, holds), []).append(triple)
-        return Believed(
-            gone=tuple(found.get((True, False), ())),
-            come=tuple(found.get((True, True), ())),
-            aside=tuple(found.get((False, False), ())),
-            back=tuple(found.get((False, True), ())),
-        )
+
+        def those(is_computed: bool, wanted: bool) -> tuple[Triple, ...]:
+            return tuple([t for t, holds in self._net[is_computed].items() if holds is wanted])
+
+        return Believed(those(True, False), those(True, True), those(False, False), those(False, True))
 
     def all(self) -> Believed:
         """All that is computed or set aside."""
@@ -256,8 +251,8 @@ class Beliefs:
         step = self.computed.begin(entities.get, said)
         there, aside = set(self._reasoner.computed()), set(self._reasoner.set_aside())
         step = step._replace(
-            come=step.come - there,
-            gone=there - step.come,
+            come=set(step.come) - there,
+            gone=there.difference(step.come),
             denied=step.denied - aside,
             undenied=aside - step.denied - self.withheld.keys(),
         )
@@ -274,7 +269,7 @@ class Beliefs:
         except Inconsistent:
             said = set(filter(self._is_said, step.undenied))
             self._believe(gone=step.gone, aside=step.denied, back=step.undenied - said)
-            self._take_in(sorted(said | step.come, key=self._order))
+            self._take_in(sorted(said.union(step.come), key=self._order))
         if self._rests:
             self._reconsider(lost)
 
@@ -296,7 +291,7 @@ class Beliefs:
             (gone, True, False), (come, True, True), (aside, False, False), (back, False, True),
         ):  # fmt: skip
             net = self._net[is_computed]
-            if net.keys().isdisjoint(triples):
+            if not net or net.keys().isdisjoint(triples):
                 net.update(dict.fromkeys(triples, holds))
                 continue
             for triple in triples:

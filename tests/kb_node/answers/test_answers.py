@@ -136,3 +136,17 @@ def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
     ):
         assert {"chair1 type lab:Chair", "chair1 type Seat"} <= set(said)
     home.close(semantic_map)
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_an_export_declares_the_classes_that_only_its_map_has(semantic_map, syntax):
+    said = turtle(":chair1 a dm:Chair ; dm:hasJoint [ a :swivel ] . :swivel a owl:Class .")
+    kept, _, _ = sort_out(said, semantic_map.classes, skip_unknown=False)
+    semantic_map.commit(transaction(1, kept))
+    document = answers.export(answers.picture(semantic_map, inferred=False), syntax)
+    again, skipped, notes = sort_out(
+        rdf.parse(document.content, "export"), semantic_map.classes, skip_unknown=False
+    )
+    assert canonical(again) == canonical(kept)
+    assert skipped == []
+    assert notes[-1] == "class declarations in a map are ignored: swivel; to load classes use --tbox"
