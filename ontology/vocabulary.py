@@ -7,6 +7,7 @@ made here are canonical (the form that Oxigraph prints), so equal literals are e
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Final
 from urllib.parse import unquote
 
@@ -95,9 +96,12 @@ def lexical(term: Term) -> str:
     return _parts(term)[0]
 
 
-def spoken(triple: Triple) -> str:
-    """A triple in local names and plain text, for people."""
-    return " ".join(lexical(term) if term.startswith('"') else local_name(term) for term in triple)
+def spoken(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
+    """A triple in local names and plain text, for people; `names` tell apart what is called alike."""
+    apart = names or {}
+    return " ".join(
+        lexical(term) if term.startswith('"') else apart.get(term) or local_name(term) for term in triple
+    )
 
 
 def datatype_of(term: Term) -> Term:

@@ -8,8 +8,10 @@ from msgspec import Meta, Struct, field
 
 from schemas.calls import DOCUMENT, MANY, Call
 from schemas.commands import (
+    Backup,
     Check,
     Classes,
+    Compact,
     Could,
     Explain,
     Export,
@@ -180,6 +182,7 @@ BRIDGE: dict[str, type[Call]] = {
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
         *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
         *(Sparql, Watch, Renew),
+        *(Backup, Compact),
     )
 }
 """Verb to type: what `semmap/bridge/<verb>` takes."""

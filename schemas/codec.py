@@ -22,11 +22,16 @@ _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 
 
 def encode(message: Any) -> bytes:
-    """`message` as MessagePack. Raises BadRequest for text that cannot be written as UTF-8."""
+    """`message` as MessagePack.
+
+    Raises BadRequest for text that cannot be written as UTF-8, and for whole numbers of more than 64 bits.
+    """
     try:
         return _encoder.encode(message)
     except UnicodeEncodeError as error:
         raise BadRequest(f"a text is not UTF-8: {shortened(repr(error.object))}") from None
+    except OverflowError:
+        raise BadRequest("a whole number is too large to be sent: it has more than 64 bits") from None
 
 
 def encode_json(message: Any) -> bytes:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta, field, structs
 
+from schemas.backups import BackupPart
 from schemas.calls import DOCUMENT, MANY, Call, R
 from schemas.entities import (
     Angle,
@@ -34,6 +35,7 @@ from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
     Changed,
     Checked,
+    Compacted,
     Document,
     Done,
     Inferred,
@@ -337,6 +339,29 @@ class Undo(Command[Changed], frozen=True, tag="undo"):
     """
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
+    dry_run: bool = False
+
+
+# To keep
+
+
+class Backup(Command[BackupPart], frozen=True, tag="backup"):
+    """A part of a backup of the map with its history: the first, or the one `at` what a part names as `next`.
+
+    All parts one after another, while the map goes on, are the file as of the first (see `schemas.backups`).
+    """
+
+    at: str = ""
+
+
+class Compact(Command[Compacted], frozen=True, tag="compact"):
+    """Let a snapshot take the place of the commits that are older than `keep`: `12h` or `30d`.
+
+    The history begins there from then on: nothing before it can be asked about or undone. With `dry_run`
+    nothing is done; the reply says what would be.
+    """
+
+    keep: str = "30d"
     dry_run: bool = False
 
 

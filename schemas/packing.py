@@ -14,6 +14,9 @@ PACKED_FROM: Final = 32 << 20
 """Bytes; smaller files travel as they are."""
 LARGEST: Final = 1 << 30
 """Bytes that a file may have, packed or not: some millions of triples, and an end for what has none."""
+_FREE: Final = 16 << 20
+_AT_MOST: Final = 250
+"""How many times larger than packed a file may be, beyond what is free; RDF is some 30 times."""
 _MEMBERS: Final = 1000
 """Pieces that a packed file may have: gzip files may be put one after the other, and each takes its time."""
 _MAGIC: Final = b"\x1f\x8b"
@@ -33,6 +36,7 @@ def unpacked(content: bytes, filename: str) -> bytes:
     """The content of a file, whether it came packed or not. Raises BadFile for what cannot be unpacked."""
     members: list[bytes] = []
     size, rest = 0, content if content.startswith(_MAGIC) else b""
+    largest = min(LARGEST, _FREE + _AT_MOST * len(content))
     try:
         while rest:
             if len(members) == _MEMBERS:
@@ -40,10 +44,10 @@ def unpacked(content: bytes, filename: str) -> bytes:
                     f"{_called(filename)} is packed in more than {_MEMBERS:,} pieces; pack it as one"
                 )
             member = zlib.decompressobj(wbits=_GZIP)
-            members.append(member.decompress(rest, LARGEST + 1 - size))
+            members.append(member.decompress(rest, largest + 1 - size))
             size += len(members[-1])
-            if size > LARGEST:
-                raise BadFile(f"{_called(filename)} is larger than {LARGEST >> 20} MiB when it is unpacked")
+            if size > largest:
+                raise BadFile(f"{_called(filename)} is larger than {largest >> 20} MiB when it is unpacked")
             if not member.eof:
                 raise BadFile(f"{_called(filename)} ends too early to be unpacked")
             rest = member.unused_data.lstrip(b"\0")

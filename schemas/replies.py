@@ -47,6 +47,19 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where so many things are in one spot that not all are looked at as bearers, a sentence each."""
 
 
+class Compacted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How many commits a snapshot has taken the place of (or would, in a dry run), and what remains."""
+
+    commits: int
+    first: int
+    """The first commit that is kept."""
+    bytes_before: int
+    """What the journal takes on disk."""
+    bytes_after: int
+    text: str
+    dry_run: bool = False
+
+
 class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Whether something could be without contradicting the map."""
 

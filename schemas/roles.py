@@ -41,6 +41,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
     _OPERATORS: ("clear", "load", "undo", "move", "pause", "step", "reset"),
+    _ADMINS: ("backup", "compact"),
 }
 COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}
 """Verb to the roles that may ask for it; `load --tbox` takes an admin."""

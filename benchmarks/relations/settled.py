@@ -36,7 +36,8 @@ class Settled(NamedTuple):
 
     entities: list[Entity]
     on: set[tuple[str, str]]
-    """Upper and lower, of every resting contact."""
+    """Upper and lower, of every resting contact. What has none, not even with the floor, is on whatever
+    carries it by steeper contacts."""
     touching: set[frozenset[str]]
 
 
@@ -104,20 +105,30 @@ def _looked_at(world: World) -> Settled:
     on: set[tuple[str, str]] = set()
     touching: set[frozenset[str]] = set()
     carried: dict[tuple[str, str], float] = {}
+    steeply: dict[tuple[str, str], float] = {}
+    on_floor: set[str] = set()
     force = np.zeros(6)
     for index in range(data.ncon):
         contact = data.contact[index]
         one, other = owner[contact.geom1], owner[contact.geom2]
-        if one == other or one not in known or other not in known:
+        if one == other or not (one in known or other in known):
+            continue
+        normal = contact.frame[:3]  # from geom1 to geom2
+        lower, upper = (one, other) if normal[2] > 0.0 else (other, one)
+        if lower not in known or upper not in known:
+            if upper in known and abs(normal[2]) >= STEEPEST:
+                on_floor.add(upper)
             continue
         touching.add(frozenset((one, other)))
-        normal = contact.frame[:3]  # from geom1 to geom2
-        if abs(normal[2]) < STEEPEST:
-            continue
         mujoco.mj_contactForce(model, data, index, force)
-        lower, upper = (one, other) if normal[2] > 0.0 else (other, one)
-        carried[upper, lower] = carried.get((upper, lower), 0.0) + float(force[0]) * abs(float(normal[2]))
+        newtons = float(force[0]) * abs(float(normal[2]))
+        kind = carried if abs(normal[2]) >= STEEPEST else steeply
+        kind[upper, lower] = kind.get((upper, lower), 0.0) + newtons
     for (upper, lower), newtons in carried.items():
         if newtons >= LEAST_SHARE * weight[upper]:
+            on.add((upper, lower))
+    borne = on_floor | {upper for upper, _ in on}
+    for (upper, lower), newtons in steeply.items():
+        if upper not in borne and newtons >= LEAST_SHARE * weight[upper]:
             on.add((upper, lower))
     return Settled(entities, on, touching)

@@ -91,6 +91,8 @@ class Coordinator:
             c.Sparql.answered_by(relay),
             c.Watch.answered_by(relay),
             c.Renew.answered_by(relay),
+            c.Backup.answered_by(relay),
+            c.Compact.answered_by(relay),
         )
         handlers = {
             **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},

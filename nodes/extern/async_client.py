@@ -18,6 +18,7 @@ import functools
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from nodes.extern.client import LONG_S, Client
@@ -25,6 +26,7 @@ from nodes.extern.client import connect as connect_blocking
 from nodes.extern.client_verbs import Verbs
 from nodes.extern.sparql_client import StandingQuery
 from schemas import errors
+from schemas.backups import Opening
 from schemas.commands import Command
 from schemas.commits import Commit
 from schemas.entities import Source
@@ -73,6 +75,10 @@ class AsyncClient(Verbs):
     async def request(self, make: Callable[[], Command[R]], read: Callable[[R], Any] | None = None) -> Any:
         """Make a command, send it, and `read` its reply: what each verb does."""
         return await self._beside(lambda: self._client.request(make, read))
+
+    async def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
+        """Write the map with its history to a file here; see `Client.backup`."""
+        return await self._beside(lambda: self._client.backup(file, overwrite=overwrite))
 
     @contextlib.asynccontextmanager
     async def commits(self, *, timeout: float | None = None) -> AsyncIterator[AsyncIterator[Commit]]:

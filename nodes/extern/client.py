@@ -18,11 +18,13 @@ import os
 import queue
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
 
 from nodes import bus
+from nodes.extern import backup
 from nodes.extern.client_verbs import Verbs
 from nodes.extern.connection import endpoint, open_session
 from nodes.extern.connection import identity as identify
@@ -30,6 +32,7 @@ from nodes.extern.sparql_client import StandingQuery
 from nodes.identity import Identity
 from nodes.runtime import version
 from schemas import codec, errors, keys, roles
+from schemas.backups import Opening
 from schemas.calls import reply_type
 from schemas.commands import Command, Status, Watch
 from schemas.commits import Commit
@@ -120,6 +123,14 @@ class Client(Verbs):
         """Make a command, send it, and `read` its reply: what each verb does."""
         reply = self.send(make())
         return reply if read is None else read(reply)
+
+    def backup(self, file: str | Path, *, overwrite: bool = False) -> Opening:
+        """Write the map with its history to a file here, while the system runs; `semmap restore` reads it.
+
+        Returns which map it is, and as of which commit. Raises BadFile when the file is there and not to be
+        overwritten, or cannot be written.
+        """
+        return backup.write(self.send, file, overwrite=overwrite)
 
     @contextlib.contextmanager
     def watch(

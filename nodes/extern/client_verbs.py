@@ -260,6 +260,9 @@ class Verbs:
     last_seen = Verb(commands.LastSeen)
     sparql = Verb(commands.Sparql)
 
+    # To keep
+    compact = Verb(commands.Compact)
+
     # To run
     move = Verb(commands.Move)
     pause = Verb(commands.Pause)

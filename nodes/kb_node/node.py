@@ -16,6 +16,7 @@ from nodes.kb_node.config import KbConfig
 from nodes.kb_node.documents.tbox import tbox_notes
 from nodes.kb_node.handlers.asking import Asking
 from nodes.kb_node.handlers.changing import Changing, Tell
+from nodes.kb_node.handlers.keeping import Keeping
 from nodes.kb_node.handlers.loading import Loading
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.protocol import Surrounded
@@ -59,7 +60,13 @@ class KnowledgeBase:
             self.map, journal, spread=self._spread, not_written=self._not_written, telling_of=telling_of
         )
         loading = Loading(self.map, journal, changing, self._sparql, telling_of=telling_of, notes=self._notes)
-        handlers = {**changing.handlers(), **loading.handlers(), **self._asking.handlers()}
+        self._keeping = Keeping(journal)
+        handlers = {
+            **changing.handlers(),
+            **loading.handlers(),
+            **self._asking.handlers(),
+            **self._keeping.handlers(),
+        }
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
@@ -127,6 +134,7 @@ class KnowledgeBase:
         """Leave a checkpoint for a quick start, if the disk takes it."""
         self._sparql.close()
         self._asking.close()
+        self._keeping.close()
         with suppress(errors.Refused):
             self._checkpointing.close()
 

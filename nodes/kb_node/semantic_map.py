@@ -106,7 +106,7 @@ class SemanticMap(MapState):
         return made or self._journal.commit_of(transaction.id)
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        self.follow_places()
+        self.follow_enough(transaction)
         plan = planning.of(self, transaction)
         if plan is None:
             return None

@@ -104,7 +104,7 @@ def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
 
 def _newest_asked(journal: Journal) -> Commit:
     """The newest commit that a client asked for and that was not taken back."""
-    backwards = (journal.commit(seq) for seq in range(journal.last, 0, -1))
+    backwards = (journal.commit(seq) for seq in range(journal.last, journal.first - 1, -1))
     for commit in _in_force(backwards):
         if commit.verb and not commit.undoes:
             return commit
@@ -116,6 +116,11 @@ def _newest_asked(journal: Journal) -> Commit:
 def _named(journal: Journal, seq: int) -> Commit:
     if seq > journal.last:
         raise errors.Refused(f"there is no commit {seq} yet; the last one is {journal.last}")
+    if seq < journal.first:
+        raise errors.Refused(
+            f"commit {seq} cannot be undone: it has been compacted, and the history begins with commit"
+            f" {journal.first}"
+        )
     return journal.commit(seq)
 
 

@@ -47,7 +47,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     left running then. What an `up` that was killed has left behind is ended first.
     """
     supervisor = Supervisor(Path(settings.data))
-    with _alone(supervisor):
+    with alone(supervisor.data):
         if supervisor.end_leftovers():
             say(f"{'before':<{_COLUMN}} ended what an earlier semmap up had left running")
         _require_free(settings.listen)
@@ -73,16 +73,17 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
 
 
 @contextlib.contextmanager
-def _alone(supervisor: Supervisor) -> Iterator[None]:
+def alone(data: Path) -> Iterator[None]:
     """Hold the lock of the data folder, which the kernel releases however this process ends.
 
     Raises Refused when another `semmap up` has it, BadFile when there can be none.
     """
+    supervisor = Supervisor(data)
     try:
-        supervisor.data.mkdir(parents=True, exist_ok=True)
+        data.mkdir(parents=True, exist_ok=True)
         held = os.open(supervisor.lock, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:
-        raise errors.BadFile(f"cannot store data in {supervisor.data}: {error.strerror}") from None
+        raise errors.BadFile(f"cannot store data in {data}: {error.strerror}") from None
     try:
         fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield

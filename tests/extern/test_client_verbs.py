@@ -13,8 +13,8 @@ from schemas import commands, errors, replies
 from schemas.entities import Entity
 
 UNSIGNED = {"source": "operator", "agent": ""}
-NOT_A_METHOD = {"watch", "renew"}
-"""Commands of a standing query; `Client.watch` sends them."""
+NOT_A_METHOD = {"watch", "renew", "backup"}
+"""Commands of a standing query, and parts of a file: `Client.watch` and `Client.backup` send them."""
 
 
 def test_every_command_is_a_verb_of_the_client():

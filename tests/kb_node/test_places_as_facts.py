@@ -194,6 +194,58 @@ def test_all_questions_agree_with_what_is_withheld(choosy):
         now.explained(question, questions.of_explain(semantic_map, question))
 
 
+def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
+    semantic_map, _ = choosy
+    counter = Now(semantic_map).entity(Get(name="counter1", where=True))
+    assert ["milk1 is on counter1 (measured) would contradict" in text for text in counter.withheld] == [True]
+
+
+def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
+    seen = []
+    tried = trials.of(
+        flat,
+        lambda: flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox),
+        lambda: seen.append(flat.tbox),
+    )
+    assert tried is not None
+    assert seen == [frozenset(tbox)]
+    assert flat.tbox == frozenset(TBOX)
+
+
+def test_what_is_said_to_be_in_itself_is_noted(flat):
+    said = (v.entity_iri("kitchen1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
+    commit = flat.commit(Transaction(id="self", source="operator", insert=(said,)))
+    note = "kitchen1 was said to be in kitchen1; nothing is on, in or inside itself"
+    assert commit.notes == (note,)
+    assert [relation.text for relation in Now(flat).denied()] == [note]
+
+
+def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
+    """The cup is said to be on the counter, which is in the kitchen, which is said to be without cups."""
+    axioms = b"""
+    dm:Gadget a owl:Class ; rdfs:subClassOf dm:Object .
+    dm:Tidy_Room a owl:Class ; rdfs:subClassOf dm:Location ;
+        rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:contains ;
+            owl:allValuesFrom [ a owl:Class ; owl:complementOf dm:Gadget ] ] .
+    """
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + axioms, "household.ttl", label_prefix="t")
+    flat.replace_tbox(Transaction(id="tbox", source="operator"), tbox)
+    iri, pose = v.bare(v.dm("Gadget")), Pose(position_m=(2.0, 2.0, 0.0))
+    new = NewEntity(name="gadget1", class_iri=iri, pose=pose, size=(0.1, 0.1, 0.1))
+    located = (v.entity_iri("counter1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
+    flat.commit(Transaction(id="gadget", source="operator", add=(new,), insert=(located,)))
+    said = flat.commit(Transaction(id="said", source="operator", insert=(on("gadget1", "counter1"),)))
+    assert len(said.notes) == 1
+    tidy = (v.entity_iri("kitchen1"), v.RDF_TYPE, v.dm("Tidy_Room"))
+    before = state(flat)
+    with pytest.raises(
+        errors.Inconsistent, match=r"it is on counter1 \(asserted\), counter1 is located in kitchen1"
+    ):
+        flat.commit(Transaction(id="tidy", source="operator", insert=(tidy,)))
+    assert state(flat) == before
+
+
 def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
     semantic_map, commit = choosy
     (note,) = [note for note in commit.notes if "milk1 is on counter1" in note]

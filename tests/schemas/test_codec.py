@@ -187,3 +187,8 @@ def test_what_may_be_several_things_and_large_bounds_are_spelled_out(kind, field
     with pytest.raises(errors.BadRequest) as caught:
         codec.from_text(fields, kind)
     assert caught.value.text == f"malformed message: {text}"
+
+
+def test_a_number_that_is_too_large_is_told():
+    with pytest.raises(errors.BadRequest, match="more than 64 bits"):
+        codec.encode({"values": [10**40]})

@@ -48,3 +48,8 @@ def test_what_cannot_be_unpacked_is_refused(monkeypatch, content, text):
 def test_one_in_a_great_many_pieces_is_refused_before_they_take_long():
     with pytest.raises(BadFile, match="packed in more than 1,000 pieces"):
         packing.unpacked(gzip.compress(b"") * 100_000, "bomb.gz")
+
+
+def test_little_does_not_become_very_much():
+    with pytest.raises(BadFile, match=r"is larger than 2\d MiB when it is unpacked"):
+        packing.unpacked(gzip.compress(b"0" * (32 << 20)), "bomb.gz")

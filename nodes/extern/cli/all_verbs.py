@@ -22,6 +22,7 @@ _MODULES = {
     "perceive": ("perceive",),
     "scene": ("move", "pause", "step", "reset", "picture", "replay"),
     "lifecycle": ("up", "down", "node", "repair"),
+    "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
     "keys": ("keys",),
     "completion": ("completion",),

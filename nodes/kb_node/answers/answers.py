@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from types import MappingProxyType
 from typing import NamedTuple
@@ -11,6 +11,7 @@ from typing import NamedTuple
 from nodes.kb_node import proofs
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.abox_document import undeclared_classes
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
 from nodes.kb_node.relations.facts import said
@@ -39,7 +40,7 @@ def infer(semantic_map: SemanticMap, name: str) -> Inferred:
     measured = set(_pairs(semantic_map)(semantic_map.places.space(), name))
     subject = v.iri(semantic_map.entity(name).iri)
     further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
-    return _told(chain(semantic_map.inferred(name), further))
+    return _told(chain(semantic_map.inferred(name), further), semantic_map.classes.told_apart)
 
 
 class Inferring(NamedTuple):
@@ -48,6 +49,8 @@ class Inferring(NamedTuple):
     held: Held
     entities: list[Term]
     measured: Callable[[], Iterable[Triple]]
+    names: Mapping[Term, str]
+    """Of classes and properties that are called alike."""
 
 
 def inferring(semantic_map: SemanticMap) -> Inferring:
@@ -58,6 +61,7 @@ def inferring(semantic_map: SemanticMap) -> Inferring:
         semantic_map.reasoner.held(),
         [v.iri(entity.iri) for entity in semantic_map.entities()],
         lambda: pairs(Space(placed, limits), None),
+        semantic_map.classes.told_apart,
     )
 
 
@@ -67,7 +71,7 @@ def infer_all(inferring: Inferring) -> Inferred:
     by_subject: dict[Term, set[Triple]] = {}
     for triple in inferring.measured():
         by_subject.setdefault(triple[0], set()).add(triple)
-    return _told(
+    triples = (
         triple
         for iri in inferring.entities
         for triple in chain(
@@ -75,12 +79,13 @@ def infer_all(inferring: Inferring) -> Inferred:
             sorted(t for t in by_subject.get(iri, ()) if not reasoner.holds(t)),
         )
     )
+    return _told(triples, inferring.names)
 
 
-def _told(triples: Iterable[Triple]) -> Inferred:
+def _told(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
     """Without what is true of everything or of nameless classes."""
     triples = tuple(worth_saying(triples))
-    return Inferred(triples=triples, text=tuple(v.spoken(t) for t in triples))
+    return Inferred(triples=triples, text=tuple(v.spoken(t, names) for t in triples))
 
 
 def _pairs(semantic_map: SemanticMap) -> Callable[[Space, str | None], Iterator[Triple]]:
@@ -126,7 +131,7 @@ def withheld(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterato
     """The facts about places, or one entity's, that would contradict the map, and how, a sentence each."""
     beliefs = semantic_map.beliefs
     for fact in sorted(beliefs.withheld):
-        if entity is None or v.iri(entity.iri) == fact[0]:
+        if entity is None or v.iri(entity.iri) in (fact[0], fact[2]):
             yield beliefs.told(fact)
 
 
@@ -153,7 +158,8 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
             following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
-    written = abox + following
+    declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, semantic_map.classes)]
+    written = [*abox, *following, *declared]
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
     made = Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
     if not inferred:

@@ -129,8 +129,10 @@ def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     """A value that the subject does not have: an individual if there is one of that name."""
     if _is_data(semantic_map.reasoner, predicate):
         return _literal(semantic_map, predicate, word)
-    found = (v.entity_iri(word), v.dm(word))
-    return next((term for term in found if semantic_map.reasoner.mentioned({term})), found[0])
+    try:
+        return individual(semantic_map, word)
+    except errors.UnknownName:
+        return v.entity_iri(word)
 
 
 def _is_data(reasoner: Reasoner, predicate: Term) -> bool:

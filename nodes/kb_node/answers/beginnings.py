@@ -55,9 +55,7 @@ class Moves(Struct, frozen=True):
 
 def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> dict[Fact, str]:
     """Since when each fact has held without a break, in words, as far as the journal goes back."""
-    is_whole = journal.beginning.seq == 0
-    first = past.said_by_the_first_tbox().values() if is_whole else journal.snapshot().entities
-    found = beginnings(journal.outlines(Moves), first, facts, limits)
+    found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
     before = f"since before commit {journal.first}"
     return {fact: f"since commit {seq}" if seq else before for fact, seq in found.items()}
 

@@ -12,6 +12,7 @@ from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.storage.compaction import asserted_after
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from schemas.commands import Sparql
@@ -30,22 +31,9 @@ class MapThen(NamedTuple):
     limits: Thresholds | None = None
 
 
-def asserted_then(journal: Journal, seq: int) -> set[Triple]:
-    """All that was asserted after a commit, the TBox with it. Takes as long as the history until then."""
-    start = journal.snapshot()
-    asserted = set(rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}"))
-    asserted.update(start.said())
-    for commit in journal.commits():
-        if commit.seq > seq:
-            break
-        asserted.difference_update(commit.retracted)
-        asserted.update(commit.inserted)
-    return asserted
-
-
 def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapThen:
     """The map after a commit; with `inferred` also what was computed, worked out again."""
-    asserted = asserted_then(journal, seq)
+    asserted = asserted_after(journal, seq)
     if not inferred:
         return MapThen(seq, tuple(asserted))
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))

@@ -13,7 +13,7 @@ from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.answers.asked_terms import RELATIONS
 from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
 from nodes.kb_node.reasoner import explanations as reasons
-from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed
+from nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
 from nodes.kb_node.reasoner.explain.sentences import as_measured, said
 from nodes.kb_node.reasoner.refutation import refute, why_different
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -95,7 +95,7 @@ def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
 def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
     """Why it holds, or cannot hold.
 
-    What no rule derives is refuted, or proved from what is near (`why_entailed`).
+    What no rule derives or contradicts is proved or refuted from what is near, if a proof is found there.
 
     Raises:
         Refused: it does not hold; or it holds, or nothing says that it cannot.
@@ -107,9 +107,14 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     if asked.negated:
         if (denied := refute(reasoner, first, anew=anew)) is not None:
             return _told(reasoner, denied)
-        if not reasoner.holds(first) and not anew:
-            raise Undecided("no rule excludes it, and none derives it")
-        holds = reasoner.explain(first) or _entailed(reasoner, asked)
+        holds = reasoner.explain(first)
+        if holds is None:
+            if not anew:
+                raise Undecided("no rule excludes it, and none derives it")
+            near = _near(reasoner, asked)
+            if (further := why_excluded(near, first, words=reasoner.words)) is not None:
+                return _told(reasoner, further)
+            holds = why_entailed(near, first, words=reasoner.words)
         raise errors.Refused(
             f"it does hold: {holds.text}"
             if holds
@@ -124,16 +129,18 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     if not anew:
         raise Undecided("no rule derives it, and none excludes it")
-    if (further := _entailed(reasoner, asked)) is not None:
-        return further
+    near = _near(reasoner, asked)
+    if (further := why_entailed(near, first, words=reasoner.words)) is not None:
+        return _told(reasoner, further)
+    if (excluded := why_excluded(near, first, words=reasoner.words)) is not None:
+        told = _told(reasoner, excluded)
+        raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
 
 
-def _entailed(reasoner: Reasoner, asked: Asked) -> Explanation | None:
-    """Why it follows from what is near, although no rule derives it."""
-    near = Reasoner(nearby(reasoner, asked.terms))
-    found = why_entailed(near, asked.triples[0], words=reasoner.words)
-    return None if found is None else _told(reasoner, found)
+def _near(reasoner: Reasoner, asked: Asked) -> Reasoner:
+    """A reasoner that holds what is near, in which a proof is searched for."""
+    return Reasoner(nearby(reasoner, asked.terms), closed=reasoner.closed)
 
 
 def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str | None = None) -> Possible:

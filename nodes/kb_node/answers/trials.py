@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from itertools import islice
 
 from msgspec import structs
@@ -17,25 +17,34 @@ _FEW = 50
 """Entities of which it is said what follows."""
 
 
-def of(semantic_map: SemanticMap, change: Callable[[], Commit | None]) -> Effects | None:
+def of(
+    semantic_map: SemanticMap,
+    change: Callable[[], Commit | None],
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Effects | None:
     """The effects of what `change` would commit, with nothing done; None if it changes nothing.
 
-    Raises what `change` raises.
+    `meanwhile` is called while the map is as it would be. Raises what `change` raises.
     """
-    seen = semantic_map.try_out(change, lambda commit: _After(semantic_map, commit))
+
+    def look(commit: Commit) -> _After:
+        meanwhile()
+        return _After(semantic_map, commit)
+
+    seen = semantic_map.try_out(change, look)
     if seen is None:
         return None
     held = _asserted(semantic_map, seen.concerned)
     followed = _inferred(semantic_map, seen.concerned)
-    commit = seen.commit
+    commit, names = seen.commit, semantic_map.classes.told_apart
     return structs.replace(
         Effects.of(commit),
         trial=Trial(
             inserted=len(commit.inserted),
             retracted=len(commit.retracted),
             changed=tuple(entity.name for entity in commit.changed),
-            gained=_spoken(seen.followed - followed - held),
-            lost=_spoken(followed - seen.followed - seen.held),
+            gained=_spoken(seen.followed - followed - held, names),
+            lost=_spoken(followed - seen.followed - seen.held, names),
         ),
     )
 
@@ -60,5 +69,5 @@ def _inferred(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
     return {t for iri in iris for t in worth_saying(reasoner.inferred(iri, None, None))}
 
 
-def _spoken(triples: Iterable[Triple]) -> tuple[str, ...]:
-    return tuple(map(v.spoken, sorted(triples)))
+def _spoken(triples: Iterable[Triple], names: Mapping[Term, str]) -> tuple[str, ...]:
+    return tuple(v.spoken(triple, names) for triple in sorted(triples))

@@ -68,6 +68,15 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     return SortedOut(kept, words, list(notes))
 
 
+def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:
+    """The classes with a name that individuals are of and the TBox does not have.
+
+    The document that brought these individuals declared them; without that it would have been refused.
+    """
+    types = {o for _, p, o in triples if p == v.RDF_TYPE and o.startswith("<")}
+    return {c for c in types - classes.names.keys() - set(_OF_STARS) if not is_built_in(c)}
+
+
 def strangers(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:

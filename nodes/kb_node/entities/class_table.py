@@ -81,6 +81,9 @@ class ClassTable:
         )
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
+        named = {**self.names, **self.property_names.names}
+        self.told_apart: dict[Term, str] = {t: name for t, name in named.items() if name != v.local_name(t)}
+        """The classes and properties whose names have a prefix, because others are called alike."""
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
         built_in = self._named_below(*(c for known in self.alignments for c in known.fixed))
         self.fixed: frozenset[Term] = frozenset(

@@ -41,7 +41,7 @@ from schemas.commands import (
 )
 from schemas.commits import Commit, Snapshot, Star
 from schemas.entities import ClassInfo, Entity, PropertyInfo
-from schemas.explanations import Explanation, Triple
+from schemas.explanations import Explanation
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -166,17 +166,19 @@ class Asking:
     def _tried(self, answer: Callable[..., R], asked: questions.Asked) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
         reasoner, names = self._map.reasoner, self._map.classes.prefixed
-        needed: list[Triple] | None = None
+        held: Held | None = None
         self._map.believe_places()
         if questions.is_quick(reasoner, asked):
             try:
                 return answer(reasoner, asked, anew=False)
             except questions.Undecided:
                 needed = nearby(reasoner, asked.terms)
+                computed = dict.fromkeys(filter(reasoner.is_computed, needed))
+                held = Held([triple for triple in needed if triple not in computed], list(computed))
             except NotCompilable:
                 pass
-        held = reasoner.held() if needed is None else Held(needed, [])
-        return self._aside.submit(lambda: answer(questions.copy_of(held, names), asked))
+        copied = reasoner.held() if held is None else held
+        return self._aside.submit(lambda: answer(questions.copy_of(copied, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
         """The map as a document; checked first, and written beside the node's own work."""

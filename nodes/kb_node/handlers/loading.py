@@ -104,8 +104,16 @@ class Loading:
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
+        noted: list[str] = []
+
+        def replace() -> Commit:
+            return self._map.replace_tbox(transaction, tbox)
+
         try:
-            made = self._changing.changed(lambda: self._map.replace_tbox(transaction, tbox), load.dry_run)
+            if load.dry_run:
+                tried = trials.of(self._map, replace, lambda: noted.extend(self._notes()))
+                return Loaded(commit=tried, skipped=(), notes=tuple(noted))
+            made = self._changing.changed(replace, dry_run=False)
             return Loaded(commit=made, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(

@@ -101,7 +101,7 @@ def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
 
 
 def _passed_over(space: Space, solid: Solid, other: Solid) -> str | None:
-    """That the other one is not looked at for what bears or holds the solid, as a clause; None where it is."""
+    """That the other one is not looked at for what bears or holds the solid, as a clause; None if it is."""
     if not space.is_crowded(solid) or other in space.bearers_around(solid):
         return None
     return f"more things are in this spot than are compared, and {other.name} is not one of the larger ones"

@@ -7,7 +7,7 @@ name, what the last commit up to n that touched it says: nothing needs to be rep
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 
 from nodes.kb_node.documents import rdf
@@ -17,7 +17,7 @@ from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.storage.changelog import Changelog
 from nodes.kb_node.storage.journal import Journal
-from schemas import errors
+from schemas import errors, wording
 from schemas.changes import Change
 from schemas.commands import History
 from schemas.commits import Commit
@@ -31,25 +31,49 @@ class Past:
 
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
-        self._first: dict[str, Entity] | None = None
+        self._first: tuple[int, dict[str, Entity]] | None = None
 
     def history(self, query: History) -> tuple[LoggedCommit, ...]:
-        """The commits of a span of time, newest last. Raises UnknownName, BadRequest."""
-        first = 1 if query.since is None else self._not_before(query.since)
-        last = self._journal.last if query.until is None else self._not_after(query.until)
-        if query.name is None:
-            seqs = list(range(max(first, last - query.limit + 1), last + 1))
-        else:
+        """The commits of a span of time, newest last. Raises UnknownName, BadRequest.
+
+        Times are compared with the commits' own stamps, which the clock may have been set back between. What
+        the history begins with is told as a commit, too, if it was compacted.
+        """
+        if query.name is not None:
             self._require_known(query.name)
-            seqs = self._journal.touching(query.name, after=first - 1, until=last)[-query.limit :]
-        changes = Changelog(self._journal, self.said_by_the_first_tbox)
-        commits = map(self._journal.commit, seqs)
-        return tuple(_logged(commit, changes.of(commit, query.name)) for commit in commits)
+        seqs = self._of_span(query)
+        beginning = self._journal.beginning.seq
+        told = [seq for seq in seqs if seq > beginning]
+        if beginning in seqs and (query.name is None or query.name in self.at_the_beginning()):
+            told.insert(0, beginning)
+        changes = Changelog(self._journal, self.at_the_beginning)
+        return tuple(
+            _beginning(self._journal)
+            if seq == beginning
+            else _logged(commit := self._journal.commit(seq), changes.of(commit, query.name))
+            for seq in told[-query.limit :]
+        )
+
+    def _of_span(self, query: History) -> Sequence[int]:
+        """The numbers of the commits that are asked for, in order."""
+        since, until = (None if when is None else read_moment(when) for when in (query.since, query.until))
+        first = since.commit if since is not None and since.commit is not None else 0
+        last = until.commit if until is not None and until.commit is not None else self._journal.last
+        seqs: Sequence[int] = range(max(first, self._journal.first - 1, 1), min(last, self._journal.last) + 1)
+        if query.name is not None:
+            touching = self._journal.touching(query.name, after=max(first - 1, 0), until=last)
+            seqs = [*seqs[: self._journal.beginning.seq in seqs], *touching]
+        first_ns = since.first_ns if since is not None and since.commit is None else 0
+        last_ns = until.last_ns if until is not None and until.commit is None else 0
+        if first_ns or last_ns:
+            stamped = set(self._journal.stamped(first_ns, last_ns or 1 << 63))
+            seqs = [seq for seq in seqs if seq in stamped]
+        return seqs
 
     def commits(self, seqs: Iterable[int]) -> tuple[Commit, ...]:
         """These commits, whole; without those that there never were."""
         last = self._journal.last
-        return tuple(self._journal.commit(seq) for seq in seqs if 1 <= seq <= last)
+        return tuple(self._journal.commit(seq) for seq in seqs if self._journal.first <= seq <= last)
 
     def entities(
         self, when: When, class_name: str | None = None, known: Iterable[str] = ()
@@ -70,7 +94,7 @@ class Past:
 
     def _there(self, seq: int) -> tuple[Entity, ...]:
         """The entities after a commit, in the order of names."""
-        there = dict(self.said_by_the_first_tbox())
+        there = dict(self.at_the_beginning())
         names_by_seq: dict[int, list[str]] = {}
         for name, touched in self._journal.last_touches(seq):
             names_by_seq.setdefault(touched, []).append(name)
@@ -88,7 +112,7 @@ class Past:
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
         else:
-            entity = self.said_by_the_first_tbox().get(name)
+            entity = self.at_the_beginning().get(name)
         if entity is None:
             known = [there for there, _ in self._journal.last_touches(seq)]
             hint = errors.did_you_mean(name, known) if name not in known else ""
@@ -105,53 +129,79 @@ class Past:
             if entity is not None:
                 return sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self.said_by_the_first_tbox()[name], removed)
+        return sighting(self.at_the_beginning()[name], removed)
 
     def _require_known(self, name: str) -> None:
-        if name not in self.said_by_the_first_tbox() and not self._journal.touching(name):
+        if name not in self.at_the_beginning() and not self._journal.touching(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
-            raise errors.UnknownName(f"no entity was ever named '{name}'{errors.did_you_mean(name, known)}")
+            since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""
+            raise errors.UnknownName(
+                f"no entity was ever named '{name}'{since}{errors.did_you_mean(name, known)}"
+            )
 
-    def said_by_the_first_tbox(self) -> Mapping[str, Entity]:
-        """The entities of the map before the first commit."""
-        if self._first is None:
-            tbox = rdf.parse(self._journal.tbox(0), "the first TBox")
-            self._first = {}
-            if tbox_validation.has_individuals(tbox):
-                reasoner = Reasoner(tbox)
-                said = entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
-                self._first.update((entity.name, entity) for entity in said)
-        return self._first
+    @property
+    def _compacted(self) -> int:
+        """The last commit that is part of the snapshot which the history begins with; 0 if there is none."""
+        return self._journal.beginning.seq
+
+    def at_the_beginning(self) -> Mapping[str, Entity]:
+        """The entities of the snapshot that the history begins with, else those that the first TBox says."""
+        if self._first is None or self._first[0] != self._compacted:
+            said = self._journal.snapshot().entities if self._compacted else self._said_by_the_first_tbox()
+            self._first = (self._compacted, {entity.name: entity for entity in said})
+        return self._first[1]
+
+    def _said_by_the_first_tbox(self) -> Iterable[Entity]:
+        tbox = rdf.parse(self._journal.tbox(0), "the first TBox")
+        if not tbox_validation.has_individuals(tbox):
+            return ()
+        reasoner = Reasoner(tbox)
+        return entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
 
     def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
-        if moment.first_ns > time.time_ns():
+        if moment.first_ns > max(time.time_ns(), self._journal.latest_stamp() if moment.first_ns else 0):
             raise errors.Refused("that is in the future; ask about the present without --as-of")
         seq = self._journal.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")
+        if seq < self._compacted:
+            raise errors.Refused(
+                f"what was before commit {self._compacted}{_at(self._journal.beginning.stamp_ns)} has been"
+                " compacted: the history begins with the map as it was then"
+            )
         if seq == 0:
-            raise errors.Refused(f"there was no map then; it begins with commit 1{self._begun()}")
+            begun = "" if last == 0 else _at(self._journal.stamp_of(1))
+            raise errors.Refused(f"there was no map then; it begins with commit 1{begun}")
         return seq
 
-    def _begun(self) -> str:
-        if self._journal.last == 0:
-            return ""
-        begun = datetime.fromtimestamp(self._journal.stamp_of(1) / 1e9)
-        return f" at {begun:%Y-%m-%d %H:%M:%S}"
 
-    def _not_before(self, when: When) -> int:
-        moment = read_moment(when)
-        if moment.commit is None:
-            return self._journal.seq_at(moment.first_ns - 1) + 1
-        return max(moment.commit, 1)
+def _at(stamp_ns: int) -> str:
+    return f" at {datetime.fromtimestamp(stamp_ns / 1e9):%Y-%m-%d %H:%M:%S}"
 
-    def _not_after(self, when: When) -> int:
-        moment = read_moment(when)
-        if moment.commit is None:
-            return self._journal.seq_at(moment.last_ns)
-        return min(moment.commit, self._journal.last)
+
+def _beginning(journal: Journal) -> LoggedCommit:
+    """What the history of a compacted journal begins with, told as if it were a commit."""
+    there = journal.beginning
+    return LoggedCommit(
+        seq=there.seq,
+        stamp_ns=there.stamp_ns,
+        source="file",
+        agent="",
+        verb="compact",
+        reason=(
+            f"the history begins here, with {wording.entities(there.entities)};"
+            " earlier commits were compacted"
+        ),
+        confidence=None,
+        undoes=(),
+        tbox=False,
+        inserted=0,
+        retracted=0,
+        changed=(),
+        removed=(),
+    )
 
 
 def _entities_after(commit: Commit) -> dict[str, Entity]:

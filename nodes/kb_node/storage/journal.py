@@ -26,13 +26,14 @@ from nodes.kb_node.storage.beginning import Beginning
 from nodes.kb_node.storage.checkpoint_encoding import Checkpoint as Checkpoint
 from nodes.kb_node.storage.sqlite_file import ANEW, JournalFile, mend
 from schemas import errors
+from schemas.backups import Kind
 from schemas.commits import Commit
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
 
 FILENAME = "journal.sqlite"
-_SCHEMA = """
+SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value BLOB NOT NULL) STRICT;
 CREATE TABLE tboxes (seq INTEGER PRIMARY KEY, value BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 CREATE TABLE commits (
@@ -43,10 +44,20 @@ CREATE TABLE touches (name TEXT, seq INTEGER, PRIMARY KEY (name, seq)) STRICT, W
 CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BLOB NOT NULL) STRICT;
 """
 _TOUCH = "INSERT INTO touches VALUES (?, ?)"
-_FORMAT = b"4"
-_COMPACTED = b"5"
+FORMAT = b"4"
+COMPACTED = b"5"
 """The format of a journal that begins with a snapshot, which older versions take for a damaged one."""
 _PAGE = 256
+_STORED: dict[Kind, str] = {
+    "tbox": "SELECT seq, '', value, digest FROM tboxes WHERE seq > ? AND seq <= ? ORDER BY seq LIMIT 1",
+    "beginning": "SELECT seq, '', head, digest FROM beginning WHERE seq > ? AND seq <= ?",
+    "snapshot": "SELECT seq, '', body, digest FROM beginning WHERE seq > ? AND seq <= ?",
+    "commit": "SELECT * FROM commits WHERE seq > ? AND seq <= ? ORDER BY seq LIMIT 1",
+    "checkpoint": "SELECT seq, '', body, digest FROM checkpoints WHERE seq > ? AND seq <= ?"
+    " ORDER BY seq DESC LIMIT 1",
+}
+_DROPPED = 2000
+"""Rows: to delete them takes some tens of milliseconds."""
 _DENSE_FROM = 1 << 16
 """Bytes: what is larger takes less time to compress than to write."""
 
@@ -104,10 +115,46 @@ class Journal:
         """Raises Refused unless it is of this version."""
         with self._file.reading() as db:
             form = db.execute("SELECT value FROM meta WHERE key='format'").fetchone()
-        if form is None or form[0] not in (_FORMAT, _COMPACTED):
+        if form is None or form[0] not in (FORMAT, COMPACTED):
             raise errors.Refused(f"{self.path} was written by another version of semmap; {ANEW}")
-        if (form[0] == _COMPACTED) != (self.beginning.seq > 0):
+        if (form[0] == COMPACTED) != (self.beginning.seq > 0):
             raise self._damaged("where its history begins is damaged")
+
+    def drop_compacted(self) -> None:
+        """Delete what the snapshot has taken the place of, bit by bit, so that commits can come between.
+
+        What an end in the middle leaves is not looked at any more, and deleted by the next call. Raises
+        NotWritten.
+        """
+        until = self.beginning.seq
+        while self._dropped(
+            "DELETE FROM commits WHERE seq <= ? AND seq < (SELECT min(seq) FROM commits) + ?"
+        ):
+            pass
+        name: str | None = ""
+        while name is not None:
+            with self._file.writing("the deletion of compacted commits") as db:
+                query = "SELECT name FROM touches WHERE name > ? ORDER BY name LIMIT 1 OFFSET ?"
+                upto = (db.execute(query, (name, _DROPPED)).fetchone() or (None,))[0]
+                within = (
+                    "name > ? AND (? IS NULL OR name <= ?)"
+                    if name
+                    else "name >= ? AND (? IS NULL OR name <= ?)"
+                )
+                db.execute(f"DELETE FROM touches WHERE seq <= ? AND {within}", (until, name, upto, upto))
+                name = upto
+        self._file.shrink()
+
+    def _dropped(self, statement: str) -> int:
+        with self._file.writing("the deletion of compacted commits") as db:
+            return db.execute(statement, (self.beginning.seq, _DROPPED)).rowcount
+
+    @property
+    def has_dregs(self) -> bool:
+        """Is something still there that was compacted?"""
+        with self._file.reading() as db:
+            (first,) = db.execute("SELECT min(seq) FROM commits").fetchone()
+        return first is not None and first < self.first
 
     def begin_with(self, first: Beginning, snapshot: Checkpoint) -> None:
         """Let the history begin after a commit, with the map as it was then; what came before goes.
@@ -118,13 +165,13 @@ class Journal:
         first = structs.replace(first, body_digest=beginning.digest(body), entities=len(snapshot.entities))
         with self._file.writing(f"the snapshot after commit {first.seq}") as db:
             beginning.write(db, first, body)
-            db.execute("INSERT OR REPLACE INTO meta VALUES ('format', ?)", (_COMPACTED,))
+            db.execute("INSERT OR REPLACE INTO meta VALUES ('format', ?)", (COMPACTED,))
             db.execute("DELETE FROM checkpoints WHERE seq < ?", (first.seq,))
             holding = "(SELECT max(seq) FROM tboxes WHERE seq <= ?)"
             db.execute(f"DELETE FROM tboxes WHERE seq < {holding}", (first.seq,))
             index_check.write(db, first.seq, max(self.last, first.seq))
             with self._reading_stamps:
-                self.beginning, self._digest, self._stamps = first, None, array("q")
+                self.beginning, self._stamps = first, array("q")
 
     @classmethod
     def create(cls, path: Path, tbox: bytes) -> Journal:
@@ -132,9 +179,9 @@ class Journal:
         try:
             db = sqlite3.connect(path)
             try:
-                db.executescript(_SCHEMA)
+                db.executescript(SCHEMA)
                 with db:
-                    db.execute("INSERT INTO meta VALUES ('format', ?)", (_FORMAT,))
+                    db.execute("INSERT INTO meta VALUES ('format', ?)", (FORMAT,))
                     db.execute("INSERT INTO tboxes VALUES (0, ?, ?)", (tbox, chained(b"", tbox)))
             finally:
                 db.close()
@@ -152,6 +199,11 @@ class Journal:
         with self._file.reading() as db:
             row: tuple[int | None] = db.execute("SELECT max(seq) FROM commits").fetchone()
         return row[0] or self.beginning.seq
+
+    @property
+    def size_bytes(self) -> int:
+        """What it takes on disk."""
+        return sum(path.stat().st_size for path in self.path.parent.glob(f"{self.path.name}*"))
 
     @property
     def first(self) -> int:
@@ -291,8 +343,8 @@ class Journal:
 
     def digest(self, seq: int) -> bytes:
         """That of all commits up to one; empty before the first."""
-        if seq == self.beginning.seq:
-            return self.beginning.chain
+        if seq == (begins := self.beginning).seq:
+            return begins.chain
         with self._file.reading() as db:
             row = db.execute("SELECT digest FROM commits WHERE seq = ?", (seq,)).fetchone()
         return b"" if row is None else bytes(row[0])
@@ -406,6 +458,20 @@ class Journal:
                     raise Damaged(self.path, seq)
                 before = row.digest
                 yield row
+
+    def stored(self, kind: Kind, *, after: int, until: int) -> Iterator[Row]:
+        """What a backup has of one kind, with numbers later than `after` and up to `until`, in order."""
+        after = max(after, self.beginning.seq) if kind == "commit" else after
+        while True:
+            with self._file.reading() as db:
+                if kind in ("beginning", "snapshot") and not beginning.is_there(db):
+                    return
+                found = db.execute(_STORED[kind], (after, until)).fetchone()
+            if found is None:
+                return
+            row = Row._make(found)
+            yield row._replace(digest=beginning.digest(row.body)) if kind == "snapshot" else row
+            after = row.seq
 
     def row(self, seq: int) -> Row | None:
         """A commit as it stands in the file, sound or not; None where it cannot be read."""

@@ -80,7 +80,7 @@ def seed(
     )
     try:
         data.mkdir(parents=True, exist_ok=True)
-        _require_unused(path)
+        require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
         size = _make(new, tbox_triples, reasoner, transaction)
         put_in_place(new, path)
@@ -109,7 +109,7 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
     return len(semantic_map)
 
 
-def _require_unused(path: Path) -> None:
+def require_unused(path: Path) -> None:
     """Raises Refused when a knowledge base is at work on the journal; a damaged one may be set aside."""
     if path.exists():
         try:

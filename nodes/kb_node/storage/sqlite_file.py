@@ -90,6 +90,15 @@ class JournalFile:
         except sqlite3.Error as error:
             raise NotWritten(f"{what} could not be written to {self._path}: {error}") from None
 
+    def shrink(self) -> None:
+        """Give the room of what was deleted back to the disk. Raises NotWritten; then it is used again."""
+        try:
+            with self._lock:
+                self._db.execute("VACUUM")
+                self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        except sqlite3.Error as error:
+            raise NotWritten(f"{self._path} could not be made smaller: {error}") from None
+
 
 def _lengthen(log: Path) -> None:
     """Let the write-ahead log be as long from the beginning as it will be once it is written anew.

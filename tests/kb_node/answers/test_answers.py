@@ -1,6 +1,6 @@
 import pytest
 
-from nodes.kb_node.answers import answers
+from nodes.kb_node.answers import answers, trials
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.documents.abox_document import sort_out
 from nodes.kb_node.reasoner.rules.general import GeneralEngine
@@ -120,3 +120,33 @@ def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
         assert found == {t for t in everything if t[1] == v.dm(name)} != set()
     plain = rdf.parse(answers.export(answers.picture(flat, inferred=False), "turtle").content, "export")
     assert not any(p == v.dm("isNear") for _, p, _ in plain)
+
+
+def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
+    other = turtle(
+        "@prefix lab: <http://lab.org/lab#> . lab:Chair a owl:Class . dm:Chair rdfs:subClassOf lab:Chair ."
+    )
+    semantic_map = home.new_map(tmp_path, [*home.TBOX, *other])
+    tried = trials.of(semantic_map, lambda: semantic_map.commit(transaction(1, chair("chair1"))))
+    semantic_map.commit(transaction(1, chair("chair1")))
+    for said in (
+        tried.trial.gained,
+        answers.infer(semantic_map, "chair1").text,
+        answers.infer_all(answers.inferring(semantic_map)).text,
+    ):
+        assert {"chair1 type lab:Chair", "chair1 type Seat"} <= set(said)
+    home.close(semantic_map)
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_an_export_declares_the_classes_that_only_its_map_has(semantic_map, syntax):
+    said = turtle(":chair1 a dm:Chair ; dm:hasJoint [ a :swivel ] . :swivel a owl:Class .")
+    kept, _, _ = sort_out(said, semantic_map.classes, skip_unknown=False)
+    semantic_map.commit(transaction(1, kept))
+    document = answers.export(answers.picture(semantic_map, inferred=False), syntax)
+    again, skipped, notes = sort_out(
+        rdf.parse(document.content, "export"), semantic_map.classes, skip_unknown=False
+    )
+    assert canonical(again) == canonical(kept)
+    assert skipped == []
+    assert notes[-1] == "class declarations in a map are ignored: swivel; to load classes use --tbox"

@@ -1,6 +1,7 @@
 import pytest
 
 from nodes.kb_node.answers import questions
+from nodes.kb_node.documents import rdf
 from nodes.kb_node.reasoner import Held, Reasoner
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -9,6 +10,7 @@ from schemas import errors
 from schemas.commands import Could, Explain
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
+from tests.kb_node.reasoner.graphs import triple, triples
 
 
 @pytest.fixture
@@ -103,6 +105,46 @@ def test_why_two_are_different_although_no_rule_says_so(furnished):
     assert "nothing is both a Location and an Object" in explanation.text
     with pytest.raises(errors.Refused, match="that chair1 is different from chair2, and nothing excludes it"):
         explained(furnished, "chair1", "differentFrom", "chair2")
+
+
+def test_a_value_may_be_an_individual_of_another_namespace(tmp_path):
+    lab = """
+        @prefix lab: <http://example.org/lab#> . @prefix owl: <http://www.w3.org/2002/07/owl#> .
+        <http://example.org/lab> a owl:Ontology . lab:Person a owl:Class .
+        lab:likes a owl:ObjectProperty . lab:ann a lab:Person . lab:bob a lab:Person .
+        [] a owl:NegativePropertyAssertion ; owl:sourceIndividual lab:ann ;
+            owl:assertionProperty lab:likes ; owl:targetIndividual lab:bob .
+    """
+    semantic_map = home.new_map(tmp_path, rdf.parse(lab.encode(), "lab.ttl", label_prefix="t"))
+    told = "ann does not like bob (asserted)."
+    assert explained(semantic_map, "ann", "likes", "bob", negated=True).text == told
+    assert answered(semantic_map, "ann", "likes", "bob").text == f"no: {told}"
+    home.close(semantic_map)
+
+
+def test_what_no_rule_excludes_is_searched_for_on_a_copy():
+    reasoner = Reasoner(
+        triples(
+            ":Person owl:equivalentClass [ owl:unionOf ( :Adult :Child ) ] ."
+            ":Robot owl:disjointWith :Adult , :Child . :knows a owl:ReflexiveProperty ."
+            ":ann a :Person . :bob a :Adult ."
+        )
+    )
+    robot, other = triple(":ann a :Robot"), triple(":ann a :Child")
+    with pytest.raises(questions.Undecided):
+        questions.explain(reasoner, questions.Asked((robot,), negated=True), anew=False)
+    found = questions.explain(reasoner, questions.Asked((robot,), negated=True))
+    assert found.text.startswith("ann is not a Robot, because it is a Person (asserted), ")
+    assert (found.conclusion, found.supposed) == (None, robot)
+    with pytest.raises(errors.Refused, match="it does not hold: ann is not a Robot, because") as refused:
+        questions.explain(reasoner, questions.Asked((robot,)))
+    assert refused.value.explanation == found
+    with pytest.raises(errors.Refused, match="it is not known that ann is a Child, but nothing excludes it"):
+        questions.explain(reasoner, questions.Asked((other,), negated=True))
+    with pytest.raises(
+        errors.Refused, match="it does hold: ann knows itself, because everything knows itself"
+    ):
+        questions.explain(reasoner, questions.Asked((triple(":ann :knows :ann"),), negated=True))
 
 
 def test_why_something_cannot_be(furnished):

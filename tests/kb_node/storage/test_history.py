@@ -166,3 +166,32 @@ def test_last_seen_is_the_last_commit_that_touched_the_pose(seen):
     assert (sink.pose, sink.provenance.commit) == (None, 0)
     with pytest.raises(errors.UnknownName):
         past.last_seen("chair9")
+
+
+def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path, monkeypatch):
+    """Two o'clock, four, and then three, half past three, five."""
+    semantic_map = home.new_map(tmp_path)
+    start_ns = 1_700_000_000 * 10**9
+    for number, hour in enumerate((2.0, 4.0, 3.0, 3.5, 5.0), start=1):
+        monkeypatch.setattr("time.time_ns", lambda hour=hour: start_ns + int(hour * 3600e9))
+        semantic_map.commit(transaction(number, chair(f"chair{number}")))
+    past = Past(semantic_map._journal)
+
+    def at(hour):
+        return start_ns / 1e9 + hour * 3600
+
+    def seqs(**span):
+        return [commit.seq for commit in past.history(History(**span))]
+
+    assert seqs(since=at(3.8)) == [2, 5]
+    assert seqs(since=at(2.5), until=at(3.2)) == [3]
+    assert seqs(until=at(3.6)) == [1, 3, 4]
+    assert seqs(since=2, until=at(3.2)) == [3]
+    assert seqs(since=at(3.2), until=4) == [2, 4]
+    assert seqs(name="chair2", since=at(3.8)) == [2]
+    assert [len(past.entities(at(hour))) for hour in (2.5, 3.2, 3.8, 4.5, 5.0)] == [1, 3, 4, 4, 5]
+    monkeypatch.setattr("time.time_ns", lambda: start_ns + int(3.6 * 3600e9))  # set back again
+    assert len(past.entities(at(5.0))) == 5
+    with pytest.raises(errors.Refused, match="that is in the future"):
+        past.entities(at(5.1))
+    home.close(semantic_map)

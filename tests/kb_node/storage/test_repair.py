@@ -219,7 +219,7 @@ def test_a_repaired_map_takes_commits_again(data):
     assert opened(data)[0][0] == 9
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(30))
 def test_flipped_bits_are_noticed_or_do_no_harm(data, seed):
     """Wherever they are: in commits, in what these are found by, in the checkpoint, in SQLite's own pages."""
     semantic_map = SemanticMap(Journal(data / FILENAME))

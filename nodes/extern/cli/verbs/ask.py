@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -69,6 +69,19 @@ def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **
         print_json(entities)
         return
     _print_entities(entities)
+    if as_of is None:
+        print_lines(_left_out(client, filter(None, (where["on"], where["in_"]))))
+
+
+def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
+    """A note for each thing of that name about which something measured is withheld, and so is not listed."""
+    for word in words:
+        try:
+            withheld = client.get(word, where=True).withheld
+        except errors.UnknownName:  # a reference or a class
+            continue
+        if withheld:
+            yield f"  note: not listed is what would contradict the map, about {word}; semmap check tells why"
 
 
 @click.command()

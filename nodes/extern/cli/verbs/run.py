@@ -15,7 +15,9 @@ from nodes.extern.client import Client, connect
 from nodes.extern.files import read_file
 from schemas import codec, commands, errors, replies
 
-_BY_THEMSELVES = frozenset(("up", "down", "node", "repair", "replay", "run", "watch", "completion"))
+_BY_THEMSELVES = frozenset(
+    ("up", "down", "node", "repair", "restore", "replay", "run", "watch", "completion")
+)
 
 
 @click.command()

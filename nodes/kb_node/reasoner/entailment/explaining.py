@@ -1,4 +1,4 @@
-"""Why something follows that no rule derives: the asserted triples that are enough for it, and no more."""
+"""Why something follows, or cannot be, where no rule says so: the asserted triples that are enough for it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from functools import partial
 from nodes.kb_node.reasoner.entailment.conclusions import entails
 from nodes.kb_node.reasoner.entailment.effort import Effort
 from nodes.kb_node.reasoner.entailment.prover import Prover
-from nodes.kb_node.reasoner.explain.sentences import following
+from nodes.kb_node.reasoner.explain.sentences import denial, following
 from nodes.kb_node.reasoner.explain.words import Words
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.tbox.split import is_schema
-from nodes.kb_node.reasoner.terms import NOTHING, TYPE, iri, is_literal
+from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, TYPE, iri, is_literal
 
 _LABEL, _SUB_CLASS_OF = iri("rdfs:label"), iri("rdfs:subClassOf")
+_DENIED = "_:denied"
+"""A node for what is said not to hold."""
 _NEAR = 2
 """Steps from what a question names to the facts that may matter."""
 _FACTS = 2000
@@ -58,18 +60,60 @@ def why_entailed(
     The proof is by refutation, generic individuals and names for what must exist, so it has no steps; its
     support is minimal unless making it smaller takes too long.
     """
+    support = _support(reasoner, [triple], patience_s)
+    if support is None:
+        return None
+    text = following(triple, support, words or reasoner.words)
+    return Explanation(conclusion=triple, support=support, steps=(), text=text)
+
+
+def why_excluded(
+    reasoner: Reasoner, supposed: Triple, *, words: Words | None = None, patience_s: float = PATIENCE_S
+) -> Explanation | None:
+    """Why a triple about individuals cannot hold although no rule contradicts it; None if no proof is found.
+
+    Its contrary is proved, as `why_entailed` proves; what comes back is as `refutation.refute` has it.
+    """
+    support = None if is_schema(supposed) else _support(reasoner, _contrary(supposed), patience_s)
+    if support is None:
+        return None
+    s, p, o = supposed
+    return Explanation(
+        conclusion=(s, DIFFERENT_FROM, o) if p == SAME_AS else None,
+        support=support,
+        steps=(),
+        text=denial(supposed, (*support, supposed), words or reasoner.words),
+        supposed=supposed,
+    )
+
+
+def _contrary(triple: Triple) -> list[Triple]:
+    """A graph that says that a triple about individuals does not hold."""
+    s, p, o = triple
+    if p == TYPE:
+        return [(s, TYPE, _DENIED), (_DENIED, iri("owl:complementOf"), o)]
+    if p in (SAME_AS, DIFFERENT_FROM):
+        return [(s, DIFFERENT_FROM if p == SAME_AS else SAME_AS, o)]
+    return [
+        (_DENIED, TYPE, iri("owl:NegativePropertyAssertion")),
+        (_DENIED, iri("owl:sourceIndividual"), s),
+        (_DENIED, iri("owl:assertionProperty"), p),
+        (_DENIED, iri("owl:targetValue" if is_literal(o) else "owl:targetIndividual"), o),
+    ]
+
+
+def _support(reasoner: Reasoner, goal: Sequence[Triple], patience_s: float) -> tuple[Triple, ...] | None:
+    """The asserted triples from which a graph follows, as few as are found in time; None without a proof."""
     anew = len(reasoner) <= _SMALL
-    if not entails(reasoner, [triple], Effort(patience_s, anew=anew)):
+    if not entails(reasoner, goal, Effort(patience_s, anew=anew)):
         return None
     known = set(reasoner.asserted())
     effort = Effort(patience_s, traced=True, anew=anew)
-    entails(reasoner, [triple], effort)
+    entails(reasoner, goal, effort)
     support = [one for one in effort.seen if one in known]
-    if not _suffice(support, triple):
+    if not _suffice(support, goal):
         support = sorted(known)
-    support = _shrunk(support, lambda some: _suffice(some, triple), time.thread_time() + patience_s)
-    text = following(triple, support, words or reasoner.words)
-    return Explanation(conclusion=triple, support=tuple(support), steps=(), text=text)
+    return tuple(_shrunk(support, lambda some: _suffice(some, goal), time.thread_time() + patience_s))
 
 
 def empty_classes(reasoner: Reasoner, classes: Iterable[Term], patience_s: float) -> Iterator[Explanation]:
@@ -101,9 +145,9 @@ def _suffices_for_empty(cls: Term, triples: Sequence[Triple]) -> bool:
         return False
 
 
-def _suffice(triples: Sequence[Triple], goal: Triple) -> bool:
+def _suffice(triples: Sequence[Triple], goal: Sequence[Triple]) -> bool:
     try:
-        return entails(Reasoner(triples), [goal], Effort(PATIENCE_S))
+        return entails(Reasoner(triples), goal, Effort(PATIENCE_S))
     except Inconsistent:
         return False
 

@@ -61,9 +61,11 @@ def denial(supposed: Triple, support: Sequence[Triple], words: Words) -> str:
     others = [triple for triple in support if triple != supposed]
     others.sort(key=speaker.axioms.is_axiom)  # the facts first
     claim = speaker.deny(supposed)
-    if claim in map(speaker.say, others):  # as of the other truth value of a property that has one value
+    reasons = speaker.reasons(others, supposed)
+    is_said = claim in map(speaker.say, others)
+    if is_said or reasons == [f"{claim} (asserted)"]:
         return f"{claim} (asserted)."
-    return _because(claim, speaker.reasons(others, supposed))
+    return _because(claim, reasons)
 
 
 def said(triple: Triple, words: Words) -> str:

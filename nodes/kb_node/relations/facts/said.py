@@ -57,9 +57,12 @@ def denial(space: Space, said: Fact) -> Relation | None:
     """
     name, relation, other_name = said
     solid, other = space.solids.get(name), space.solids.get(other_name)
-    if solid is None or other is None or solid is other or not other.is_measured:
+    if name == other_name:
+        reason: str | None = "nothing is on, in or inside itself"
+    elif solid is None or other is None or not other.is_measured:
         return None
-    reason = _against(space, relation, solid, other)
+    else:
+        reason = _against(space, relation, solid, other)
     if reason is None:
         return None
     spoken = SPOKEN[relation].replace("is ", "to be ", 1)
@@ -68,7 +71,7 @@ def denial(space: Space, said: Fact) -> Relation | None:
         subject=name,
         object=other_name,
         holds=False,
-        gap_m=round(measures.gap(solid, other), 4),
+        gap_m=0.0 if solid is None or other is None else round(measures.gap(solid, other), 4),
         share=0.0,
         text=f"{name} was said {spoken} {other_name}; {reason}",
     )

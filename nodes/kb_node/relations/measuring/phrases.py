@@ -56,6 +56,8 @@ def height_over(gap_m: float) -> str:
 def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
     """The measurement behind a relation, as a clause."""
     match relation:
+        case "isOn" if made.holds and made.share == 0.0:
+            return f"nothing else bears it, and it rests against a steep side of {other.name}"
         case "isOn":
             return (
                 f"its bottom is {height_over(made.gap_m)} a surface of {other.name},"

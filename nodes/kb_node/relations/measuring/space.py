@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final, NamedTuple
@@ -216,17 +217,21 @@ class Space:
 
         To a centimetre all are equally near; of those the highest counts. The floor of its place, `floor_m`
         below it, is one of them, and so is what it leans on. What is inside something is on no more than
-        what is in there with it.
+        what is in there with it. What none of these bears rests on what it leans on.
         """
         limits = self.limits
         if container is not None:
             below = [found for found in below if self._is_within(found[0], container[0])]
-        gaps = [made.gap_m for _, made in below if not made.holds]
+        leaning = [found for found in below if not found[1].holds]
+        gaps = [made.gap_m for _, made in leaning]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
+        on_floor = floor_m is not None and abs(floor_m) <= limits.gap_m
         if not below:
-            return ()
+            least = min((side.bottom for side, _ in leaning), default=math.inf)
+            may_stand = on_floor or (floor_m is None and solid.bottom <= least + limits.gap_m)
+            return () if may_stand else tuple(sorted(map(_held, leaning), key=_by_name))
         gaps += [made.gap_m for _, made in below]
-        if floor_m is not None and abs(floor_m) <= limits.gap_m:
+        if floor_m is not None and on_floor:
             gaps.append(floor_m)
         nearest = min(gaps, key=_nearness)
         level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
@@ -260,6 +265,16 @@ def _area(solid: Solid) -> tuple[float, str]:
 
 def _volume(solid: Solid) -> tuple[float, str]:
     return (solid.volume, solid.name)
+
+
+def _held(leaning: Found) -> Found:
+    """It holds by its steep sides; no part of the base is over them."""
+    side, made = leaning
+    return side, made._replace(holds=True, share=0.0)
+
+
+def _by_name(found: Found) -> str:
+    return found[0].name
 
 
 def _nearness(gap_m: float) -> tuple[float, float]:

@@ -5,7 +5,15 @@ import time
 import pytest
 
 from nodes.kb_node.reasoner import Reasoner, entails
-from nodes.kb_node.reasoner.entailment.explaining import _shrunk, nearby, why_entailed
+from nodes.kb_node.reasoner.entailment.explaining import (
+    _contrary,
+    _shrunk,
+    nearby,
+    why_entailed,
+    why_excluded,
+)
+from nodes.kb_node.reasoner.refutation import refute
+from nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS
 from tests.kb_node.reasoner.graphs import household, triple, triples
 
 TBOX = """
@@ -48,6 +56,67 @@ def test_the_support_is_enough_and_no_less_is(goal, text):
     assert entails(Reasoner(found.support), [goal])
     for left_out in found.support:
         assert not entails(Reasoner([one for one in found.support if one != left_out]), [goal])
+
+
+DENYING = """
+:Mug rdfs:subClassOf [ owl:onProperty :part ; owl:someValuesFrom :Handle ] . :Handle owl:disjointWith :Soft .
+:Plush rdfs:subClassOf [ owl:onProperty :part ; owl:allValuesFrom :Soft ] .
+:Person owl:equivalentClass [ owl:unionOf ( :Adult :Child ) ] .
+:Robot owl:disjointWith :Adult , :Child .
+:knows a owl:ReflexiveProperty . :avoids owl:propertyDisjointWith :knows .
+:mug1 a :Mug . :ann a :Person . :bob a :Adult ; :avoids :ann .
+"""
+
+
+@pytest.mark.parametrize(
+    ("supposed", "text"),
+    [
+        (
+            ":mug1 a :Plush",
+            "mug1 is not a Plush, because it is a Mug (asserted), every Mug has a part that is a",
+        ),
+        (
+            ":ann a :Robot",
+            "ann is not a Robot, because it is a Person (asserted), a Person is whatever is an ",
+        ),
+        (
+            ":ann :avoids :ann",
+            "ann does not avoid itself, because everything knows itself, and nothing that avoids something",
+        ),
+        (
+            ":bob owl:sameAs :ann",
+            "bob is different from ann, because bob avoids ann (asserted), everything knows",
+        ),
+    ],
+)
+def test_what_cannot_be_although_no_rule_excludes_it(supposed, text):
+    reasoner, supposed = Reasoner(triples(DENYING)), triple(supposed)
+    assert refute(reasoner, supposed) is None
+    found = why_excluded(Reasoner(nearby(reasoner, supposed[::2]), closed=reasoner.closed), supposed)
+    assert found.text.startswith(text), found.text
+    s, p, o = supposed
+    assert found.conclusion == ((s, DIFFERENT_FROM, o) if p == SAME_AS else None)
+    assert (found.supposed, found.steps) == (supposed, ())
+    assert set(found.support) <= set(reasoner.asserted())
+    contrary = _contrary(supposed)
+    assert entails(Reasoner(found.support), contrary)
+    for left_out in found.support:
+        assert not entails(Reasoner([one for one in found.support if one != left_out]), contrary)
+
+
+@pytest.mark.parametrize(
+    "supposed",
+    [
+        ":mug1 a :Robot",
+        ":ann :knows :bob",
+        ":bob owl:sameAs :mug1",
+        ":bob owl:differentFrom :ann",
+        ":ann :said 1",
+        ":Mug rdfs:subClassOf :Plush",
+    ],
+)
+def test_what_may_be_is_not_excluded(supposed):
+    assert why_excluded(Reasoner(triples(DENYING)), triple(supposed)) is None
 
 
 @pytest.mark.parametrize("goal", [":mug1 :on :mug2", ":mug1 a :Other", ":Cup rdfs:subClassOf :Mug"])

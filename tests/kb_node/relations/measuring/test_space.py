@@ -135,3 +135,35 @@ def test_bringing_it_up_to_date_is_building_it_anew(changes):
 def named(found):
     container, supports, place = found
     return [f and (f[0].name, f[1]) for f in (container, *supports, place)]
+
+
+def tilted(degrees):
+    half = math.radians(degrees) / 2
+    return (math.cos(half), 0.0, math.sin(half), 0.0)
+
+
+def boards(degrees=50.0, height=1.0):
+    """Two boards, a metre wide, that meet in a valley at x = 0."""
+    x, z = 0.5 * math.cos(math.radians(degrees)), 0.5 * math.sin(math.radians(degrees))
+    size = (1.0, 1.0, 0.02)
+    return [
+        thing("board1", (-x, 0.0, height + z), "box", turn=tilted(degrees), size=size),
+        thing("board2", (x, 0.0, height + z), "box", turn=tilted(-degrees), size=size),
+    ]
+
+
+def test_what_steep_sides_hold_is_on_them():
+    ball = thing("ball1", (0.0, 0.0, 1.09))
+    space = Space([ROOM, *boards(), ball])
+    supports = space.whereabouts(space.solids["ball1"]).supports
+    assert [(side.name, made.holds, made.share) for side, made in supports] == [
+        ("board1", True, 0.0),
+        ("board2", True, 0.0),
+    ]
+
+
+def test_what_leans_and_stands_on_the_floor_is_on_nothing():
+    low = boards(height=0.0)
+    for there in ([ROOM, *low], low):  # also where no floor is known
+        space = Space([*there, thing("ball1", (-0.235, 0.0, 0.0))])
+        assert space.whereabouts(space.solids["ball1"]).supports == ()

@@ -1,0 +1,142 @@
+"""The file that `semmap backup` makes: the rows of a journal, each with its digest.
+
+A file is `MAGIC` and a sequence of frames, each 4 bytes of length (big-endian) and a message. A row that is
+large is in several pieces, one after another.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import deque
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO, Final, Literal
+
+import msgspec
+from msgspec import Struct
+
+from schemas.errors import BadFile
+
+MAGIC: Final = b"semmap backup 1\n"
+_LENGTH: Final = 4
+
+Kind = Literal["tbox", "beginning", "snapshot", "commit", "checkpoint"]
+
+
+class Opening(Struct, frozen=True, kw_only=True, tag="opening"):
+    """Which map it is, and as of which commit."""
+
+    map_id: str
+    """The digest of the map's very first commit, in hexadecimal."""
+    begun_ns: int
+    """When that was made."""
+    first: int
+    """The first commit that is there, not only in a snapshot."""
+    last: int
+    digest: str
+    """That of all commits up to the last."""
+    stamp_ns: int
+    """When the last one was made."""
+    chain: bytes = b""
+    """The digest of what was before the first."""
+
+
+class Piece(Struct, frozen=True, kw_only=True, tag="piece", omit_defaults=True):
+    """A part of a row's content; `more` says that another part follows."""
+
+    kind: Kind
+    seq: int
+    id: str = ""
+    digest: bytes
+    content: bytes
+    more: bool = False
+
+
+class End(Struct, frozen=True, kw_only=True, tag="end"):
+    """Nothing is missing."""
+
+    last: int
+
+
+Frame = Opening | Piece | End
+_encoder = msgspec.msgpack.Encoder()
+_decoder = msgspec.msgpack.Decoder(Frame)
+
+
+class BackupPart(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Some of the file; what comes after it is asked for by `next`, which is empty at the end."""
+
+    content: bytes
+    next: str = ""
+
+
+def framed(frame: Frame) -> bytes:
+    """A frame as it stands in the file."""
+    message = _encoder.encode(frame)
+    return len(message).to_bytes(_LENGTH, "big") + message
+
+
+def read(file: Path) -> Iterator[Opening | Piece]:
+    """What is in a backup: the opening, then the rows, each whole and as its digest says.
+
+    Raises BadFile for what is no backup, or is not whole, or damaged.
+    """
+    try:
+        with file.open("rb") as opened:
+            if opened.read(len(MAGIC)) != MAGIC:
+                raise BadFile(f"{file} is not a backup of a map")
+            yield from _rows(file, opened)
+    except OSError as error:
+        raise BadFile(f"{file} cannot be read: {error.strerror}") from None
+
+
+def verify(file: Path) -> Opening:
+    """The opening of a backup that is whole. Raises BadFile."""
+    rows = read(file)
+    opening = next(rows)
+    assert isinstance(opening, Opening)
+    deque(rows, maxlen=0)
+    return opening
+
+
+def _rows(file: Path, opened: BinaryIO) -> Iterator[Opening | Piece]:
+    opening = _frame(file, opened)
+    if not isinstance(opening, Opening):
+        raise damaged(file)
+    yield opening
+    chain, last = opening.chain, opening.first - 1
+    parts: list[bytes] = []
+    begun: tuple[str, int] | None = None
+    while isinstance(frame := _frame(file, opened), Piece):
+        if begun != (frame.kind, frame.seq):  # a checkpoint that gave way to a newer one meanwhile
+            parts, begun = [], (frame.kind, frame.seq)
+        parts.append(frame.content)
+        if frame.more:
+            continue
+        row = msgspec.structs.replace(frame, content=b"".join(parts))
+        parts, begun = [], None
+        before = chain if row.kind == "commit" else b""
+        if hashlib.blake2b(before + row.content, digest_size=16).digest() != row.digest:
+            raise damaged(file)
+        if row.kind == "commit":
+            if row.seq != last + 1:
+                raise damaged(file)
+            chain, last = row.digest, row.seq
+        yield row
+    if not isinstance(frame, End) or frame.last != last or (last and chain.hex() != opening.digest):
+        raise damaged(file)
+
+
+def _frame(file: Path, opened: BinaryIO) -> Frame:
+    length = opened.read(_LENGTH)
+    message = opened.read(int.from_bytes(length, "big"))
+    try:
+        frame: Frame = _decoder.decode(message)
+        return frame
+    except msgspec.MsgspecError:
+        raise damaged(file) from None
+
+
+def damaged(file: Path) -> BadFile:
+    """What to raise for a backup that is not as it was written."""
+    return BadFile(f"{file} is damaged, or a part of it is missing; use another backup")

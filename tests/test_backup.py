@@ -1,0 +1,92 @@
+"""Backup, restore and compact, of whole systems that go on meanwhile."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+
+import pytest
+
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.kb_node.storage.seed import seed
+from ontology import HOUSEHOLD_TTL
+from schemas import backups, errors
+from tests.conftest import running, until
+from tests.kb_node.home import chair, transaction
+
+SMALL = ("--abox", "none", "--no-sim", "--no-record")
+DAY_NS = 86_400 * 1_000_000_000
+
+
+def test_a_backup_of_a_system_that_goes_on_is_a_map_of_its_own(tmp_path):
+    file, ended, added = tmp_path / "map.backup", threading.Event(), []
+    with running(tmp_path / "one", *SMALL) as system:
+
+        def add():
+            with system.client() as client:
+                while not ended.is_set():
+                    added.append((reply := client.add("Cup", at=(len(added), 1.0, 0.0))).commit)
+                    assert reply.names
+
+        adding = threading.Thread(target=add)
+        adding.start()
+        until(lambda: len(added) > 20, "cups")
+        assert "verified" in system.cli("backup", file)
+        ended.set()
+        adding.join()
+        last = backups.verify(file).last
+        assert added[0] < last < added[-1] + 1
+        assert "is there already" in system.cli("backup", file, status=2)
+        with system.client() as client:
+            assert client.backup(file, overwrite=True).last == added[-1]
+            last, there = added[-1], {entity.name for entity in client.list()}
+        running_already = system.cli("restore", file, "--data", tmp_path / "one", "--replace", status=1)
+        assert "a system is already running on" in running_already
+        told = system.cli("restore", file, "--data", tmp_path / "two")
+        assert f"as it was after commit {last} " in told
+        assert (tmp_path / "two" / FILENAME).stat().st_mode & 0o777 == 0o600
+    with running(tmp_path / "two", *SMALL) as system, system.client() as client:
+        assert {entity.name for entity in client.list()} == there
+        assert client.history(limit=1)[0].seq == last
+        assert client.add("Cup", at=(0.0, 5.0, 0.0)).commit == last + 1
+
+
+def test_compacting_a_system_that_goes_on(tmp_path, monkeypatch):
+    now_ns = time.time_ns()
+    with monkeypatch.context() as patch:
+        patch.setattr("time.time_ns", lambda: now_ns - 41 * DAY_NS)
+        seed(tmp_path, HOUSEHOLD_TTL, None)
+        journal = Journal(tmp_path / FILENAME)
+        semantic_map = SemanticMap(journal)
+        for day in range(40, 0, -1):
+            patch.setattr("time.time_ns", lambda day=day: now_ns - day * DAY_NS)
+            one = chair(f"chair{day}", at=(3.0 * day, 2.0, 0.0))
+            semantic_map.commit(transaction(day, one, reason=f"{day} days ago", verb="add"))
+    first, last = journal.last - 39, journal.last
+    journal.close()
+    with running(tmp_path, *SMALL) as system, system.client() as client:
+        dry = json.loads(system.cli("compact", "--dry-run", "--format", "json"))
+        assert dry["dry_run"]
+        assert "would become a snapshot" in dry["text"]
+        assert len(client.history(limit=1000)) == last
+        before = {entity.name for entity in client.list()}
+        compacted = client.compact(keep="720h")
+        assert (compacted.first, compacted.commits) == (dry["first"], dry["commits"])
+        assert compacted.first == first + 11
+        history = client.history(limit=1000)
+        assert [commit.seq for commit in history] == list(range(compacted.first - 1, last + 1))
+        assert history[0].reason.startswith("the history begins here, with ")
+        assert {entity.name for entity in client.list()} == before
+        with pytest.raises(errors.Refused, match="has been compacted: the history begins with the map as it"):
+            client.list(as_of=compacted.first - 2)
+        with pytest.raises(errors.Refused, match="cannot be undone: it has been compacted"):
+            client.undo(compacted.first - 2)
+        assert len(client.list(as_of=compacted.first)) == 12
+        client.undo(last)
+        assert "is not an age; examples: 12h, 30d" in system.cli("compact", "--keep", "x", status=2)
+        assert "no commit is older" in system.cli("compact")
+    with running(tmp_path, *SMALL) as system, system.client() as client:
+        assert {entity.name for entity in client.list()} == before - {"chair1"}
+        assert client.history()[0].seq == compacted.first - 1
