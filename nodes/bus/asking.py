@@ -100,21 +100,9 @@ def ask(
     Raises the error of the reply; ForeignReply when nobody else has answered; NoAnswer when nobody serves the
     key for `patience_s` or the one that does takes longer than `timeout_s`.
     """
-    ask_once = partial(
-        _ask,
-        session,
-        prefix,
-        verb,
-        message,
-        kind,
-        timeout_s=timeout_s,
-        patience_s=patience_s,
-        meanwhile=meanwhile,
-        first_hand=first_hand,
-        lifelines=lifelines,
-    )
+    how = (timeout_s, patience_s, meanwhile, first_hand, lifelines)
     try:
-        return ask_once()
+        return _ask(session, prefix, verb, message, kind, *how)
     except errors.Busy as error:
         busy, patience = error, Patience()
     while True:
@@ -124,7 +112,7 @@ def ask(
                 meanwhile()
             time.sleep(min(left_s, 0.1))
         try:
-            return ask_once()
+            return _ask(session, prefix, verb, message, kind, *how)
         except errors.Busy as error:
             busy = error
 
@@ -135,7 +123,6 @@ def _ask(
     verb: str,
     message: Any,
     kind: Any,
-    *,
     timeout_s: float,
     patience_s: float,
     meanwhile: Callable[[], None] | None,

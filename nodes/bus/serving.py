@@ -27,8 +27,8 @@ class Request(Struct, frozen=True):
     """A request as it came: from a query, or from a put that is answered on `semmap/ack`.
 
     `plain`: the reply may be a message that is `Encoded` already. `who` asks, by the key; whether that is
-    proof is for those to say who serve `semmap/as/*/cmd`. `asker` tells askers apart: `who`, or the id of the
-    session, or nothing of those who do not say. `source` is how Zenoh says that, to be passed on.
+    proof is for those to say who serve `semmap/as/*/cmd`. `source` is the session, as Zenoh says that, to be
+    passed on.
     """
 
     verb: str
@@ -37,8 +37,12 @@ class Request(Struct, frozen=True):
     send: Callable[[Any, bool], None] = _send_nowhere
     plain: bool = False
     who: str = ""
-    asker: str = ""
     source: Any = None
+
+    @property
+    def asker(self) -> str:
+        """Tells askers apart: `who`, or the id of the session, or nothing of those who do not say."""
+        return self.who or ("" if self.source is None else str(self.source.source_id.zid))
 
     def read(self, kind: Any) -> Any:
         """The message, of type `kind`. Raises BadRequest."""
@@ -100,7 +104,7 @@ def _request_of_query(
                 for part, which in pieces.cut(content):
                     query.reply(key, part, encoding=encoding, attachment=codec.encode(which))
 
-    return Request(verb, payload, parameters, send, plain=not as_json, who=who, **_from(query, who))
+    return Request(verb, payload, parameters, send, plain=not as_json, who=who, source=query.source_info)
 
 
 def _nothing_to_do() -> None:
@@ -195,15 +199,9 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
                 ack = encode(Ack(id=str(said.id), verb=verb, ok=False, reply=None, error=long))
             acks.put(ack)
 
-        receive(Request(verb, payload, {}, send, **_from(sample)))
+        receive(Request(verb, payload, {}, send, source=sample.source_info))
 
     session.declare_subscriber(f"{prefix}/**", on_put)
-
-
-def _from(message: zenoh.Query | zenoh.Sample, who: str = "") -> dict[str, Any]:
-    """Who sent it: `who`, or the session, if that says so."""
-    source = message.source_info
-    return {"asker": who or ("" if source is None else str(source.source_id.zid)), "source": source}
 
 
 class _Envelope(Struct):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Final, Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -23,10 +23,8 @@ LATEST_S: Final = 10.0
 """Who finds it full is told to come again after as long as the first one has waited, within these [s]."""
 
 
-class _Waiting(NamedTuple, Generic[T]):
-    item: T
-    size: int
-    since_s: float
+_Waiting = tuple[T, int, float]
+"""An item, its size, and since when it waits."""
 
 
 class FairQueue(Generic[T]):
@@ -51,18 +49,18 @@ class FairQueue(Generic[T]):
 
         What is `urgent` comes before everything else.
         """
-        waiting = _Waiting(item, size, time.monotonic())
+        waiting = (item, size, time.monotonic())
         with self._lock:
             if urgent:
                 if len(self._urgent) >= self._each:
-                    return self._again_s(self._urgent, waiting.since_s)
+                    return self._again_s(self._urgent, waiting[2])
                 self._urgent.append(waiting)
                 return None
             own = self._by_asker.get(asker)
             if own is not None and len(own) >= self._each:
-                return self._again_s(own, waiting.since_s)
+                return self._again_s(own, waiting[2])
             if self._count >= self._everyone or (self._count and self._bytes + size > self._size):
-                return self._again_s(self._by_asker[self._next[0]], waiting.since_s)
+                return self._again_s(self._by_asker[self._next[0]], waiting[2])
             if own is None:
                 own = self._by_asker[asker] = deque()
                 self._next.append(asker)
@@ -77,7 +75,7 @@ class FairQueue(Generic[T]):
             return None
         with self._lock:
             if self._urgent:
-                return self._urgent.popleft().item
+                return self._urgent.popleft()[0]
             if urgent_only or not self._next:
                 return None
             asker = self._next.popleft()
@@ -88,9 +86,10 @@ class FairQueue(Generic[T]):
             else:
                 del self._by_asker[asker]
             self._count -= 1
-            self._bytes -= waiting.size
-            return waiting.item
+            item, size, _ = waiting
+            self._bytes -= size
+            return item
 
     @staticmethod
     def _again_s(queue: deque[_Waiting[T]], now_s: float) -> float:
-        return min(max(now_s - queue[0].since_s, SOONEST_S), LATEST_S)
+        return min(max(now_s - queue[0][2], SOONEST_S), LATEST_S)

@@ -60,8 +60,9 @@ class Node:
         self._events: queue.SimpleQueue[_Work] = queue.SimpleQueue()
         self._requests: FairQueue[_Work] = FairQueue()
         self._has_room: Callable[[], bool] = lambda: True
-        self.asker = ""
-        """Who asks for what is being handled, as far as they can be told apart."""
+        self._in_hand: bus.Request | None = None
+        self._is_at_once = False
+        """A request that found nobody waiting is on its way among the events."""
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
         self._timer_numbers = count()
         self._idle: list[Callable[[], None]] = []
@@ -69,6 +70,11 @@ class Node:
         self._stopping = False
         self._heartbeat = Heartbeat(name, session)
         self._lifelines = bus.Lifelines(session)
+
+    @property
+    def asker(self) -> str:
+        """Who asks for what is being handled, as far as they can be told apart."""
+        return "" if self._in_hand is None else self._in_hand.asker
 
     def serve(
         self,
@@ -123,7 +129,11 @@ class Node:
         self._has_room = has_room
 
     def _queue(self, request: bus.Request, handle: _Work, *, urgent: bool = False) -> None:
-        """On a thread of Zenoh's: let a request wait, or refuse it."""
+        """On a thread of Zenoh's: let a request wait, or refuse it; where nobody waits, it is an event."""
+        if not self._is_at_once and not len(self._requests) and self._has_room():
+            self._is_at_once = True
+            self._events.put(partial(self._handle_at_once, handle))
+            return
         size = min(len(request.payload), bus.PIECE)  # what came in pieces is bounded by itself
         again_s = self._requests.put(request.asker, handle, size=size, urgent=urgent)
         if again_s is None:
@@ -351,7 +361,7 @@ class Node:
                 for handle in self._idle:
                     self._guard(handle)
                 heartbeat.beat()
-                if self._requests and self._has_room():
+                if len(self._requests) and not self._is_at_once and self._has_room():
                     continue
             due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
             wait_s = max(0.0, due_s - time.monotonic())
@@ -360,8 +370,14 @@ class Node:
             except queue.Empty:
                 continue
 
+    def _handle_at_once(self, handle: _Work) -> None:
+        self._is_at_once = False
+        handle()
+
     def _take_request(self) -> bool:
         """Handle the request whose turn it is, if there is one, and room for it."""
+        if self._is_at_once:  # which came before those that wait
+            return False
         handle = self._requests.take(urgent_only=not self._has_room())
         if handle is not None:
             self._guard(handle)
@@ -384,7 +400,7 @@ class Node:
     def _handle(
         self, request: bus.Request, handlers: Handlers, admit: Admit = lambda who, message: message
     ) -> None:
-        self.asker = request.asker
+        self._in_hand = request
         try:
             if request.verb not in handlers:
                 raise errors.UnknownVerb(

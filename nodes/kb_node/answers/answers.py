@@ -11,6 +11,7 @@ from typing import NamedTuple
 from nodes.kb_node import proofs
 from nodes.kb_node.answers import asked_terms
 from nodes.kb_node.documents import rdf
+from nodes.kb_node.documents.abox_document import undeclared_classes
 from nodes.kb_node.owlrl.second_opinion import owlrl_faults
 from nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
 from nodes.kb_node.relations.facts import said
@@ -157,7 +158,8 @@ def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
         individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
         for individual in individuals - {s for s, _, _ in semantic_map.tbox}:
             following += worth_saying(semantic_map.reasoner.inferred(individual, None, None))
-    written = abox + following
+    declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, semantic_map.classes)]
+    written = [*abox, *following, *declared]
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
     made = Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
     if not inferred:

@@ -12,6 +12,10 @@ from tests.kb_node.home import chair, transaction, turtle
 
 SYNTAXES = ["rdfxml", "turtle", "ntriples", "jsonld"]
 
+MAPS_OWN = (
+    "only the map declares {}: nothing can be added or listed by such classes; to load classes use --tbox"
+)
+
 
 @pytest.fixture
 def furnished(semantic_map):
@@ -136,3 +140,17 @@ def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
     ):
         assert {"chair1 type lab:Chair", "chair1 type Seat"} <= set(said)
     home.close(semantic_map)
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_an_export_declares_the_classes_that_only_its_map_has(semantic_map, syntax):
+    said = turtle(":chair1 a dm:Chair ; dm:hasJoint [ a :swivel ] . :swivel a owl:Class .")
+    kept, _, _ = sort_out(said, semantic_map.classes, skip_unknown=False)
+    semantic_map.commit(transaction(1, kept))
+    document = answers.export(answers.picture(semantic_map, inferred=False), syntax)
+    triples = rdf.parse(document.content, "export")
+    assert len(triples) == len(set(triples)) == document.triples
+    again, skipped, notes = sort_out(triples, semantic_map.classes, skip_unknown=False)
+    assert canonical(again) == canonical(kept)
+    assert skipped == []
+    assert notes[-1] == MAPS_OWN.format("swivel")

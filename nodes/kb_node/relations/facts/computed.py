@@ -21,8 +21,8 @@ Known = Callable[[str], Entity | None]
 class Step(NamedTuple):
     """What a change of the map does: computed facts come and go, asserted ones are denied or no longer."""
 
-    come: set[Triple]
-    gone: set[Triple]
+    come: Collection[Triple]
+    gone: Collection[Triple]
     denied: set[Triple]
     undenied: set[Triple]
 
@@ -45,12 +45,21 @@ class Computed:
         """Whether the TBox has no property that could be computed."""
         return not self._relations
 
+    def placed(self) -> None:
+        """All solids are where they are, though not all facts have been worked out."""
+        self._was_flat = self.facts.space.is_flat
+
+    def of(self, names: Iterable[str], known: Known) -> set[Triple]:
+        """The triples about some names as subjects."""
+        facts = self.facts
+        return set(self._triples([(name, *about) for name in names for about in facts.of(name)], known))
+
     def begin(self, known: Known, said: Iterable[Triple]) -> Step:
         """All facts are new, and so is all that is said of places."""
         self._was_flat = self.facts.space.is_flat
         denied = {t for t in self._take_up((), _of_places(said)) if self._is_so_no_more(t, known)}
         self.denied |= denied
-        return Step(self._triples(list(self.facts), known), set(), denied, set())
+        return Step(self._triples(list(self.facts), known), (), denied, set())
 
     def after(
         self,
@@ -65,10 +74,14 @@ class Computed:
         `before` knows the entities as they were.
         """
         now = {entity.name: entity for entity in changed}
-        reborn = [e.name for e in changed if (was := before(e.name)) is not None and was.iri != e.iri]
+        were = list(map(before, now))
+        reborn = [
+            e.name for e, was in zip(now.values(), were, strict=True) if was is not None and was.iri != e.iri
+        ]
         old = self.facts.update((), reborn) if reborn else None
         shifted = self.facts.shifted if reborn else frozenset()
-        gone, come = self.facts.update([e for e in changed if not _stays(before(e.name), e)], removed)
+        moved = [e for e, was in zip(now.values(), were, strict=True) if was is None or not _stays(was, e)]
+        gone, come = self.facts.update(moved, removed)
         if old is not None:
             gone, come = gone | old.gone, come | old.come
         shifted |= self.facts.shifted
@@ -79,23 +92,35 @@ class Computed:
         went = self._triples(gone, before)
         came = self._triples(come, as_it_is)
         retracted, inserted = _of_places(retracted), _of_places(inserted)
-        came.update(triple for triple in retracted if self._still_holds(triple, as_it_is))
+        if still := [triple for triple in retracted if self._still_holds(triple, as_it_is)]:
+            came = {*came, *still}
+        if went:
+            came, went = set(came) - set(went), set(went) - set(came)
         touched = {*removed, *now, *shifted}
         newly, no_longer = self._judge(touched, gone | come, retracted, inserted, as_it_is)
-        return Step(came - went, went - came, newly, no_longer)
+        return Step(came, went, newly, no_longer)
 
-    def _triples(self, facts: Collection[Fact], known: Known) -> set[Triple]:
-        """Those about entities, by properties that the TBox has."""
+    def _triples(self, facts: Collection[Fact], known: Known) -> Collection[Triple]:
+        """Those about entities, by properties that the TBox has. Each fact is there once."""
+        if not facts:
+            return ()
+        names, relations, others = zip(*facts, strict=True)
+        found = {name: known(name) for name in {*names, *others}}
+        terms = {name: v.iri(entity.iri) for name, entity in found.items() if entity is not None}
+        if len(terms) < len(found) or not self._relations.issuperset(relations):
+            facts = [
+                fact for fact in facts if fact[0] in terms and fact[1] in self._relations and fact[2] in terms
+            ]
+            return self._triples(facts, known)
         properties = {relation: v.dm(relation) for relation in self._relations}
-        terms: dict[str, Term] = {}
-        for name in {name for fact in facts for name in (fact[0], fact[2])}:
-            if (entity := known(name)) is not None:
-                terms[name] = v.iri(entity.iri)
-        return {
-            (terms[name], properties[relation], terms[other])
-            for name, relation, other in facts
-            if relation in properties and name in terms and other in terms
-        }
+        return list(
+            zip(
+                map(terms.__getitem__, names),
+                map(properties.__getitem__, relations),
+                map(terms.__getitem__, others),
+                strict=True,
+            )
+        )
 
     def _still_holds(self, triple: Triple, known: Known) -> bool:
         """Whether what is no longer asserted is computed."""
@@ -168,6 +193,6 @@ def _names(triple: Triple) -> tuple[str, str]:
     return v.entity_name(triple[0]), v.entity_name(triple[2])
 
 
-def _stays(was: Entity | None, now: Entity) -> bool:
+def _stays(was: Entity, now: Entity) -> bool:
     """Whether nothing that relations depend on is otherwise: a reference changed, or a property."""
-    return was is not None and Placed.of(was) == Placed.of(now)
+    return Placed.of(was) == Placed.of(now)
