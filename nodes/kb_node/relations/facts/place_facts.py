@@ -148,10 +148,13 @@ class Facts:
         """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
         space = self.space
         for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
-            survey = Survey(space, some)
+            survey = Survey(space, some) if len(some) >= MANY else None
             with space.remembering():
                 for kept in self._kept:
-                    kept.take(space, some, survey, gone, come)
+                    if survey is None:
+                        kept.work_out(space, [solid.name for solid in some], gone, come)
+                    else:
+                        kept.take(space, some, survey, gone, come)
             yield
 
     def forget(self) -> None:
