@@ -75,6 +75,7 @@ def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
     assert repair(tmp_path / "other") == "nothing is damaged: the map continues from commit 8"
 
 
+@pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)
 def test_a_file_that_is_there_is_kept_unless_that_is_wanted(tmp_path, semantic_map):
     file = tmp_path / "b"
     file.write_text("precious")
@@ -135,6 +136,7 @@ def attempt(file, other):
     return "harmless" if kept == list(range(journal.first, 9)) else f"unnoticed: {kept}"
 
 
+@pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)
 def test_a_map_that_is_there_is_moved_aside_or_stays(tmp_path, semantic_map):
     backed_up(semantic_map, tmp_path / "b")
     other = tmp_path / "other"
