@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
+from contextlib import suppress
 from itertools import chain
 
 from nodes.kb_node.reasoner import datatypes
@@ -173,10 +174,13 @@ class View:
                     yield edge
         elif o is not None:
             yield from store.into.all(o) if p is None else store.into.of(o, p)
+        elif p is not None:
+            edge, index = NONE, store.predicate.index
+            with suppress(ValueError):  # there is no further one
+                while True:
+                    yield (edge := index(p, edge + 1))
         else:
-            for edge, predicate in enumerate(store.predicate):
-                if predicate != NONE and (p is None or predicate == p):
-                    yield edge
+            yield from (edge for edge, predicate in enumerate(store.predicate) if predicate != NONE)
 
     def _triple(self, edge: int) -> Triple:
         store = self._store
