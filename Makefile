@@ -35,7 +35,8 @@ test: setup  ## The tests, under 5 minutes
 test-long: setup  ## The tests that take longer too
 	$(BIN)/pytest -n 2
 
-test-faults: setup  ## Kill, stop, forge: nothing acknowledged may be lost or done twice; some ten minutes
+test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
+	$(BIN)/python -m tests.faults.mutations 20000
 	$(BIN)/python -m tests.faults
 
 lint: setup  ## Style, types and the rules of who imports whom

@@ -58,7 +58,7 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
 
     VERB: ClassVar[str] = "snapshot"
     after: str = ""
-    limit: Annotated[int, Meta(ge=1)] | None = None
+    limit: Annotated[int, Meta(ge=1, le=1_000_000)] | None = None
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -98,7 +98,7 @@ class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown
 
     VERB: ClassVar[str] = "recall"
 
-    seqs: Annotated[tuple[int, ...], Meta(max_length=100)]
+    seqs: Annotated[tuple[Annotated[int, Meta(ge=0, le=1 << 53)], ...], Meta(max_length=100)]
 
 
 class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -171,7 +171,7 @@ class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
     source: Source
     agent: str = ""
     reason: str = ""
-    commit: int | None = None
+    commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
 
 

@@ -27,6 +27,7 @@ from schemas.entities import (
     Text,
     Value,
     Vector,
+    Word,
     composed,
 )
 from schemas.explanations import Explanation
@@ -62,10 +63,10 @@ class Command(
     The same `id` sent twice is executed once, and answered twice with the same result.
     """
 
-    id: str = ""
+    id: Annotated[str, Meta(max_length=200)] = ""
     source: Source = "operator"
-    agent: str = ""
-    reason: str = ""
+    agent: Annotated[str, Meta(max_length=200)] = ""
+    reason: Remark = ""
 
     def __post_init__(self) -> None:
         """Names are compared in composed form, however they were typed."""
@@ -109,7 +110,7 @@ class Update(Command[Changed], frozen=True, tag="update"):
     names, and what stands on that.
     """
 
-    name: str
+    name: Word
     class_: ClassName | None = field(name="class", default=None)
     at: Vector | None = None
     yaw: Angle | None = None
@@ -124,7 +125,7 @@ class Update(Command[Changed], frozen=True, tag="update"):
     unset: tuple[Text, ...] = ()
     force: bool = False
     carry: bool = False
-    leave: tuple[str, ...] = ()
+    leave: tuple[Word, ...] = ()
     dry_run: bool = False
 
 
@@ -137,7 +138,7 @@ class Set(Command[Changed], frozen=True, tag="set"):
     `if_unset` unless there is none.
     """
 
-    name: str
+    name: Word
     property: Text
     values: tuple[Value, ...]
     if_is: Value | None = None
@@ -149,7 +150,7 @@ class Set(Command[Changed], frozen=True, tag="set"):
 class Unset(Command[Changed], frozen=True, tag="unset"):
     """Take back one value of an entity's property, or all of them; `if_is` as for `set`."""
 
-    name: str
+    name: Word
     property: Text
     value: Value | None = None
     if_is: Value | None = None
@@ -161,7 +162,7 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
     LARGEST: ClassVar[int] = MANY
 
-    names: tuple[str, ...]
+    names: tuple[Word, ...]
     dry_run: bool = False
 
     def __post_init__(self) -> None:
@@ -191,7 +192,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     LARGEST: ClassVar[int] = DOCUMENT
 
     content: bytes
-    filename: str = ""
+    filename: Annotated[str, Meta(max_length=5000)] = ""
     replace: bool = False
     skip_unknown: bool = False
     strict: bool = False
@@ -239,9 +240,9 @@ class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
     `viewpoint` adds left of, right of, in front of and behind, as seen from there.
     """
 
-    name: str
-    other: str | None = None
-    viewer: str | None = None
+    name: Word
+    other: Word | None = None
+    viewer: Word | None = None
     viewpoint: ViewPoint | None = None
     as_of: When | None = None
 
@@ -253,7 +254,7 @@ class Get(Command[Described], frozen=True, tag="get"):
     it is now only).
     """
 
-    name: str
+    name: Word
     as_of: When | None = None
     where: bool = False
 
@@ -267,7 +268,7 @@ class Check(Command[Checked], frozen=True, tag="check"):
 class Infer(Command[Inferred], frozen=True, tag="infer"):
     """The inferred facts about one individual, or about all entities."""
 
-    name: str | None = None
+    name: Word | None = None
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
@@ -277,8 +278,8 @@ class Explain(Command[Explanation], frozen=True, tag="explain"):
     by refutation: two are different if their being the same would be a contradiction.
     """
 
-    name: str
-    predicate: str
+    name: Word
+    predicate: Word
     value: str
     negated: bool = False
 
@@ -290,8 +291,8 @@ class Could(Command[Possible], frozen=True, tag="could"):
     property's range.
     """
 
-    name: str
-    predicate: str
+    name: Word
+    predicate: Word
     value: str
 
 
@@ -320,7 +321,7 @@ class Status(Command[SystemStatus], frozen=True, tag="status"):
 class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     """The newest commits, or those that touched an entity, in order; `since` and `until` are included."""
 
-    name: str | None = None
+    name: Word | None = None
     since: When | None = None
     until: When | None = None
     limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
@@ -329,7 +330,7 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
     """When, where and by whom an entity was last seen or placed, even if it has been removed."""
 
-    name: str
+    name: Word
 
 
 class Undo(Command[Changed], frozen=True, tag="undo"):
@@ -430,11 +431,11 @@ class Move(Command[Moved], frozen=True, tag="move"):
     rigid body, and the map follows all of them in one commit; not those that `leave` names.
     """
 
-    name: str
+    name: Word
     at: Vector
     yaw: Angle | None = None
     carry: bool = False
-    leave: tuple[str, ...] = ()
+    leave: tuple[Word, ...] = ()
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):
@@ -456,7 +457,7 @@ class Reset(Command[Done], frozen=True, tag="reset"):
 class TakePicture(Command[Picture], frozen=True, tag="picture"):
     """A picture of the scene, from one of the world's cameras or from above."""
 
-    camera: str | None = None
+    camera: Word | None = None
     width: Annotated[int, Meta(ge=16, le=4096)] = 960
     height: Annotated[int, Meta(ge=16, le=4096)] = 720
 

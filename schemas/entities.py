@@ -32,6 +32,8 @@ Length = Annotated[float, Meta(gt=0.0, le=REACH_M)]
 Unit = Annotated[float, Meta(ge=-1.001, le=1.001)]
 Angle = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Text = Annotated[str, Meta(min_length=1, max_length=1000)]
+Word = Annotated[str, Meta(max_length=1000)]
+"""What is looked up: a name, a class or a reference, as somebody wrote it."""
 Remark = Annotated[str, Meta(max_length=1000)]
 Probability = Annotated[float, Meta(ge=0.0, le=1.0)]
 

@@ -28,7 +28,11 @@ _LASTS_S = {
 }
 """How long a time is, by how much of it is written; with a fraction of a second it is exact."""
 
-When = Annotated[int, Meta(ge=0)] | Annotated[float, Meta(ge=0.0)] | Annotated[str, Meta(min_length=1)]
+When = (
+    Annotated[int, Meta(ge=0)]
+    | Annotated[float, Meta(ge=0.0)]
+    | Annotated[str, Meta(min_length=1, max_length=100)]
+)
 """As it is written: a commit's number, seconds since 1970, a stamp as replies have it (`stamp_ns`), or ISO
 8601; without an offset it is local time, that of the client where one of ours sends it, and without a date
 it is today's.

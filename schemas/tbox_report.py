@@ -16,7 +16,7 @@ class Quickness(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How long it takes, on the machine and at the moment of asking."""
 
     load_s: float
-    """From the triples to a reasoner that is ready for changes [s]."""
+    """From the triples to a reasoner that is ready for changes, in the processor's time [s]."""
     add_p50_ms: float | None
     """To add a typical individual and check the result, median [ms]; None where none could be added."""
     not_incremental: str = ""

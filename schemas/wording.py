@@ -142,7 +142,9 @@ def _describe(info: inspect.Type | None) -> str:
         case inspect.StrType(pattern=pattern) if pattern == NAME_PATTERN:
             return "a valid name: up to 128 letters, digits, '_', '.' and '-', beginning with a letter or '_'"
         case inspect.StrType(min_length=least, max_length=most):
-            return f"a text{f' of {least} to {most} characters' if least and most else ''}"
+            if most is None:
+                return "a text"
+            return f"a text of {f'{least} to' if least else 'up to'} {most} characters"
         case inspect.BoolType():
             return "true or false"
         case inspect.BytesType():

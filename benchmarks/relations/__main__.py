@@ -12,7 +12,7 @@ from benchmarks.table import Row, lines
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
     """All figures."""
-    on, touches = rightness.against_contacts(scenes)
+    on, touches, steep = rightness.against_contacts(scenes)
     inside = rightness.inside_against_samples(pairs)
     flat = rightness.flat()
     rest = watched.at_rest(watched_s)
@@ -21,6 +21,12 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
     return [
         Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),
         Row(f"touches against contacts, {scenes} settled scenes: F1", touches.f1, "", 0.97, 0.99, more=True),
+        Row(
+            f"isOn of what only steeper contacts bear, {scenes} settled scenes: found",
+            steep.right / max(1, steep.right + steep.missing),
+            "",
+            more=True,
+        ),
         Row(f"isInside against sampled points, {pairs} pairs: F1", inside.f1, "", 0.97, 0.99, more=True),
         Row("the flat: said by hand and computed", 1 - len(flat.missing) / flat.said, "", 1, 1, more=True),
         Row("the flat: computed beyond what was said", len(flat.extra), "facts", 0, 0),

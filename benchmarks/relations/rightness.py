@@ -64,10 +64,15 @@ class Contacts(NamedTuple):
 
     on: Counts
     touches: Counts
+    steep: Counts
+    """Of what no resting contact bears: with what carries it. What is found beyond is counted with `on`."""
 
 
 def against_contacts(scenes: int) -> Contacts:
-    """`isOn` against resting contacts in random settled scenes, and `touches` against all contacts."""
+    """`isOn` against resting contacts in random settled scenes, and `touches` against all contacts.
+
+    What only steeper contacts carry is on what carries it, and is counted by itself.
+    """
     found = [_in_scene(seed) for seed in range(scenes)]
     return Contacts(*(Counts.together(counts) for counts in zip(*found, strict=True)))
 
@@ -87,7 +92,8 @@ def _in_scene(seed: int) -> Contacts:
         if measures.touches(solids[one], solids[other], limits) is not None
     }
     true = {tuple(sorted(pair)) for pair in scene.touching}
-    return Contacts(Counts.of(on, scene.on), Counts.of(touching, true))  # type: ignore[arg-type]
+    steep = Counts.of(on & scene.steeply, scene.steeply)
+    return Contacts(Counts.of(on - scene.steeply, scene.on), Counts.of(touching, true), steep)  # type: ignore[arg-type]
 
 
 def inside_against_samples(pairs: int) -> Counts:

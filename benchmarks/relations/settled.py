@@ -36,9 +36,11 @@ class Settled(NamedTuple):
 
     entities: list[Entity]
     on: set[tuple[str, str]]
-    """Upper and lower, of every resting contact. What has none, not even with the floor, is on whatever
-    carries it by steeper contacts."""
+    """Upper and lower, of every resting contact."""
     touching: set[frozenset[str]]
+    steeply: set[tuple[str, str]]
+    """Upper and lower, of the steeper contacts that carry what has no resting contact, not even with the
+    floor."""
 
 
 def settled_scene(seed: int, things: int = 14, settle_s: float = 4.0) -> Settled:
@@ -128,7 +130,9 @@ def _looked_at(world: World) -> Settled:
         if newtons >= LEAST_SHARE * weight[upper]:
             on.add((upper, lower))
     borne = on_floor | {upper for upper, _ in on}
-    for (upper, lower), newtons in steeply.items():
-        if upper not in borne and newtons >= LEAST_SHARE * weight[upper]:
-            on.add((upper, lower))
-    return Settled(entities, on, touching)
+    held = {
+        (upper, lower)
+        for (upper, lower), newtons in steeply.items()
+        if upper not in borne and newtons >= LEAST_SHARE * weight[upper]
+    }
+    return Settled(entities, on, touching, held)

@@ -26,6 +26,8 @@ from ontology import vocabulary as v
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
 
+_STEP = 2000
+"""Entities that are compared in some tens of milliseconds."""
 PART = 20_000
 """Facts that the reasoner takes in at once, in some tenths of a second."""
 
@@ -231,7 +233,10 @@ class Beliefs:
         """
         if self.computed.is_idle:
             return frozenset()
-        self._carry_out(self.computed.after(changed, removed, before, retracted, inserted), retracted)
+        step = self.computed.after(changed, removed, before, retracted, inserted)
+        if not self.computed.facts.are_worked_out:  # and what comes may have been there before the start
+            step = step._replace(come={t for t in step.come if not self._reasoner.is_computed(t)})
+        self._carry_out(step, retracted)
         return frozenset(self._moved)
 
     def fill(self, entities: Mapping[str, Entity]) -> None:
@@ -244,10 +249,30 @@ class Beliefs:
 
         What the reasoner has already, of a map before, stays if it is so.
         """
+        yield from self.placing(entities)
+        yield from self.comparing(entities)
+
+    def placing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
+        """The first half of `filling`: where everything is, between whose steps nothing changes."""
+        if not self.computed.is_idle:
+            yield from self.computed.facts.placing(entities.values())
+            self.computed.placed()
+
+    def comparing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
+        """The second half: what follows from that, compared with what the reasoner has.
+
+        If it had that before, and nobody asserts where things are (`is_compared_in_steps`), `follow` may be
+        called between the steps; it is told of each entity that is otherwise, by `entities` too.
+        """
         if self.computed.is_idle:
             return
-        yield from self.computed.facts.filling(entities.values())
-        said = [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
+        yield from self.computed.facts.working_out()
+        said = self._said_of_places()
+        if self.is_compared_in_steps(said):
+            for names in parts(tuple(entities), _STEP, self._progress):
+                self._compare(names, entities.get)
+                yield
+            return
         step = self.computed.begin(entities.get, said)
         there, aside = set(self._reasoner.computed()), set(self._reasoner.set_aside())
         step = step._replace(
@@ -259,6 +284,22 @@ class Beliefs:
         for triple in aside & self.computed.denied:
             self._admit(triple)
         self._carry_out(step, ())
+
+    def is_compared_in_steps(self, said: Sequence[Triple] | None = None) -> bool:
+        """Whether the reasoner has what was computed, and nothing is asserted of places (`said`)."""
+        if self._reasoner.sets_aside or next(iter(self._reasoner.computed()), None) is None:
+            return False
+        return not (self._said_of_places() if said is None else said)
+
+    def _said_of_places(self) -> list[Triple]:
+        return [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
+
+    def _compare(self, names: Iterable[str], known: Known) -> None:
+        """Let the reasoner believe of some entities what is computed of them now."""
+        subjects = {name: v.iri(entity.iri) for name in names if (entity := known(name)) is not None}
+        now = self.computed.of(subjects, known)
+        there = {t for iri in subjects.values() for t in self._reasoner.computed(iri)}
+        self._carry_out(Step(now - there - self.withheld.keys(), there - now, set(), set()), ())
 
     def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
         lost = [*step.gone, *step.denied, *retracted]

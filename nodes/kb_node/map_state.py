@@ -7,21 +7,25 @@ from typing import TypeVar
 
 from msgspec import structs
 
+from nodes.kb_node import gc_pause
 from nodes.kb_node.beliefs import Beliefs, Believed
 from nodes.kb_node.entities import entity_changes, entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.places import Places
-from nodes.kb_node.progress import steadily
+from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.placed import Placed
 from ontology import vocabulary as v
 from schemas import errors
-from schemas.commits import Commit, Snapshot, Star
+from schemas.commits import Commit, Snapshot, Star, Transaction
 from schemas.entities import ClassInfo, Entity
 from schemas.explanations import Term, Triple
 
 T = TypeVar("T")
+
+_STEP = 2000
+"""Entities whose classes are compared in some milliseconds."""
 
 
 class MapState:
@@ -37,6 +41,8 @@ class MapState:
         self._following: Iterator[None] | None = None
         self.follows = False
         """Whether what is computed is worked out at each commit; not yet after a start."""
+        self._follows_all = False
+        """Whether all of it was; if not, a commit works out what it concerns."""
         self.believes = False
         """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self.by_name: dict[str, Entity] = {}
@@ -47,6 +53,7 @@ class MapState:
             lambda p: self.reasoner.asserted(None, p, None),
             lambda: self.classes.limits,
             self._facts,
+            self._crowds,
         )
         self.seq = 0
         self.digest = ""
@@ -144,29 +151,49 @@ class MapState:
         while self.follow_some():
             self.progress()
 
+    def follow_enough(self, transaction: Transaction) -> None:
+        """As much of that as a transaction needs.
+
+        If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
+        them are; what holds of them is worked out between other work.
+        """
+        while not (self.follows and _only_places(transaction)) and self.follow_some():
+            self.progress()
+
     def follow_some(self) -> bool:
         """Do a part of that, some tens of milliseconds; whether there is more to do."""
-        if self.follows:
+        if self._follows_all:
             return False
         following, self._following = self._following or self._follow(), None
-        for _ in following:
-            self._following = following
-            return True
+        with gc_pause.uncollected(freeze=True):
+            for _ in following:
+                self._following = following
+                return True
         return False
 
     def _follow(self) -> Iterator[None]:
         self.beliefs.begin()
-        yield from self.beliefs.filling(self.by_name)
-        self.follows = self.believes = True
-        for name, entity in self.by_name.items():
-            types = self.types_of(entity)
-            if types != entity.types:
-                self.by_name[name] = structs.replace(entity, types=types)
+        yield from self.beliefs.placing(self.by_name)
+        self.follows = self.believes and self.beliefs.is_compared_in_steps()
+        yield from self.beliefs.comparing(self.by_name)
+        self.follows = self.believes = self._follows_all = True
+        for names in parts(tuple(self.by_name), _STEP, self.progress):
+            for name in names:
+                entity = self.by_name.get(name)
+                if entity is not None and (types := self.types_of(entity)) != entity.types:
+                    self.by_name[name] = structs.replace(entity, types=types)
+            yield
 
     def believe_places(self) -> None:
         """Let the reasoner have what is computed of where things are, if it has not."""
         if not self.believes:
             self.follow_places()
+
+    def _crowds(self, names: Collection[str] | None) -> list[str]:
+        """The sentences on crowds, if relations are computed."""
+        if not self.follows or names is None:
+            self.follow_places()
+        return [] if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space.crowds(names)
 
     def _facts(self) -> Facts | None:
         """The relations that are computed, if any are, with their solids."""
@@ -209,3 +236,13 @@ class MapState:
     def show(self, changed: Iterable[Entity]) -> None:
         """Let entities be as these."""
         self.by_name.update((entity.name, entity) for entity in changed)
+
+
+def _only_places(transaction: Transaction) -> bool:
+    """Does it only add things, and say of others where they are, how large and what they are called?"""
+    if transaction.remove or transaction.require or transaction.retract or transaction.insert:
+        return False
+    return not (
+        any(edit.carry or edit.set or edit.unset or edit.only_if for edit in transaction.edit)
+        or any(new.set for new in transaction.add)
+    )

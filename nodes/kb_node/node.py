@@ -31,6 +31,8 @@ from schemas import errors, keys, wording
 from schemas.commits import Commit
 
 CHECKPOINT_PERIOD_S = 10.0
+STARTS_AGAIN = 70
+"""The exit status after which supervisord starts the node again."""
 CHECKPOINT_DELAY_S = 3.0
 """After a very large commit, which others fetch first."""
 
@@ -50,6 +52,7 @@ class KnowledgeBase:
             self.map.all_believed,
             lambda: Surrounded(placed=self.map.placed(), limits=self.map.classes.limits),
         )
+        self.map.broke = node.stop
         self.map.foretell = self._sparql.foretell
         self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
         self._asking = Asking(
@@ -151,6 +154,8 @@ def run(config: KbConfig) -> None:
                 knowledge_base = KnowledgeBase(node, journal)
             heap.trim()
             node.run()
+            if not knowledge_base.map.is_sound:
+                raise SystemExit(STARTS_AGAIN)
             knowledge_base.close()
         finally:
             journal.close()

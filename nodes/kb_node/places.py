@@ -53,12 +53,15 @@ class Places:
         asserted: Callable[[Term], Iterable[Triple]],
         limits: Callable[[], Thresholds],
         facts: Callable[[], Facts | None] = lambda: None,
+        told_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
     ) -> None:
         """`entities` by name, as they change; `asserted(property)` are the triples of one.
 
-        `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them.
+        `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them, and
+        `told_crowds(names)` has a sentence on each crowd, of which these names are.
         """
         self._facts = facts
+        self._told_crowds = told_crowds
         self._entities = entities
         self._surroundings = Surroundings(in_order, entities.get, limits)
         self._sayings = Sayings(asserted)
@@ -73,8 +76,7 @@ class Places:
 
         With `names`, only where one of these is. Nothing where no relations are kept.
         """
-        facts = self._facts()
-        return () if facts is None else tuple(islice(facts.space.crowds(names), _FEW))
+        return tuple(islice(self._told_crowds(names), _FEW))
 
     def loads(self) -> Loads:
         """What things bear now."""

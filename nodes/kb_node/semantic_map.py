@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple, TypeVar
 
@@ -28,6 +29,9 @@ LARGE: Final = 1_000_000
 """Triples."""
 
 T = TypeVar("T")
+C = TypeVar("C", Commit, Commit | None)
+
+log = logging.getLogger(__name__)
 
 
 class _Tried(Exception):
@@ -69,6 +73,10 @@ class SemanticMap(MapState):
         self._schedule = CheckpointSchedule(journal, start.seq)
         self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
         """Told of each commit before it is checked; what it returns is called if that is not made."""
+        self.is_sound = True
+        """False when an unexpected error (no memory) may have left a change half done: then start anew."""
+        self.broke: Callable[[], None] = lambda: None
+        """Called when that happens."""
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
@@ -93,20 +101,36 @@ class SemanticMap(MapState):
 
         Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; Inconsistent
         (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
-        from the TBox or the disk does not take the commit.
+        from the TBox or the disk does not take the commit; NoAnswer, with the map not sound any more, when
+        something unexpected happens: whether the commit is durable the journal knows.
         """
         if self._undo_log is None:
             self._applier.believed.clear()
         try:
-            made = self._commit(transaction)
+            made = self._carried_out(lambda: self._commit(transaction))
         except errors.SemmapError:
-            if (known := self._journal.commit_of(transaction.id)) is None:
+            if not self.is_sound or (known := self._journal.commit_of(transaction.id)) is None:
                 raise
             return known
         return made or self._journal.commit_of(transaction.id)
 
+    def _carried_out(self, change: Callable[[], C]) -> C:
+        """What `change` commits. Raises NoAnswer for an error that nobody expects."""
+        try:
+            return change()
+        except (errors.SemmapError, _Tried):
+            raise
+        except Exception as error:
+            self.is_sound = False
+            self.broke()
+            log.exception("a change may be half done")
+            raise errors.NoAnswer(
+                f"the knowledge base starts again from its journal, because a change failed in the middle:"
+                f" {type(error).__name__}: {error}"
+            ) from error
+
     def _commit(self, transaction: Transaction) -> Commit | None:
-        self.follow_places()
+        self.follow_enough(transaction)
         plan = planning.of(self, transaction)
         if plan is None:
             return None
@@ -172,7 +196,7 @@ class SemanticMap(MapState):
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        return self._taken(self._applier.switch(commit, new, make_durable))
+        return self._carried_out(lambda: self._taken(self._applier.switch(commit, new, make_durable)))
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
         """Commit what another journal has, under its number and in its author's name, as it is.
@@ -204,8 +228,12 @@ class SemanticMap(MapState):
                     except NotWritten:
                         raise
                     except errors.SemmapError as error:
+                        if not self.is_sound:
+                            raise
                         results.append(error)
         except BaseException as error:
+            if not self.is_sound:
+                raise
             for memento in reversed(log):
                 self._take_back(memento)
             if not isinstance(error, NotWritten):
@@ -249,7 +277,7 @@ class SemanticMap(MapState):
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
         self.believe_places()
         self._schedule.pictured()
-        columns = self.reasoner.columns()
+        columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
             seq=self.seq,
             triples=tuple(self.reasoner.set_aside() if columns is not None else self.abox()),

@@ -20,7 +20,7 @@ def test_shares_of_right_ones():
 
 
 def test_settled_heaps_and_sampled_points():
-    on, touches = against_contacts(4)
+    on, touches, _ = against_contacts(4)
     assert on.right > 20
     assert on.f1 > 0.95
     assert touches.f1 > 0.95

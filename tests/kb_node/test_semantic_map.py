@@ -441,3 +441,42 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
     assert state(semantic_map) == before
     assert [commit.seq for commit in semantic_map.commit_together(transactions)] == [2, 3, 4]
     assert state(home.reopened(semantic_map)) == state(semantic_map)
+
+
+@pytest.mark.parametrize("together", [False, True])
+@pytest.mark.parametrize("durable", [False, True])
+def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again(
+    semantic_map, monkeypatch, together, durable
+):
+    semantic_map.commit(transaction("before", chair("chair1")))
+    broke = []
+    semantic_map.broke = lambda: broke.append(True)
+
+    def fail(*_):
+        raise MemoryError
+
+    where, what = (semantic_map, "take") if durable else (semantic_map._applier, "_with_effects")
+    monkeypatch.setattr(where, what, fail)
+    wanted = [transaction("a", chair("chair2")), transaction("b", chair("chair3"))]
+    with pytest.raises(errors.NoAnswer, match="starts again from its journal, because a change failed in"):
+        semantic_map.commit_together(wanted) if together else semantic_map.commit(wanted[0])
+    assert broke == [True]
+    assert not semantic_map.is_sound
+    monkeypatch.undo()
+    again = home.reopened(semantic_map)
+    is_there = durable and not together  # what is done together is durable together, or not at all
+    assert {e.name for e in again.snapshot().entities} == {"chair1", *(["chair2"] if is_there else [])}
+    assert again.commit(transaction("a", chair("chair2"))).seq == 2
+    home.close(again)
+
+
+def test_what_a_map_declares_survives_a_start_from_a_checkpoint(semantic_map):
+    said = turtle(":swivel a owl:Class ; rdfs:subClassOf dm:Seat . :chair1 a :swivel .")
+    semantic_map.commit(transaction(1, said))
+    before = state(semantic_map), set(semantic_map.inferred())
+    semantic_map.checkpoint()
+    again = home.reopened(semantic_map)
+    assert (state(again), set(again.inferred())) == before
+    again.commit(transaction(2, turtle(":chair2 a :swivel .")))
+    assert "Seat" in again.entity("chair2").types
+    home.close(again)

@@ -210,7 +210,7 @@ def asking_for(prefix, verb, name="x"):
     return commands.Explain(name=name, predicate=prefix, value=verb)
 
 
-@pytest.mark.parametrize("length", [1, 100_000])
+@pytest.mark.parametrize("length", [1, 1000])
 def test_a_reply_of_another_is_passed_on_as_it_comes(network, length):
     _, client = network
     question = asking_for(PREFIX, "get", "x" * length)
@@ -319,8 +319,8 @@ def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, m
         time.sleep(0.3)
         release.set()
         order = [got.get(timeout=5)[0] for _ in range(13)]
-    assert order.index("urgent") <= 2
-    assert order.index("other") <= 4
+    assert order.index("urgent") < order.index("first 3")
+    assert order.index("other") < order.index("first 5")
 
 
 def test_who_is_told_to_come_again_does_so_by_himself(network, monkeypatch):

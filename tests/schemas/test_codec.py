@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas import codec, errors
-from schemas.commands import Add, Check, List, Load, Remove, StepOnce, Undo
+from schemas.bridge import Recall, SnapshotQuery, TakeBack
+from schemas.commands import COMMANDS, Add, Check, List, Load, Remove, StepOnce, Undo
 from schemas.commits import Departed, Snapshot, Transaction
 from schemas.entities import Pose
 from tests.schemas import messages
@@ -179,7 +180,11 @@ def test_anything_can_be_shown_as_json():
 @pytest.mark.parametrize(
     ("kind", "fields", "text"),
     [
-        (List, {"as_of": ""}, "as_of must be a whole number from 0 or a number from 0 or a text"),
+        (
+            List,
+            {"as_of": ""},
+            "as_of must be a whole number from 0 or a number from 0 or a text of 1 to 100 characters",
+        ),
         (Undo, {"commit": "0"}, "commit must be a whole number from 1 to 9007199254740992"),
     ],
 )
@@ -192,3 +197,33 @@ def test_what_may_be_several_things_and_large_bounds_are_spelled_out(kind, field
 def test_a_number_that_is_too_large_is_told():
     with pytest.raises(errors.BadRequest, match="more than 64 bits"):
         codec.encode({"values": [10**40]})
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [
+        (SnapshotQuery, {"limit": 2**64 - 1}),
+        (Recall, {"seqs": [2**64 - 1]}),
+        (TakeBack, {"id": "x", "source": "operator", "commit": 2**64 - 1}),
+    ],
+)
+def test_numbers_that_no_index_has_are_refused(kind, fields):
+    with pytest.raises(errors.BadRequest, match="must be a whole number from"):
+        codec.decode(msgpack.packb(fields), kind)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        {"verb": "get", "name": "x" * 1001},
+        {"verb": "remove", "names": ["x" * 1001]},
+        {"verb": "explain", "name": "x", "predicate": "x" * 1001, "value": "y"},
+        {"verb": "check", "id": "x" * 201},
+        {"verb": "check", "agent": "x" * 201},
+        {"verb": "check", "reason": "x" * 1001},
+    ],
+)
+def test_texts_have_an_end_before_anybody_looks_at_them(command):
+    with pytest.raises(errors.BadRequest, match="must be a text of up to") as refused:
+        codec.decode(msgpack.packb(command), COMMANDS[command["verb"]])
+    assert len(refused.value.text) < 300

@@ -77,3 +77,19 @@ def test_unknown_classes_are_told_with_their_nearest_and_their_individuals():
     many = errors.unknown_classes({"Chiar": [f"c{i}" for i in range(1000)]}, ["Table"])
     assert many.startswith("unknown class 'Chiar' (of c0, ")
     assert "c9 and 990 more" in many
+
+
+def test_nothing_is_near_to_a_word_that_is_none():
+    assert errors.nearest("chair" * 10_000, ["chair"] * 1000) == []
+
+
+def test_a_text_that_quotes_without_end_is_shortened_on_the_wire():
+    sent = errors.to_message(errors.UnknownName(f"no entity is named '{'x' * 100_000}'"))
+    assert sent.text.endswith(" more characters)")
+    assert len(sent.text) < 10_100
+
+
+def test_busy_says_when_to_come_again_on_the_wire():
+    back = errors.from_message(errors.to_message(errors.Busy("busy", again_s=0.5)))
+    assert isinstance(back, errors.Busy)
+    assert (back.text, back.again_s) == ("busy", 0.5)

@@ -69,12 +69,13 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
 
 
 def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:
-    """The classes with a name that individuals are of and the TBox does not have.
+    """The classes with a name that individuals are of, and that neither the TBox nor these triples declare.
 
-    The document that brought these individuals declared them; without that it would have been refused.
+    The document that brought the individuals declared them; without that it would have been refused.
     """
-    types = {o for _, p, o in triples if p == v.RDF_TYPE and o.startswith("<")}
-    return {c for c in types - classes.names.keys() - set(_OF_STARS) if not is_built_in(c)}
+    types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and o.startswith("<")]
+    declared = {s for s, o in types if o in (v.OWL_CLASS, v.RDFS_CLASS)}.union(classes.names, _OF_STARS)
+    return {o for _, o in types if o not in declared and not is_built_in(o)}
 
 
 def strangers(
@@ -150,7 +151,10 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
     if not names:
         return []
     few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
-    return [f"class declarations in a map are ignored: {few}; to load classes use --tbox"]
+    return [
+        f"only the map declares {few}: nothing can be added or listed by such classes; to load classes use"
+        " --tbox"
+    ]
 
 
 def _halves(triples: list[Triple]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from itertools import chain
 
 from nodes.kb_node.reasoner.abox.abox import ABox
@@ -290,8 +290,13 @@ class CompiledEngine:
         gone = [t for t in delete if not is_schema(t) or (t in there and t not in coming)]
         return gone, [t for t in insert if not is_schema(t) or t not in there]
 
-    def columns(self) -> Columns | None:
-        """All of it but the schema, to be filled in again; None for an ABox that columns cannot hold."""
+    def columns(self, schema: Container[Triple] | None) -> Columns | None:
+        """All of it but the schema, to be filled in again; None if there is more schema than this one.
+
+        And None for an ABox that columns cannot hold.
+        """
+        if schema is not None and not all(triple in schema for triple in self._schema_triples):
+            return None
         return columns_of(self._abox, schema=self._digest(), size=self._size)
 
     def fill(self, columns: Columns) -> bool:

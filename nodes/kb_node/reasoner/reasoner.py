@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
 from itertools import chain
 from typing import NamedTuple
@@ -96,9 +96,13 @@ class Reasoner:
         """All that follows from the schema, if that is worked out by itself."""
         return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
 
-    def columns(self) -> Columns | None:
-        """What is held beyond the schema, conclusions included; None where columns cannot say it."""
-        return self._engine.columns() if isinstance(self._engine, CompiledEngine) else None
+    def columns(self, schema: Container[Triple] | None = None) -> Columns | None:
+        """What is held beyond the schema, conclusions included; None where columns cannot say it.
+
+        They cannot if more counts as schema than the `schema` that they are to be filled in with: a map may
+        declare classes, too.
+        """
+        return self._engine.columns(schema) if isinstance(self._engine, CompiledEngine) else None
 
     def fill(self, columns: Columns) -> bool:
         """Hold what another reasoner of the same schema held; nothing but the TBox is held yet.

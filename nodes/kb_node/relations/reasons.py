@@ -97,7 +97,14 @@ def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
         return f"{where}, at {metres(made.height_m)} (on is up to {metres(limits.gap_m)})"
     if made.share < limits.base_share:
         return f"{where}, but only {made.share:.0%} of its base is over that; it {stance(space, solid)}"
-    return f"{where}, but it {stance(space, solid)}"
+    return f"{where}, but {_passed_over(space, solid, other) or f'it {stance(space, solid)}'}"
+
+
+def _passed_over(space: Space, solid: Solid, other: Solid) -> str | None:
+    """That the other one is not looked at for what bears or holds the solid, as a clause; None if it is."""
+    if not space.is_crowded(solid) or other in space.bearers_around(solid):
+        return None
+    return f"more things are in this spot than are compared, and {other.name} is not one of the larger ones"
 
 
 def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
@@ -146,7 +153,7 @@ def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:
     if not made.holds:
         least = f"inside is from {space.limits.inside_share:.0%} on"
         return f"{why('isInside', solid, other, made)} ({least})"
-    return f"it {stance(space, solid)}, which is the smaller hollow"
+    return _passed_over(space, solid, other) or f"it {stance(space, solid)}, which is the smaller hollow"
 
 
 def _why_not_in(space: Space, solid: Solid, other: Solid) -> str:

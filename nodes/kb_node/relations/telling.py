@@ -254,7 +254,7 @@ def _told(space: Space, relation: RelationName, solid: Solid, other: Solid, meas
         subject=solid.name,
         object=other.name,
         holds=measure.holds,
-        gap_m=round(measure.gap_m, 4),
+        gap_m=round(measure.gap_m, 4) + 0.0,
         share=round(measure.share, 4),
         text=f"{solid.name} {spoken(relation, measure.holds)} {other.name}: {reason}",
     )

@@ -92,6 +92,9 @@ def _in_full(
     name: str, gone: Stated | None, come: Stated | None, was: Entity, now: Entity
 ) -> tuple[str, Stated | None, Stated | None]:
     """What a property was and is: all its values where both are known, else those that went and came."""
+    called = {known for known in (*was.properties, *now.properties) if known.rpartition(":")[2] == name}
+    if len(called) == 1:  # with its prefix, if others are called alike
+        name = called.pop()
     before, after = was.properties.get(name), now.properties.get(name)
     if isinstance(before, tuple) or isinstance(after, tuple):
         return name, before, after

@@ -104,3 +104,17 @@ def test_no_length_of_nothing():
     assert explained(Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1").text == (
         "cup1 touches table1: they meet"
     )
+
+
+def test_of_what_is_not_compared_in_a_crowd_that_is_said():
+    cans = [thing(f"can{k}", (0.0, 0.0, TOP)) for k in range(150)]
+    upper = thing("can999", (0.0, 0.0, TOP + cans[0].size_m[2]))
+    crowd = Space([ROOM, TABLE, *cans, upper])
+    assert not crowd.counts(crowd.solids["can999"])
+    found = explained(crowd, "can999", "isOn", "can1")
+    assert not found.holds
+    assert found.text.endswith(
+        "more things are in this spot than are compared, and can1 is not one of the larger ones"
+    )
+    assert explained(crowd, "can149", "isOn", "table1").holds
+    assert explained(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds

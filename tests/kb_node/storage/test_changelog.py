@@ -6,8 +6,9 @@ from nodes.kb_node.storage import changelog, history
 from nodes.kb_node.storage.changelog import Changelog
 from nodes.kb_node.storage.journal import Journal
 from schemas.commands import History
+from tests.kb_node import home
 from tests.kb_node.home import transaction
-from tests.kb_node.stating import adding, edited, stated, statement, unstated
+from tests.kb_node.stating import TBOX, adding, edited, stated, statement, unstated
 
 
 def told(journal, only=None, since=1):
@@ -80,3 +81,16 @@ def test_of_a_large_commit_some_are_told(stateful_map):
     assert len(changes) == changelog.FEW
     gone = stateful_map.commit(transaction("none", remove=[n.name for n in new]))
     assert len(Changelog(stateful_map._journal, dict).of(gone)) == changelog.FEW
+
+
+def test_a_property_that_others_are_called_like_has_its_prefix(tmp_path):
+    other = home.turtle("@prefix lab: <http://lab.org/lab#> . lab:hasColor a owl:ObjectProperty .")
+    semantic_map = home.new_map(tmp_path, [*TBOX, *other])
+    semantic_map.commit(transaction("begin", home.chair()))
+    stated(semantic_map, "lab:hasColor", "red")
+    stated(semantic_map, "lab:hasColor", "blue")
+    assert told(semantic_map._journal, since=2) == [
+        ["chair1 lab:hasColor: + color_red"],
+        ["chair1 lab:hasColor: + color_blue"],
+    ]
+    home.close(semantic_map)

@@ -45,6 +45,15 @@ class Computed:
         """Whether the TBox has no property that could be computed."""
         return not self._relations
 
+    def placed(self) -> None:
+        """All solids are where they are, though not all facts have been worked out."""
+        self._was_flat = self.facts.space.is_flat
+
+    def of(self, names: Iterable[str], known: Known) -> set[Triple]:
+        """The triples about some names as subjects."""
+        facts = self.facts
+        return set(self._triples([(name, *about) for name in names for about in facts.of(name)], known))
+
     def begin(self, known: Known, said: Iterable[Triple]) -> Step:
         """All facts are new, and so is all that is said of places."""
         self._was_flat = self.facts.space.is_flat

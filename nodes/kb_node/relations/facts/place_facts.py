@@ -13,7 +13,7 @@ from typing import NamedTuple
 from nodes.kb_node.progress import parts
 from nodes.kb_node.relations.facts.rules import RULES, About, Rule
 from nodes.kb_node.relations.geometry.placed import Placed
-from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from nodes.kb_node.relations.measuring.broad_phase import by_place
 from nodes.kb_node.relations.measuring.space import MANY, Space
 from nodes.kb_node.relations.measuring.survey import Survey
@@ -23,8 +23,8 @@ from schemas.relations import RelationName
 
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
-_STEP = 4000
-"""Entities."""
+_STEP = 1000
+"""Entities that are worked out in some tens of milliseconds."""
 _MOST_AT_ONCE = 16_000
 """So many are surveyed together where nobody waits: those around them are looked up less often."""
 _FORGOTTEN = 8
@@ -49,6 +49,8 @@ class Facts:
         self._kept = [_Kept(rule) for rule in rules]
         self._in_turn: Iterator[Solid] = iter(())
         self._to_forget = 0
+        self._waiting: dict[str, Solid] = {}
+        """While `filling`: those that have been placed, and nothing else."""
         self.shifted: frozenset[str] = frozenset()
         """Who came to count in a crowd by the last update, or does not any more, because of others."""
 
@@ -87,15 +89,53 @@ class Facts:
 
     def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
         """Begin with these, in steps of some tens of milliseconds."""
+        yield from self.placing(entities)
+        yield from self.working_out()
+
+    def placing(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
+        """The first half of `filling`, between whose steps nothing changes."""
         for _ in self.space.put_all(entities):
             yield
         self.space.shifted()
-        gone, come = set[Fact](), set[Fact]()
-        for _ in self._working_out(self._things(self.space.solids), gone, come, _STEP):
-            come.clear()
+        self._waiting = {solid.name: solid for solid in self._things(self.space.solids)}
+
+    def working_out(self) -> Iterator[None]:
+        """The second half, between whose steps there may be updates: these see to what they concern first."""
+        for some in parts(by_place(list(self._waiting.values())), _STEP, _nothing):
+            self._work_out_those(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
-        for solid in self.space.solids.values():
-            solid.forget()
+        for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
+            for solid in solids:
+                solid.forget()
+            if len(solids) == _STEP:
+                yield
+
+    @property
+    def are_worked_out(self) -> bool:
+        """Whether nobody is left who has only been placed."""
+        return not self._waiting
+
+    def _work_out_those(self, waiting: Iterable[Solid]) -> None:
+        """Work out the facts of some whom nobody has looked at since they were placed."""
+        solids = list(waiting)
+        for _ in self._working_out(solids, set(), set(), _STEP):
+            pass
+        for solid in solids:
+            del self._waiting[solid.name]
+
+    def _see_to_those_concerned(self, changed: Sequence[Entity | Placed], removed: Sequence[str]) -> None:
+        """While they are being worked out: of whom a change may speak is worked out as it is before that."""
+        waiting, space = self._waiting, self.space
+        if len(changed) + len(removed) >= MANY:
+            self._work_out_those(list(waiting.values()))
+            return
+        names = (*removed, *(entity.name for entity in changed))
+        margin_m = max(kept.rule.margin_m(space.limits) for kept in self._kept)
+        concerned = dict.fromkeys(names)
+        for solid in (*map(space.solids.get, names), *map(solid_of, changed)):
+            if solid is not None:
+                concerned.update((other.name, None) for other in space.around(solid, margin_m))
+        self._work_out_those([waiting[name] for name in concerned if name in waiting])
 
     def _things(self, names: Iterable[str]) -> list[Solid]:
         """Those that are there and are no places."""
@@ -108,10 +148,13 @@ class Facts:
         """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
         space = self.space
         for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
-            survey = Survey(space, some)
+            survey = Survey(space, some) if len(some) >= MANY else None
             with space.remembering():
                 for kept in self._kept:
-                    kept.take(space, some, survey, gone, come)
+                    if survey is None:
+                        kept.work_out(space, [solid.name for solid in some], gone, come)
+                    else:
+                        kept.take(space, some, survey, gone, come)
             yield
 
     def forget(self) -> None:
@@ -134,6 +177,9 @@ class Facts:
 
     def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
         """Some entities came or are otherwise now, others went."""
+        changed, removed = list(changed), list(removed)
+        if self._waiting:
+            self._see_to_those_concerned(changed, removed)
         space = self.space
         moved: dict[str, None] = {}
         left: list[Solid] = []
@@ -142,7 +188,6 @@ class Facts:
             moved[name] = None
             left += filter(None, (self._counted(name),))
             space.take(name)
-        changed = list(changed)
         moved.update((entity.name, None) for entity in changed)
         if space.solids:
             left += filter(None, (self._counted(entity.name) for entity in changed))

@@ -41,7 +41,22 @@ def test_a_query_comes_from_a_file_or_stdin(system, tmp_path, monkeypatch):
     assert ":chair1" in system.cli("sparql", "-")
 
 
+def test_a_query_of_the_past(system):
+    with system.client() as client:
+        before = client.status().commit
+        client.add("Chair", "chair9", at=(1.0, 3.0, 0.0))
+        then = client.sparql("ASK { :chair9 a dm:Seat }", inferred=True, as_of=before)
+        assert (then.verdict, then.seq) == (False, before)
+        client.remove("chair9")
+        assert client.sparql("ASK { :chair9 a dm:Seat }", inferred=True, as_of=before + 1).verdict
+    assert system.cli("sparql", "ASK { :chair9 a dm:Chair }", "--as-of", str(before + 1)) == "true\n"
+    assert system.cli("sparql", "ASK { :chair9 a dm:Chair }") == "false\n"
+
+
 BAD = [
+    (("sparql", CHAIRS, "--as-of", "9999"), 1, "there is no commit 9999 yet"),
+    (("sparql", CHAIRS, "--as-of", "soon"), 2, "'soon' is neither a commit number nor a time"),
+    (("sparql", "SELECT ?c { ?c a foo:Bar }", "--as-of", "1"), 2, "unknown prefix 'foo:'"),
     (("sparql", "SELECT ?c { ?c a"), 2, "line 1, column 17"),
     (("sparql", "SELECT ?c { ?c a foo:Bar }"), 2, "unknown prefix 'foo:'"),
     (("sparql", ""), 2, "query must be a text"),

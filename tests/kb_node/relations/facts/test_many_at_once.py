@@ -50,10 +50,11 @@ def at_once(entities, limits=None):
 
 
 def in_steps(entities, limits=None):
-    facts = Facts(limits)
-    for _ in facts.filling(entities):
-        pass
-    return facts
+    with many(1):
+        facts = Facts(limits)
+        for _ in facts.filling(entities):
+            pass
+        return facts
 
 
 @contextmanager

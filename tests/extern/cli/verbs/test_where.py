@@ -1,0 +1,45 @@
+"""`semmap list --on` where a fact about places is withheld, through a whole system."""
+
+import pytest
+
+from ontology import HOUSEHOLD_TTL
+from tests.conftest import running
+
+ON_SHELVES = """
+dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allValuesFrom dm:Shelf ] .
+dm:Shelf owl:disjointWith dm:Counter .
+"""
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("where")
+    tbox = folder / "choosy.ttl"
+    tbox.write_text(HOUSEHOLD_TTL.read_text() + ON_SHELVES)
+    with running(folder, "--abox", "none", "--tbox", str(tbox), "--no-sim", "--no-record") as system:
+        with system.client() as client:
+            client.add("Counter", "counter1", at=(0.0, 0.0, 0.0))
+            client.add("Milk", "milk1", at=(0.0, 0.0, 0.9))
+        yield system
+
+
+def test_a_list_that_lacks_something_withheld_says_so(system):
+    told = system.cli("list", "--on", "counter1")
+    note = "  note: not listed is what would contradict the map, about counter1; semmap check tells why\n"
+    assert told == f"0 entities\n{note}"
+    assert "milk1 is on counter1 (measured) would contradict the map" in system.cli("check")
+    assert "note" not in system.cli("list", "--on", "Counter", "--format", "json")
+
+
+def test_a_dry_run_tells_the_notes_of_the_tbox_that_is_tried(system, tmp_path):
+    lab = tmp_path / "more.ttl"
+    axiom = "dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:minCardinality 3 ] ."
+    lab.write_text(HOUSEHOLD_TTL.read_text() + axiom)
+    tried = system.cli("load", str(lab), "--tbox", "--dry-run")
+    told = system.cli("load", str(lab), "--tbox")
+    assert notes(told) == notes(tried)
+    assert notes(told)
+
+
+def notes(text):
+    return [line for line in text.splitlines() if "  note: " in line]

@@ -1,0 +1,136 @@
+"""Resources that give out: the disk, the memory, the network; and disks that return something else."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import resource
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+
+from tests.faults.ground import Ground, wait_for
+from tests.faults.processes import _pids
+from tests.faults.table import Fault
+
+_BIN = Path(sys.executable).parent
+_GIVEN_OUT_S = 3.0
+_CUT_S = 15.0
+_SPARE_BYTES = 4 << 20
+
+
+def disk_full(ground: Ground) -> None:
+    """Commits are refused, `status` says so, and they go on when there is room."""
+    ground.may_be_refused = "could not be written"
+    pid = _pids(ground)["kb_node"]
+    largest = max(path.stat().st_size for path in ground.data.glob("journal.sqlite*"))
+    refused = len(ground.load.refused)
+    with _limited(pid, resource.RLIMIT_FSIZE, largest):
+        wait_for(lambda: len(ground.load.refused) > refused, "commits are refused")
+        wait_for(
+            lambda: "accepts no commits" in ground.nodes()["kb_node"].detail,
+            "the status says that it is full",
+        )
+        ground.observe(_GIVEN_OUT_S)
+    assert _pids(ground)["kb_node"] == pid
+
+
+def no_memory(ground: Ground) -> None:
+    """What takes memory that there is not is answered as an error, or the node is started again."""
+    ground.may_be_refused = ""
+    pid = _pids(ground)["kb_node"]
+    with (
+        contextlib.suppress(ProcessLookupError),
+        _limited(pid, resource.RLIMIT_AS, psutil.Process(pid).memory_info().vms + _SPARE_BYTES),
+    ):
+        with contextlib.suppress(Exception), ground.client() as client:
+            client.export("turtle")
+        ground.observe(_GIVEN_OUT_S)
+
+
+def read_only(ground: Ground) -> None:
+    """A system whose folder is read-only does not start, and says why; nothing is changed."""
+    ground.system.stop()
+    data = ground.data
+    mounts = f"mount --bind {data} {data} && mount -o remount,ro,bind {data}"
+    up = f"{_BIN}/semmap up --data {data} --listen {ground.endpoint}"
+    words = ["unshare", "-rm", "sh", "-c", f"{mounts} && exec {up}"]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert ended.returncode in (1, 2), ended
+    assert "Read-only file system" in ended.stderr, ended.stderr
+    assert len(ended.stderr.splitlines()) == 1, ended.stderr
+    ground.start()
+
+
+def damaged_journal(ground: Ground) -> None:
+    """A commit in the middle is damaged: the start is refused, `repair` keeps all the rest and its effect."""
+    ground.system.stop()
+    with contextlib.closing(sqlite3.connect(ground.data / "journal.sqlite")) as db, db:
+        (seq,) = db.execute("SELECT max(seq) / 2 FROM commits").fetchone()
+        db.execute("UPDATE commits SET body = zeroblob(length(body)) WHERE seq = ?", (seq,))
+    up = [_BIN / "semmap", "up", "--data", ground.data, "--listen", ground.endpoint]
+    refused = subprocess.run([*up, "--no-sim", "--no-record"], capture_output=True, text=True, timeout=90)
+    assert refused.returncode == 1, refused
+    assert f"commit {seq} is damaged" in refused.stdout + refused.stderr, refused
+    repair = [_BIN / "semmap", "repair", "--data", ground.data]
+    told = subprocess.run(repair, capture_output=True, text=True, timeout=90)
+    assert told.returncode == 0, told
+    assert f"(commit {seq} is damaged; what it changed is known from the checkpoint" in told.stdout, told
+    ground.start()
+
+
+def restored_backup(ground: Ground) -> None:
+    """A backup that is made under load has what was acknowledged before, and is a map."""
+    file, other = ground.data.parent / "backup", ground.data.parent / "restored"
+    before = set(ground.load.added)
+    with ground.client() as client:
+        client.backup(file, overwrite=True)
+    restore = [_BIN / "semmap", "restore", file, "--data", other, "--replace"]
+    subprocess.run(restore, check=True, capture_output=True, timeout=120)
+    with contextlib.closing(sqlite3.connect(other / "journal.sqlite")) as db:
+        there = {name for (name,) in db.execute("SELECT name FROM touches")}
+    assert before <= there
+
+
+def links_cut(ground: Ground) -> None:
+    """In a network of its own, a whole system bears that nothing comes through for a while."""
+    words = ["unshare", "-rn", sys.executable, "-m", "tests.faults.cut_links", str(_CUT_S)]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert ended.returncode == 0, ended.stderr[-2000:]
+    found = json.loads(ended.stdout.splitlines()[-1])
+    assert (found["lost"], found["doubled"]) == (0, 0), found
+
+
+@contextlib.contextmanager
+def _limited(pid: int, kind: int, value: int) -> Iterator[None]:
+    """The operating system gives the process no more than so much."""
+    limits = resource.prlimit(pid, kind)
+    resource.prlimit(pid, kind, (value, limits[1]))
+    try:
+        yield
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            resource.prlimit(pid, kind, limits)
+
+
+def _no_namespace(kind: str) -> str:
+    """Why there can be none here."""
+    try:
+        ended = subprocess.run(["unshare", f"-r{kind}", "true"], capture_output=True, text=True)
+    except OSError as error:
+        return f"unshare: {error.strerror}"
+    return ended.stderr.strip()
+
+
+RESOURCES = (
+    Fault("disk full for 3 s", disk_full, often=2),
+    Fault("no memory for kb_node for 3 s", no_memory, often=2),
+    Fault("read-only data folder", read_only, often=1, missing=lambda: _no_namespace("m")),
+    Fault("a damaged commit, repair", damaged_journal, often=2),
+    Fault("backup under load, restored", restored_backup, often=2),
+    Fault(f"links cut for {_CUT_S:g} s", links_cut, often=1, missing=lambda: _no_namespace("n")),
+)

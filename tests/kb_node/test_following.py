@@ -1,0 +1,111 @@
+"""After a start commits go between the steps in which it is worked out where everything is."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from nodes.kb_node import beliefs, map_state
+from nodes.kb_node.relations.facts import place_facts
+from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.measuring import crowds
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.kb_node.storage.journal import Journal
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commits import Edit, NewEntity, Transaction
+from schemas.entities import Pose
+
+
+@pytest.fixture
+def restarted(flat, tmp_path, monkeypatch):
+    """The flat with a heap of things more, just started; it takes many steps to work out where they are."""
+    for module in (beliefs, map_state, place_facts):
+        monkeypatch.setattr(module, "_STEP", 3)
+    monkeypatch.setattr(crowds, "MOST", 12)
+    dice = random.Random(7)
+    more = [new(flat, f"more{i}", at(flat, dice)) for i in range(30)]
+    crowd = [new(flat, f"crowded{i}", (8.0, 2.0 + 0.001 * i, 0.0)) for i in range(crowds.MOST)]
+    flat.commit(Transaction(id="more", source="file", add=(*more, *crowd)))
+    flat.checkpoint()
+    flat._journal.close()
+    made = SemanticMap(Journal(tmp_path / "journal.sqlite"))
+    yield made
+    made._journal.close()
+
+
+def new(semantic_map, name, position_m):
+    return NewEntity(
+        name=name,
+        class_iri=v.bare(semantic_map.classes.iris["Cup"]),
+        pose=Pose(position_m=position_m),
+        size=(0.1, 0.1, 0.1),
+    )
+
+
+def at(semantic_map, dice):
+    """On top of something, or near it."""
+    other = semantic_map.entity(dice.choice(sorted(semantic_map.names)))
+    x, y, z = other.pose.position_m if other.pose is not None else (1.0, 1.0, 0.0)
+    return (x, y, z + (other.size_m or (0.0, 0.0, 0.1))[2])
+
+
+def begin(semantic_map, steps=0):
+    while not semantic_map.follows:
+        semantic_map.follow_some()
+    for _ in range(steps):
+        semantic_map.follow_some()
+
+
+def agrees(semantic_map):
+    """Is what is believed what is computed of the poses from nothing?"""
+    facts = Facts(semantic_map.classes.limits)
+    facts.update(semantic_map.by_name.values())
+    expected = {(v.entity_iri(s), v.dm(p), v.entity_iri(o)) for s, p, o in facts}
+    assert set(semantic_map.beliefs.computed.facts) == set(facts)
+    return set(semantic_map.reasoner.computed()) == expected - semantic_map.beliefs.withheld.keys()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed):
+    dice = random.Random(seed)
+    begin(restarted)
+    for i in range(20):
+        for _ in range(dice.randrange(3)):
+            restarted.follow_some()
+        if dice.random() < 0.3:
+            add = (new(restarted, f"new{i}", at(restarted, dice)),)
+            restarted.commit(Transaction(id=f"t{i}", source="operator", add=add))
+        else:
+            name = dice.choice([e.name for e in restarted.entities() if not e.place])
+            edit = (Edit(name=name, at=at(restarted, dice)),)
+            restarted.commit(Transaction(id=f"t{i}", source="operator", edit=edit))
+    restarted.follow_places()
+    assert agrees(restarted)
+
+
+def test_what_is_computed_for_a_commit_holds_at_once(restarted):
+    begin(restarted)
+    cup, table = restarted.entity("more1"), restarted.entity("more2")
+    x, y, z = table.pose.position_m
+    edit = (Edit(name=cup.name, at=(x, y, z + table.size_m[2])),)
+    restarted.commit(Transaction(id="on", source="operator", edit=edit))
+    assert restarted.reasoner.is_computed((v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2")))
+    assert not restarted._follows_all
+
+
+def test_a_commit_that_is_refused_leaves_all(restarted):
+    begin(restarted)
+    add = (new(restarted, "more1", (0.0, 0.0, 0.0)),)
+    with pytest.raises(errors.NameTaken):
+        restarted.commit(Transaction(id="taken", source="operator", add=add))
+    restarted.follow_places()
+    assert agrees(restarted)
+
+
+def test_what_is_asserted_of_places_needs_all_of_it(restarted):
+    begin(restarted)
+    said = (v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2"))
+    restarted.commit(Transaction(id="said", source="operator", insert=(said,)))
+    assert restarted._follows_all
