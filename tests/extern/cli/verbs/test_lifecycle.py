@@ -4,6 +4,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
+from nodes.extern.cli.app import execute
 from nodes.extern.cli.verbs.lifecycle import _settings_before, settings_options
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
 from ontology import EMPTY_WORLD, FLAT_WORLD
@@ -52,3 +53,14 @@ def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
     assert "--abox is ignored" in goes_on.stderr
     anew = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
     assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")
+
+
+def test_a_secure_system_has_its_own_router(tmp_path, capsys):
+    folder = tmp_path / "keys"
+    assert execute(["keys", "init", str(folder)]) == 0
+    words = ["up", "--data", str(tmp_path / "d"), "--secure", str(folder), "--connect", "tls/127.0.0.1:7999"]
+    capsys.readouterr()
+    assert execute(words) == 2
+    assert (
+        "with --secure a system has its own router; --connect is for single nodes" in capsys.readouterr().err
+    )
