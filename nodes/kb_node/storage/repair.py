@@ -21,7 +21,7 @@ from msgspec import structs
 from nodes.kb_node.documents import ontology_files, rdf
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage import salvage, seed
+from nodes.kb_node.storage import salvage, seed, write_ahead
 from nodes.kb_node.storage.journal import FILENAME, Checkpoint, Journal
 from nodes.kb_node.storage.restating import DoesNotFit, fitted
 from nodes.kb_node.storage.sqlite_file import InUse, NotWritten
@@ -47,10 +47,13 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     if not path.exists():
         raise errors.BadFile(f"there is no map in {data}")
     new = path.with_name(f"new-{FILENAME}")
-    damaged = _opened(path)
+    damaged, mended = _opened(path)
     try:
         if _is_sound(damaged, _counting("checked", tell)):
-            return f"nothing is damaged: the map continues from commit {damaged.last}"
+            found = (
+                "the log with the last commits was damaged and is mended" if mended else "nothing is damaged"
+            )
+            return f"{found}: the map continues from commit {damaged.last}"
         made = _Salvage(damaged, new, _first_tbox(damaged, tbox), tell)
         last = made.made()
     finally:
@@ -59,13 +62,17 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     return f"the map continues from commit {last} ({made.told()}); the damaged file is kept in {kept}"
 
 
-def _opened(path: Path) -> Journal:
-    """The journal, also one whose end is missing."""
+def _opened(path: Path) -> tuple[Journal, bool]:
+    """The journal, also one whose end is missing or whose log is damaged; whether the log was mended."""
     try:
-        return Journal(path, to_salvage=True)
+        return Journal(path, to_salvage=True), False
     except InUse:
         raise
     except errors.Refused as error:
+        if write_ahead.is_set_aside(path):
+            write_ahead.mend(path)
+            write_ahead.forget(path)
+            return _opened(path)[0], True
         if _filled_up(path):
             return _opened(path)
         raise errors.Refused(f"{_reason(error)}; start a new map with --fresh (this one is kept)") from None

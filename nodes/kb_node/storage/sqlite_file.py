@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+from nodes.kb_node.storage import write_ahead
 from schemas import errors
 
 _PAGE_BYTES: Final = 4096
@@ -32,6 +33,34 @@ class JournalFile:
 
     def __init__(self, path: Path) -> None:
         """Open the file at `path`: WAL with `synchronous=FULL`. Raises InUse, Refused when it is damaged."""
+        if write_ahead.is_set_aside(path):
+            raise _lost(path)
+        log = write_ahead.look(path)
+        try:
+            try:
+                self._open(path)
+            except InUse:
+                raise
+            except errors.Refused:
+                if log is None or log.has_sound_head:
+                    raise
+                log.set_aside()
+                raise _lost(path) from None
+            if log is not None and log.lost(self._recovered()):
+                log.set_aside()
+                self._db.close()
+                raise _lost(path)
+        finally:
+            if log is not None:
+                log.file.close()
+
+    def _recovered(self) -> int:
+        """How many frames of the log SQLite has found to be sound."""
+        with self.reading() as db:
+            _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
+        return int(frames)
+
+    def _open(self, path: Path) -> None:
         self._path = path
         self._lock = threading.RLock()
         try:
@@ -43,6 +72,7 @@ class JournalFile:
                 db.execute("PRAGMA locking_mode=EXCLUSIVE")
                 db.execute("PRAGMA journal_mode=WAL")
                 db.execute("PRAGMA synchronous=FULL")
+                db.execute("SELECT 1 FROM sqlite_master").fetchone()  # now the log is read
                 db.execute("BEGIN IMMEDIATE")  # so that the log is there
                 db.execute("ROLLBACK")
             _lengthen(path.with_name(f"{path.name}-wal"))
@@ -112,6 +142,10 @@ def _lengthen(log: Path) -> None:
         for _ in range(file.seek(0, os.SEEK_END), _LOG_BYTES, _PAGE_BYTES):
             file.write(page)
         os.fsync(file.fileno())
+
+
+def _lost(path: Path) -> errors.Refused:
+    return errors.Refused(f"{path}: the log with its last commits is damaged; {mend(path)}")
 
 
 def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
