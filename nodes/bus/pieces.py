@@ -21,7 +21,9 @@ from schemas.calls import DOCUMENT
 PIECE: Final = 8 << 20
 """Bytes; what is larger is cut."""
 MESSAGE: Final = 16 << 20
-"""Bytes of a message that a session takes; what is larger is dropped on arrival, by Zenoh."""
+"""Bytes of the largest message; a question of more is refused, and a publication ignored."""
+PLANE: Final = 64 << 20
+"""Bytes that a session takes, for planes of cameras; what is larger is dropped on arrival, by Zenoh."""
 PUBLISHED: Final = MESSAGE - (1 << 16)
 """Bytes of the largest publication, which is not cut: there is room for what goes with it."""
 WHOLE: Final = DOCUMENT

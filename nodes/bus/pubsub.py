@@ -8,6 +8,7 @@ from typing import Any, Literal
 import zenoh
 from zenoh import ext
 
+from nodes.bus import pieces
 from schemas import codec, errors, keys
 from schemas.scenes import CameraFrame
 
@@ -41,12 +42,16 @@ def follow(
 ) -> Any:
     """Each publication of `topic` goes to `receive(key, message)`, on a thread of Zenoh's.
 
-    A malformed one is dropped: whoever sent it is not one of ours. `ignored()` is told of each.
+    One that is malformed or too large is dropped: whoever sent it is not one of ours. `ignored()` is told of
+    each.
     """
 
     def on_sample(sample: zenoh.Sample) -> None:
         if sample.kind == zenoh.SampleKind.DELETE:
             receive(str(sample.key_expr), None)
+            return
+        if len(sample.payload) > pieces.MESSAGE:
+            ignored()
             return
         try:
             message = codec.decode(sample.payload.to_bytes(), topic.message)

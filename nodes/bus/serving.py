@@ -70,6 +70,8 @@ def _request_of_query(
     """None for a piece after which others come. Raises what the query is to be refused with."""
     asked = str(query.key_expr)
     verb, who = keys.last_chunk(asked), keys.asked_as(asked) if prefix == keys.commands_as() else ""
+    if query.payload is not None and len(query.payload) > pieces.MESSAGE:
+        raise pieces.too_large(len(query.payload), pieces.MESSAGE)
     payload: bytes | bytearray = query.payload.to_bytes() if query.payload is not None else b""
     done = _nothing_to_do
     if (piece := pieces.piece_of(query.attachment)) is not None:
@@ -199,6 +201,9 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
                 ack = encode(Ack(id=str(said.id), verb=verb, ok=False, reply=None, error=long))
             acks.put(ack)
 
+        if len(payload) > pieces.MESSAGE:
+            send(errors.to_message(pieces.too_large(len(payload), pieces.MESSAGE)), False)
+            return
         receive(Request(verb, payload, {}, send, source=sample.source_info))
 
     session.declare_subscriber(f"{prefix}/**", on_put)

@@ -90,7 +90,7 @@ class Network(Struct, frozen=True):
             values["access_control"] = self.access
         config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
         if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
-            values[_LARGEST] = pieces.MESSAGE
+            values[_LARGEST] = pieces.PLANE
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config

@@ -34,7 +34,7 @@ from nodes.runtime import version
 from schemas import codec, errors, keys, roles
 from schemas.backups import Opening
 from schemas.calls import reply_type
-from schemas.commands import Command, Status, Watch
+from schemas.commands import Clear, Command, Load, Status, Undo, Watch
 from schemas.commits import Commit
 from schemas.entities import Source
 from schemas.moments import When, with_offset
@@ -68,6 +68,10 @@ def connect(
         yield Client(session, source=source, agent=agent, identity=who)
 
 
+_LONG = (Load, Undo, Clear)
+"""What may be at work for long when a node ends: its restart is waited for, so that the end is known."""
+
+
 class Client(Verbs):
     """Commands over a session of yours; `source` and `agent` sign those that do not say their own."""
 
@@ -97,7 +101,12 @@ class Client(Verbs):
         if self.identity is not None and (refusal := roles.refusal(self.identity.role, signed)) is not None:
             raise errors.Refused(refusal)
         reply: R = self._ask(
-            command.VERB, signed, reply_type(type(command)), timeout_s=timeout_s, first_hand=first_hand
+            command.VERB,
+            signed,
+            reply_type(type(command)),
+            timeout_s=timeout_s,
+            patience_s=bus.RESTART_S if isinstance(command, _LONG) else bus.PATIENCE_S,
+            first_hand=first_hand,
         )
         return reply
 

@@ -11,8 +11,9 @@ import zenoh
 
 from nodes import bus
 from nodes.bus import pieces
-from schemas import codec, commands, errors, replies
+from schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
+from tests.conftest import until
 
 
 @pytest.fixture
@@ -69,7 +70,7 @@ def test_a_message_larger_than_a_session_takes_does_not_arrive(pair):
     server.declare_subscriber("semmap/large", lambda sample: came.put(len(sample.payload)))
     time.sleep(0.3)
     client.put(
-        "semmap/large", bytes(bus.MESSAGE + (1 << 20)), congestion_control=zenoh.CongestionControl.BLOCK
+        "semmap/large", bytes(pieces.PLANE + (1 << 20)), congestion_control=zenoh.CongestionControl.BLOCK
     )
     client.put("semmap/large", bytes(bus.PUBLISHED), congestion_control=zenoh.CongestionControl.BLOCK)
     assert came.get(timeout=10) == bus.PUBLISHED
@@ -154,3 +155,21 @@ def test_no_more_than_a_few_are_put_together_at_a_time():
         arrivals.take(piece(0, of=str(number)), b"x", 1000)
     with pytest.raises(errors.Busy):
         arrivals.take(piece(0, of="one more"), b"x", 1000)
+
+
+def test_a_question_that_was_not_cut_is_refused_in_words(pair):
+    server, client = pair
+    bus.serve(server, PREFIX, answer(echoed))
+    (reply,) = client.get(f"{PREFIX}/load", payload=bytes(bus.MESSAGE + 1))
+    error = codec.decode(reply.err.payload.to_bytes(), errors.ErrorMessage)
+    assert (error.code, error.text[-16:]) == ("bad-request", "have up to 16 MB")
+
+
+def test_a_publication_that_is_too_large_is_counted(pair):
+    server, client = pair
+    heard, ignored = [], []
+    bus.follow(server, keys.HEALTH, lambda _, beat: heard.append(beat), lambda: ignored.append(1))
+    time.sleep(0.3)
+    client.put(keys.health_key("x"), bytes(bus.MESSAGE + 1), congestion_control=zenoh.CongestionControl.BLOCK)
+    until(lambda: ignored, "it is ignored")
+    assert heard == []

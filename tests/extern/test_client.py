@@ -6,8 +6,8 @@ import time
 import pytest
 
 from nodes import bus
-from nodes.extern.client import connect
-from schemas import codec, errors, keys, replies
+from nodes.extern.client import Client, connect
+from schemas import codec, commands, errors, keys, replies
 from schemas.commands import Status
 from schemas.commits import Commit
 from tests.conftest import free_endpoint
@@ -56,3 +56,16 @@ def test_the_commits_of_another_map_behind_the_same_endpoint_are_told_too():
         publish(167)
         publish(2, stamp_ns=time.time_ns())
         assert next(commits).seq == 2
+
+
+def test_the_restart_of_a_node_is_waited_for_where_work_may_be_under_way(monkeypatch):
+    """So a load whose coordinator is killed ends with what became of it."""
+    seen = {}
+    monkeypatch.setattr(
+        bus, "ask", lambda session, prefix, verb, *_, patience_s, **how: seen.update({verb: patience_s})
+    )
+    monkeypatch.setattr(bus, "Lifelines", lambda session: None)
+    client = Client(None, source="operator")
+    for command in (commands.Load(content=b"x"), commands.Undo(), commands.Clear(), commands.Get(name="a")):
+        client.send(command)
+    assert seen == dict.fromkeys(("load", "undo", "clear"), bus.RESTART_S) | {"get": bus.PATIENCE_S}

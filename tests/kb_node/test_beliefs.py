@@ -248,3 +248,12 @@ def test_what_comes_back_and_contradicts_what_was_said_meanwhile_is_withheld():
     assert set(home.reasoner.set_aside()) == {ON, inside}
     home.commit(moved=[HERE])
     assert home.state() == home.from_nothing()
+
+
+def test_what_is_said_to_be_in_itself_is_denied_only_while_it_is_there():
+    home = Home(said=":flat1 dm:isInside :flat1 .")
+    home.commit(moved=[placed("flat1", None)])
+    assert set(home.reasoner.set_aside()) == set(graphs.triples(":flat1 dm:isInside :flat1 ."))
+    home.commit(removed=["flat1"])
+    assert not set(home.reasoner.set_aside())
+    assert home.state() == home.from_nothing()

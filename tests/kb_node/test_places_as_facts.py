@@ -12,6 +12,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.sqlite_file import NotWritten
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors
@@ -123,7 +124,7 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
 def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     before = state(flat)
     monkeypatch.setattr(flat._journal, "append", _full)
-    with pytest.raises(OSError, match="full"):
+    with pytest.raises(NotWritten, match="full"):
         flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0)))
     assert state(flat) == before
 
@@ -136,13 +137,13 @@ def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch)
         assert state(flat) == before
         with monkeypatch.context() as patched:
             patched.setattr(flat._journal, "append", _full)
-            with pytest.raises(OSError, match="full"):
+            with pytest.raises(NotWritten, match="full"):
                 flat.commit(removal)
         assert state(flat) == before
 
 
 def _full(*_, **__):
-    raise OSError("full")
+    raise NotWritten("full")
 
 
 def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):

@@ -316,7 +316,7 @@ def test_the_urgent_comes_first_and_another_asker_is_not_kept_waiting(network, m
         send(name="other", session=other)
         until(lambda: len(node._requests) >= 10, "it waits")
         send("status", name="urgent")
-        time.sleep(0.3)
+        until(lambda: node._requests._urgent, "it waits, too")
         release.set()
         order = [got.get(timeout=5)[0] for _ in range(13)]
     assert order.index("urgent") < order.index("first 3")

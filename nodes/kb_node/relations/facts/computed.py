@@ -86,8 +86,10 @@ class Computed:
             gone, come = gone | old.gone, come | old.come
         shifted |= self.facts.shifted
 
+        left = frozenset(removed)
+
         def as_it_is(name: str) -> Entity | None:
-            return now.get(name) or before(name)
+            return now.get(name) or (None if name in left else before(name))
 
         went = self._triples(gone, before)
         came = self._triples(come, as_it_is)

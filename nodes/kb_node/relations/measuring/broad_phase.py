@@ -32,6 +32,11 @@ class Cells:
         self.is_filed: Final[Bools] = (
             ~self.is_large & (np.abs(low) < _FURTHEST).all(axis=1) & (np.abs(high) < _FURTHEST).all(axis=1)
         )
+        edge = _FURTHEST - 2 * MOST_CELLS
+        self.is_amid: Final[Bools] = (
+            self.is_filed & (np.abs(low) < edge).all(axis=1) & (np.abs(high) < edge).all(axis=1)
+        )
+        """(N,) whether all that shares a cell with it is filed, unless that is large."""
         self.low: Final[Ints] = np.where(self.is_filed[:, None], low, 0.0).astype(np.int64)
         self._extent: Final[Ints] = np.where(self.is_filed[:, None], extent, 0.0).astype(np.int64)
 
@@ -132,7 +137,7 @@ class BroadPhase:
             )
             meets = self._meet(by, large, margin_m)
             one, other = np.concatenate([one, by[meets]]), np.concatenate([other, large[meets]])
-        return one, other, ~cells.is_filed
+        return one, other, ~cells.is_amid
 
     def _meet(self, one: Ints, other: Ints, margin_m: float) -> Bools:
         """Whether bounds meet, or are within a margin."""

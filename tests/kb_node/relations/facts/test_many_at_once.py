@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from unittest.mock import patch
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
@@ -157,6 +157,7 @@ def test_what_stands_on_and_in_few_models(seed, models):
     st.integers(0, 10**9),
     st.sampled_from([(9000.0, -9000.0), (1.2e5, 3.0), (1e12, -1e12), (-(2.0**31), 2.0**31)]),
 )
+@example(220, (-(2.0**31), 2.0**31))
 def test_far_away(seed, middle):
     world = World(seed, middle=middle)
     require_alike([*World(seed + 1).things(10), *world.things(20)])
