@@ -17,7 +17,7 @@ import zenoh
 from msgspec import structs
 
 from nodes import bus
-from schemas import codec, keys
+from schemas import codec, errors, keys
 from schemas.commits import Commit, Departed, Effects
 from schemas.entities import Pose
 from schemas.health import Health
@@ -63,7 +63,14 @@ def forged_commit(ground: Ground) -> None:
             session.put(keys.COMMIT.key, codec.encode(commit))
             session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
         wait_for(lambda: name in {entity.name for entity in client.list("Bowl")}, "what was hidden is there")
-        client.remove(name)
+
+        def is_removed() -> bool:
+            try:
+                return client.remove(name).names == (name,)
+            except errors.UnknownName:  # the last of those that were forged hid it again
+                return False
+
+        wait_for(is_removed, "what was hidden can be removed")
 
 
 def commit_far_ahead(ground: Ground) -> None:

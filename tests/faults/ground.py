@@ -84,7 +84,9 @@ class Ground:
         self.load_again()
 
     def load_again(self) -> None:
-        """Begin another load."""
+        """Begin another load; one that a fault left going on is reckoned up."""
+        if self._loads and self.load.is_alive():
+            self.reckon()
         self._loads += 1
         self.load = Load(self.endpoint, self._loads, 0.0 if "--no-sim" in self._words else BREATH_S)
         self.load.start()
