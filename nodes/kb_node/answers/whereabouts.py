@@ -121,10 +121,12 @@ class Now:
 
         Raises Refused when a measurement denies it.
         """
-        if query.negated:
-            return None
         seen = self._seen(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
+        if query.negated:
+            if seen is None or seen.holds or found is not None:
+                return None
+            return Explained(Explanation(conclusion=None, support=(), steps=(), text=seen.text))
         if found is None:
             if (
                 withheld := next((t for t in asked.triples if t in self._map.beliefs.withheld), None)
@@ -137,8 +139,9 @@ class Now:
             return None if seen is None else Explained(self._measured(seen))
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
             return Explained(found, measured=(self._told(found.conclusion),))
-        if seen is not None and seen.relation == "touches" and not seen.holds:
-            seen = None
+        if seen is not None and not seen.holds:
+            # What is on a thing touches it with a gap, and where places are is asserted, not measured.
+            seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
         if seen is not None:
             if not seen.holds:
                 text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
@@ -167,6 +170,9 @@ class Now:
         if is_inverse:
             ends.reverse()
         return explained(self._map.places.space(), ends[0], relation, ends[1])
+
+    def _is_place(self, name: str) -> bool:
+        return self._map.entity(name).place
 
     def _measured(self, seen: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))

@@ -112,7 +112,12 @@ def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
 
 
 def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
-    """The entities that a word means: that name, else that reference, else that class. Raises UnknownName."""
+    """The entities that a word means: that name, else that reference, else that class. Raises UnknownName.
+
+    A class that is written as it is (`Table`) comes before a reference (`table`).
+    """
+    if not any(word == e.name for e in everyone) and (names := [e.name for e in everyone if word in e.types]):
+        return frozenset(names)
     folded = word.casefold().replace("_", " ")
     for called in (
         lambda e: (e.name,),

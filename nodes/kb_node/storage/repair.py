@@ -53,7 +53,7 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
             found = (
                 "the log with the last commits was damaged and is mended" if mended else "nothing is damaged"
             )
-            return f"{found}: the map continues from commit {damaged.last}"
+            return f"{found} in {data}: the map continues from commit {damaged.last}"
         made = _Salvage(damaged, new, _first_tbox(damaged, tbox), tell)
         last = made.made()
     finally:

@@ -40,8 +40,8 @@ def own(tmp_path):
     home.close(made)
 
 
-def explained(semantic_map, name, predicate, value):
-    query = Explain(name=name, predicate=predicate, value=value)
+def explained(semantic_map, name, predicate, value, *, negated=False):
+    query = Explain(name=name, predicate=predicate, value=value, negated=negated)
     now = whereabouts.Now(semantic_map)
     if (measured := now.measured(query)) is not None:
         return measured
@@ -147,3 +147,14 @@ def test_what_could_be_says_what_geometry_says(flat):
     text = questions.could(flat.reasoner, asked, against=against).text
     assert text.startswith("yes: nothing excludes")
     assert "but as things are, it stands" in text
+
+
+def test_why_not_is_told_by_what_was_measured(flat):
+    why_not = explained(flat, "apple1", "isOn", "counter1", negated=True)
+    assert why_not.text.startswith("apple1 is not on counter1: ")
+    assert why_not.text == refused(flat, "apple1", "isOn", "counter1")
+    assert explained(flat, "apple1", "isInside", "bowl1", negated=True) is None  # it is, and a rule says so
+
+
+def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):
+    assert "as it stands" not in explained(flat, "kitchen1", "isLocatedIn", "flat1").text

@@ -59,6 +59,12 @@ def test_words():
         meant(MAP, "tabel1")
 
 
+def test_a_class_as_it_is_written_is_not_one_thing_that_is_called_so():
+    called = thing("table7", (5.0, 5.0, 0.0), ref="table")
+    assert meant([*MAP, called], "Table") == {"table1", "table7"}
+    assert meant([*MAP, called], "table") == {"table7"}
+
+
 def test_a_word_that_means_one_only():
     assert only_meant(MAP, "my cup") == "cup1"
     assert only_meant(MAP, "kitchen") == "kitchen1"

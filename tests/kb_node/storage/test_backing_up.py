@@ -72,7 +72,8 @@ def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
     assert restored == commits
     assert (origin, digest) == (semantic_map._journal.origin(), opening.digest)
     assert {e.name for e in after[2].entities} == {e.name for e in there[2].entities}
-    assert repair(tmp_path / "other") == "nothing is damaged: the map continues from commit 8"
+    other = tmp_path / "other"
+    assert repair(other) == f"nothing is damaged in {other}: the map continues from commit 8"
 
 
 @pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)

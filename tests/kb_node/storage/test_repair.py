@@ -74,7 +74,7 @@ def test_what_is_good_after_a_damaged_commit_is_kept(data, broken):
     assert (mended[broken - 1].inserted, mended[broken - 1].retracted) == ((), ())
     assert [c.inserted for c in mended[broken:]] == [c.inserted for c in commits[broken:]]
     assert {e.name for e in snapshot.entities} == {f"chair{n}" for n in range(1, 9) if n not in (5, broken)}
-    assert repair(data) == "nothing is damaged: the map continues from commit 8"
+    assert repair(data) == f"nothing is damaged in {data}: the map continues from commit 8"
 
 
 def story(folder, *steps):
