@@ -32,10 +32,12 @@ def test_a_backup_of_a_system_that_goes_on_is_a_map_of_its_own(tmp_path):
 
         adding = threading.Thread(target=add)
         adding.start()
-        until(lambda: len(added) > 20, "cups")
-        assert "verified" in system.cli("backup", file)
-        ended.set()
-        adding.join()
+        try:
+            until(lambda: len(added) > 20, "cups")
+            assert "verified" in system.cli("backup", file)
+        finally:
+            ended.set()
+            adding.join()
         last = backups.verify(file).last
         assert added[0] < last < added[-1] + 1
         assert "is there already" in system.cli("backup", file, status=2)

@@ -20,18 +20,21 @@ from schemas.replies import Changed
 from schemas.scene_files import pose_of
 
 UNCHANGED = "unchanged: already up to date"
+_TRIES = 4
+"""How often a name is thought of anew: others may publish made-up commits one after another."""
 
 
 @once
 def add(view: KnownMap, command: Add) -> Talk[Changed]:
     """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
-    try:
-        return (yield from _add(view, command, found))
-    except errors.NameTaken:
-        if command.name is not None or view.is_confirmed:
-            raise
-    yield from taken_anew(view)  # it was not as it seemed: somebody published what was never committed
+    for _ in range(_TRIES):
+        try:
+            return (yield from _add(view, command, found))
+        except errors.NameTaken:
+            if command.name is not None:
+                raise
+        yield from taken_anew(view)  # it was not as it seemed: somebody published what was never committed
     return (yield from _add(view, command, found))
 
 

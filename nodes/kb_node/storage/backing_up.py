@@ -50,10 +50,9 @@ def part(journal: Journal, at: str, *, size: int = PART_BYTES) -> BackupPart:
     if at:
         place, content = Place.read(at), list[bytes]()
     else:
-        place, content = (
-            Place(journal.beginning.seq, journal.last, 0, -1, 0),
-            [MAGIC, framed(_opening(journal))],
-        )
+        opening = _opening(journal)  # commits go on: it says once which one is the last
+        place = Place(journal.beginning.seq, opening.last, 0, -1, 0)
+        content = [MAGIC, framed(opening)]
     if place.begins != journal.beginning.seq:
         raise errors.Refused("the history has been compacted meanwhile; begin the backup again")
     filled = 0
