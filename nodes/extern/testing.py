@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import random
 import socket
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from nodes.extern.client import Client, connect
 
 _READY = "stop "
 """How the last line of the greeting begins."""
+_FIRST_PORT, _AFTER_PORTS = 20_000, 32_000
+_dice = random.SystemRandom()
 
 
 @contextmanager
@@ -47,7 +50,13 @@ def own_system(
 
 
 def free_endpoint() -> str:
-    """A port of this machine that nobody uses just now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    """A port of this machine that nobody uses just now.
+
+    It is none of those that the operating system gives to outgoing connections, one of which might have it
+    before a system listens there.
+    """
+    while True:
+        port = _dice.randrange(_FIRST_PORT, _AFTER_PORTS)
+        with socket.socket() as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return f"tcp/127.0.0.1:{port}"
