@@ -5,11 +5,7 @@ import random
 
 import pytest
 
-from nodes.kb_node.documents import rdf
-from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.storage.journal import Journal
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas.commands import Sparql, Watch
 from schemas.commits import Edit, Transaction
@@ -37,18 +33,6 @@ QUERIES = {
     "SELECT DISTINCT ?x { ?x a dm:Laden_Thing }": laden,
 }
 """Each with what the map's own reasoner says to it."""
-
-
-@pytest.fixture
-def flat(tmp_path):
-    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
-    made = SemanticMap(
-        Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
-    )
-    abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
-    made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
-    yield made
-    made._journal.close()
 
 
 @pytest.mark.long

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -17,7 +18,7 @@ def fitted(model: str, size: Size) -> ModelShape:
     own = own_shape(model)
     if own is None:
         return box(size)
-    if _is_turned(own, size):
+    if are_turned(own, np.array([size]))[0]:
         own = quarter_turned(own)
     if own.size_m == size:
         return own
@@ -42,15 +43,7 @@ def fitted(model: str, size: Size) -> ModelShape:
             for i in own.interiors
             for low, high in (stretched((i.low, i.high)),)
         ),
-        parts=tuple(
-            ConvexPart(
-                centre=stretched((p.centre,))[0],
-                straight=stretched(p.straight),
-                round=stretched(p.round),
-                points=stretched(p.points),
-            )
-            for p in own.parts
-        ),
+        parts=tuple(_mapped(part, stretched) for part in own.parts),
     )
 
 
@@ -69,10 +62,10 @@ def box(size: Size) -> ModelShape:
     )
 
 
-def _is_turned(shape: ModelShape, size: Size) -> bool:
-    own = shape.size_m
-    longer, shorter = max(own[:2]), min(own[:2])
-    return shape.turns and (own[0] - own[1]) * (size[0] - size[1]) < 0.0 and longer > 1.3 * shorter
+def _mapped(part: ConvexPart, by: Callable[[tuple[Vector, ...]], tuple[Vector, ...]]) -> ConvexPart:
+    """A part whose centre and vectors are mapped alike, as turning and stretching do."""
+    (centre,) = by((part.centre,))
+    return ConvexPart(centre=centre, straight=by(part.straight), round=by(part.round), points=by(part.points))
 
 
 def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -106,13 +99,5 @@ def quarter_turned(shape: ModelShape) -> ModelShape:
             )
             for i in shape.interiors
         ),
-        parts=tuple(
-            ConvexPart(
-                centre=turned((p.centre,))[0],
-                straight=turned(p.straight),
-                round=turned(p.round),
-                points=turned(p.points),
-            )
-            for p in shape.parts
-        ),
+        parts=tuple(_mapped(part, turned) for part in shape.parts),
     )
