@@ -72,7 +72,7 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
     second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
     stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
     monkeypatch.setattr(past._journal.stamps, "of", lambda seq: second_ns + stamps[seq])
-    monkeypatch.setattr(past._journal, "_stamps_so_far", lambda: [second_ns + s for s in stamps.values()])
+    monkeypatch.setattr(past._journal.stamps, "_so_far", lambda: [second_ns + s for s in stamps.values()])
     for when, seqs in {
         "2026-03-01T12:30:04": [1],
         "2026-03-01T12:30:05": [2, 3],
