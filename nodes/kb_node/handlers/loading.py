@@ -123,9 +123,7 @@ class Loading:
             ) from None
 
     def _commit(self, transaction: Transaction, *, told: bool) -> Commit | None:
-        return self._changing.published_if_new(
-            lambda: self._map.commit(transaction), told=told, at_once=True
-        )
+        return self._changing.published_if_new(lambda: self._map.commit(transaction), told=told, at_once=True)
 
 
 def _described(commit: Commit) -> Iterator[str]:
