@@ -331,15 +331,20 @@ def _option_of(field: str) -> str:
 
 
 def _settings_before(data: Path) -> Settings | None:
-    """What the map in `data` was last run with, if there is such a map; what of it is lost is told."""
-    if not (data / JOURNAL).exists():
-        return None
+    """What was last run in `data`, if there is a map, or it was a part whose map is on another host.
+
+    What of it is lost is told.
+    """
+    has_map = (data / JOURNAL).exists()
     try:
         settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
     except OSError:
         return None
     except errors.BadRequest:
-        complain(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
+        if has_map:
+            complain(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
+        return None
+    if not has_map and (not settings.only or "kb_node" in settings.only):
         return None
     if not Path(settings.world).exists():
         complain(f"the world {settings.world} no longer exists; using the flat's")
