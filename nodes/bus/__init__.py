@@ -19,6 +19,7 @@ from nodes.bus.session import (
     is_local,
     open_session,
     over_tls,
+    read_links_apart,
     require_tls,
 )
 
@@ -54,6 +55,7 @@ __all__ = [
     "over_tls",
     "own_config",
     "publisher",
+    "read_links_apart",
     "read_reply",
     "require_tls",
     "robots",

@@ -190,7 +190,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     The damaged file is kept.
     """
     extras.require("semmap repair", "kb")
-    from nodes.kb_node.storage.repair import repair as repair_journal
+    from nodes.kb_node.storage.repair.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 
