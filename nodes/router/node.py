@@ -72,7 +72,8 @@ class Router:
         """Admit those of `register`, or everybody, until there is another one."""
         network = self._network
         if register is not None:
-            network = structs.replace(network, access=access_control(register.admitted))
+            access = access_control(register.admitted, network.namespace)
+            network = structs.replace(network, access=access)
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)
             admitted = "" if register is None else in_words(register, datetime.now(UTC))

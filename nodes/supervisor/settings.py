@@ -12,6 +12,8 @@ from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from nodes.identity import Identity
+from schemas.endpoints import robot_name
+from schemas.errors import BadRequest
 from schemas.keys import ROUTER
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
@@ -71,6 +73,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     secure: str | None = None
     """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener of
     this host."""
+    namespace: str = ""
+    """The name of the robot, which prefixes every key: several robots can share a network."""
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 
@@ -81,6 +85,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"--record-keep: '{self.record_keep}' is neither an age nor a size; examples: 12h, 7d, 500MB,"
                 " 20GB"
             )
+        try:
+            robot_name(self.namespace)
+        except BadRequest as error:
+            raise ValueError(error.text) from None
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
@@ -127,7 +135,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Where there is a router it listens, and all others are its clients; it connects to other hosts. A
         single node is a client of whoever listens there.
         """
-        return structs.replace(self._place(node), own_config=self.zenoh_config)
+        return structs.replace(self._place(node), namespace=self.namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
         identity = None if self.secure is None else Identity.read(Path(self.secure) / node)
