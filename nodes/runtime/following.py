@@ -63,6 +63,7 @@ class Follower(Generic[C]):
         """A commit that the replica has and the knowledge base had not, and since when."""
         self._there = -1
         """The last commit, as of the knowledge base's last beat but one."""
+        node.describe("waiting for the knowledge base")
         node.follow(topic, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(_LOOK_S, self._look)
