@@ -12,7 +12,7 @@ from nodes.bus.asking import (
     first_round_s,
     read_reply,
 )
-from nodes.bus.lifelines import Lifelines, appear, follow_presence
+from nodes.bus.lifelines import Lifelines, appear, follow_presence, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -27,6 +27,7 @@ from nodes.bus.session import (
     Session,
     host_of,
     is_local,
+    linked_routers,
     open_session,
     over_tls,
     read_links_apart,
@@ -62,6 +63,7 @@ __all__ = [
     "host_of",
     "includes",
     "is_local",
+    "linked_routers",
     "listen",
     "open_session",
     "over_tls",
@@ -70,6 +72,7 @@ __all__ = [
     "read_links_apart",
     "read_reply",
     "require_tls",
+    "robots",
     "serve",
     "serve_puts",
     "watched",
