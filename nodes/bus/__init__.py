@@ -2,7 +2,7 @@
 
 from nodes.bus import own_config
 from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
-from nodes.bus.lifelines import Lifelines, appear, follow_presence
+from nodes.bus.lifelines import Lifelines, appear, follow_presence, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -19,6 +19,7 @@ from nodes.bus.session import (
     is_local,
     open_session,
     over_tls,
+    read_links_apart,
     require_tls,
 )
 
@@ -54,8 +55,10 @@ __all__ = [
     "over_tls",
     "own_config",
     "publisher",
+    "read_links_apart",
     "read_reply",
     "require_tls",
+    "robots",
     "serve",
     "serve_puts",
     "watched",

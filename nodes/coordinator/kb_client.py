@@ -16,7 +16,7 @@ from schemas.commits import Transaction
 R = TypeVar("R")
 
 _LONG = frozenset({"load", "load-tbox", "undo"})
-"""What keeps the knowledge base busy; the heart goes on beating meanwhile."""
+"""What keeps the knowledge base busy."""
 _BUSY_S = 6 * 3600.0
 """However long the knowledge base works: it is watched, and its end ends the question."""
 _AT_ONCE_S = 0.15
@@ -42,13 +42,16 @@ class Bridge:
         return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def change(self, call: Call[R]) -> Future[R]:
-        """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        beating = _takes_long(call)
-        timeout_s = _BUSY_S if beating else _AT_ONCE_S
+        """The same as `change_later`, waited for here while somebody is there: that takes less time.
+
+        What takes long is not waited for: other questions are answered meanwhile.
+        """
+        if _takes_long(call):
+            return self.change_later(call)
         future: Future[R] = Future()
         settle(
             future,
-            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=0.0, beating=beating),
+            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0),
         )
         return self.change_later(call) if _is_unanswered(future) else future
 

@@ -175,7 +175,8 @@ class Coordinator:
         return made
 
     def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
-        ask = self._bridge.change_later if len(changes) > 1 else self._bridge.change
+        nobody_waits = len(changes) == 1 and not len(self._turns)
+        ask = self._bridge.change if nobody_waits else self._bridge.change_later
         return hold_later(self._door.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:

@@ -60,7 +60,9 @@ class Router:
 
     def _route(self, register: Register) -> None:
         """Admit those of `register` until there is another one."""
-        network = structs.replace(self._network, access=access_control(register.admitted))
+        network = structs.replace(
+            self._network, access=access_control(register.admitted, self._network.namespace)
+        )
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)
 

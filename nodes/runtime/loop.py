@@ -458,6 +458,7 @@ def _wake() -> None:
 @contextmanager
 def open_node(name: str, network: bus.Network) -> Iterator[Node]:
     """A node with an open session that stops on SIGTERM and SIGINT."""
+    bus.read_links_apart()
     with bus.open_session(network) as session:
         node = Node(name, session, network.commands)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -12,6 +12,8 @@ from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
 from nodes.identity import Identity
+from schemas.endpoints import robot_name
+from schemas.errors import BadRequest
 from schemas.keys import ROUTER
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
@@ -66,6 +68,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
     """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener."""
+    namespace: str = ""
+    """The name of the robot, which prefixes every key: several robots can share a network."""
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 
@@ -76,6 +80,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"--record-keep: '{self.record_keep}' is neither an age nor a size; examples: 12h, 7d, 500MB,"
                 " 20GB"
             )
+        try:
+            robot_name(self.namespace)
+        except BadRequest as error:
+            raise ValueError(error.text) from None
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
@@ -109,7 +117,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         In a secure system the router listens, and all others are its clients; or of one elsewhere.
         """
-        return structs.replace(self._place(node), own_config=self.zenoh_config)
+        return structs.replace(self._place(node), namespace=self.namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
         if self.secure is not None:

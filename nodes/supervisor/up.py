@@ -63,6 +63,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
                     listen=settings.listen,
                     reachable=settings.reachable,
                     pid=process.pid,
+                    namespace=settings.namespace,
                 ):
                     _Foreground(supervisor, settings, process, notices, say).run()
             finally:
@@ -188,8 +189,12 @@ class _Foreground:
     def _network(self) -> bus.Network:
         secure = self._settings.secure
         identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
-        own_config = self._settings.zenoh_config
-        return bus.Network(connect=(self._settings.reachable,), identity=identity, own_config=own_config)
+        return bus.Network(
+            connect=(self._settings.reachable,),
+            namespace=self._settings.namespace,
+            identity=identity,
+            own_config=self._settings.zenoh_config,
+        )
 
     def _replace_what_hangs(self) -> None:
         for hang in self._watchdog.hanging():
@@ -228,6 +233,8 @@ class _Foreground:
         if self._settings.secure is not None:
             connect += f" --identity {shlex.quote(self._settings.secure)}/NAME"
         lines = {"zenoh": self._settings.reachable, "data": self._settings.data}
+        if self._settings.namespace:
+            lines = {"robot": self._settings.namespace} | lines
         if self._settings.record:
             lines["recording"] = f"{self._settings.data}/recordings"
         if self._settings.live_view is not None:

@@ -11,7 +11,7 @@ from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import term_syntax
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
 from schemas.calls import Handler, by_verb

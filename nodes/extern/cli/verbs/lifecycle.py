@@ -23,7 +23,7 @@ from nodes.runtime import extras
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
-from schemas.endpoints import CONNECT_VARIABLE
+from schemas.endpoints import CONNECT_VARIABLE, NAMESPACE_VARIABLE, robot_name
 from schemas.keys import NODES, ROUTER
 
 _path = click.Path(path_type=Path)
@@ -80,6 +80,14 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Zenoh endpoint that the system listens on.",
     )
     @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option(
+        "--namespace",
+        envvar=NAMESPACE_VARIABLE,
+        show_envvar=True,
+        default="",
+        metavar="ROBOT",
+        help="Name of this robot: its keys begin with it, so that robots can share a network.",
+    )
     @click.option(
         "--secure",
         type=_path,
@@ -182,7 +190,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     The damaged file is kept.
     """
     extras.require("semmap repair", "kb")
-    from nodes.kb_node.storage.repair import repair as repair_journal
+    from nodes.kb_node.storage.repair.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 
@@ -215,7 +223,7 @@ def _settings(
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
     record_keep: str | None,
-    secure: Path | None, zenoh_config: Path | None, insecure: bool,
+    secure: Path | None, zenoh_config: Path | None, insecure: bool, namespace: str,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
@@ -259,6 +267,7 @@ def _settings(
         "record_keep": record_keep,
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
+        "namespace": robot_name(namespace),
         "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),
     }
     _require_protected(values, insecure=insecure)
