@@ -8,7 +8,7 @@ from msgspec import Struct
 class Argument(Struct, frozen=True):
     """What fills a role. Words count from 1.
 
-    `entity` is the one that is meant; where several may be, `candidates` has their names and `entity` is None.
+    `entity` is the one that is meant; where several may be, `candidates` has their names instead.
     """
 
     role: str

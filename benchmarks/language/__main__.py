@@ -1,4 +1,4 @@
-"""`python -m benchmarks.language [--data DIR] [--ablations] [--json FILE]`, or `--evaluate DIR --predictions FILE`."""
+"""`python -m benchmarks.language [--ablations]`, or with `--evaluate DIR --predictions FILE`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 from benchmarks.language import baseline, trials
 from benchmarks.language.scoring import Scores, scores
-from benchmarks.table import Row, lines
+from benchmarks.table import Row, as_json, lines
 from nodes.language.interpretation import shipped
 from nodes.training.language import corpus
 from nodes.training.language.corpus import Example
@@ -118,7 +118,7 @@ def main() -> None:
         found = rows(corpus.read(given.data), given.ablations)
     print(lines(found))
     if given.json:
-        given.json.write_text(json.dumps([row.json() for row in found], indent=1))
+        given.json.write_text(json.dumps([as_json(row) for row in found], indent=1))
 
 
 if __name__ == "__main__":

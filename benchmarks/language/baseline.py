@@ -1,4 +1,4 @@
-"""The least that a reader should do: the verb's most frequent frame, the phrases' most frequent roles, the nearest label."""
+"""The least that a reader should do: the most frequent frame and roles, the nearest label."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ def _understood(
             span = (phrase.first + 1, phrase.last + 1)
             arguments.append(Argument(known.most_common(1)[0][0], text, span, phrase.head + 1, entity))
         frames.append(Frame(name, (i + 1,), tuple(arguments)))
-    return Understood(example.words, tuple(frames), tuple(Grounded(t, e) for t, e in sorted(groundings.items())))
+    return Understood(
+        example.words, tuple(frames), tuple(Grounded(t, e) for t, e in sorted(groundings.items()))
+    )
 
 
 def _nearest(word: str, things: tuple[Thing, ...]) -> str | None:

@@ -29,11 +29,11 @@ class Scores:
 
 
 def scores(pairs: Iterable[tuple[Example, Understood]]) -> Scores:
-    """A frame is right by its name and a word of its verb; an argument belongs to a right frame and has the role.
+    """A frame is right by its name and a word of its verb; its arguments are right by role, and span or head.
 
-    Its span is right from first to last word, its head if the word is the same; where no head was annotated any
-    word inside will do. Words whose entity is not in the map (pronouns, mostly) are left out of groundings. A
-    command is whole if frames, roles and heads are right, none is too many, and every head's entity is right.
+    A span is right from first to last word, a head if the word is the same; where none was annotated any word
+    A span is right from first to last word, a head if the word is the same; where none was said any word
+    is whole if frames, roles and heads are right, none is too many, and every head's entity is right.
     """
     n: Counter[str] = Counter()
     for example, understood in pairs:
@@ -69,7 +69,9 @@ def _count(n: Counter[str], example: Example, understood: Understood) -> None:
     there = {thing.name for thing in example.things}
     gold = {token: name for token, name in example.groundings if name in there}
     unanswerable = {token for token, _ in example.groundings} - set(gold)
-    said_of = {found.token: found.entity for found in understood.groundings if found.token not in unanswerable}
+    said_of = {
+        found.token: found.entity for found in understood.groundings if found.token not in unanswerable
+    }
     n["groundings"] += sum(said_of.get(token) == name for token, name in gold.items())
     n["groundings seen"] += len(gold)
     n["groundings said"] += len(said_of)
@@ -94,7 +96,9 @@ def _heads(seen: Filled, said: Frame) -> int:
     right = 0
     for role in sorted(seen.arguments, key=lambda role: role.head is None):
         for argument in left:
-            about = argument.head == role.head or (role.head is None and role.first <= argument.head <= role.last)
+            about = argument.head == role.head or (
+                role.head is None and role.first <= argument.head <= role.last
+            )
             if argument.role == role.name and about:
                 left.remove(argument)
                 right += 1

@@ -1,1 +1,1 @@
-"""Understanding what people say about a map: words, phrases, frames and what they refer to. Pure, without a network."""
+"""Understanding what people say about a map: words, phrases, frames, entities."""

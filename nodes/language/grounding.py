@@ -67,7 +67,7 @@ def distance(one: Thing, other: Thing) -> float:
 
 
 def called(text: str, among: Scene, lexicon: Lexicon) -> Things:
-    """The things that may be called so: by reference, by class, by a subclass, or by what theirs is one of."""
+    """The things that may be called so: by reference, class, subclass or superclass."""
     base = based(text, lexicon)
     for form in (text, base, text.replace(" ", ""), text.replace("-", "")):
         if form in among.called:

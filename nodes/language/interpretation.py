@@ -18,6 +18,11 @@ from schemas.language import Argument, Frame, Grounded, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
+_DOERS: Final = ("Agent", "Perceiver", "Cognizer", "Inspector")
+_ACTED_ON: Final = (
+    *("Theme", "Item", "Device", "Entity", "Sought_entity", "Phenomenon", "Containing_object", "Ground"),
+    "Container_portal",
+)
 _Span = tuple[str, int, int]  # slot, index of the first and of the last word
 
 
@@ -44,7 +49,9 @@ class Interpreter:
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
             frames.append(_frame(s, name, (first, last), spans, frames))
-        unknown = (word.text for i, word in enumerate(s.words) if word.kind == "verb" and not s.verb_frames(i))
+        unknown = (
+            word.text for i, word in enumerate(s.words) if word.kind == "verb" and not s.verb_frames(i)
+        )
         return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown))
 
     def _calls(self, s: Sentence) -> list[tuple[int, int, list[tuple[float, str]]]]:
@@ -53,12 +60,14 @@ class Interpreter:
         labels = self._frames.tag()
         calls: list[tuple[int, int, list[tuple[float, str]]]] = []
         for i, label in enumerate(labels):
-            if label == "O" or (s.words[i].kind == "verb" and not s.verb_frames(i)):
+            if label == "O" or _is_unknown_verb(s, i):
                 continue
             if calls and calls[-1][1] == i - 1 and labels[i - 1] == label and not _is_new_verb(s, i):
                 calls[-1] = (calls[-1][0], i, calls[-1][2])
                 continue
-            probable = [(self._frames.marginal(name, i), name) for name in self._frames.labels() if name != "O"]
+            probable = [
+                (self._frames.marginal(name, i), name) for name in self._frames.labels() if name != "O"
+            ]
             calls.append((i, i, [found for found in probable if found[0] > _LEAST] or [(1.0, label)]))
         return calls
 
@@ -70,7 +79,9 @@ class Interpreter:
         for probability, name in found:
             self._roles.set(roles.features(s, verb, name, others))
             labels = self._roles.tag()
-            score = math.log(probability) + _WEIGHT_OF_ROLES * math.log(max(self._roles.probability(labels), 1e-300))
+            score = math.log(probability) + _WEIGHT_OF_ROLES * math.log(
+                max(self._roles.probability(labels), 1e-300)
+            )
             if best is None or score > best[0]:
                 best = (score, name, labels)
         assert best is not None
@@ -81,7 +92,13 @@ class Interpreter:
 def shipped(language: str = "english") -> Interpreter:
     """The interpreter that comes with the package, learnt by `make train-language`."""
     folder = resources.files(__package__) / "learnt"
-    return Interpreter(str(folder / f"{language}_frames.crfsuite"), str(folder / f"{language}_roles.crfsuite"), language)
+    return Interpreter(
+        str(folder / f"{language}_frames.crfsuite"), str(folder / f"{language}_roles.crfsuite"), language
+    )
+
+
+def _is_unknown_verb(s: Sentence, i: int) -> bool:
+    return s.words[i].kind == "verb" and not s.verb_frames(i)
 
 
 def _is_new_verb(s: Sentence, i: int) -> bool:
@@ -109,8 +126,10 @@ def _spans(labels: Sequence[str]) -> list[_Span]:
     return spans
 
 
-def _frame(s: Sentence, name: str, verb: tuple[int, int], spans: Sequence[_Span], before: Sequence[Frame]) -> Frame:
-    arguments = []
+def _frame(
+    s: Sentence, name: str, verb: tuple[int, int], spans: Sequence[_Span], before: Sequence[Frame]
+) -> Frame:
+    arguments: list[Argument] = []
     for slot, first, last in spans:
         head = _head(s, slot, first, last)
         k = s.phrase_of[head]
@@ -162,13 +181,9 @@ def _said_before(frames: Sequence[Frame], arguments: Sequence[Argument], pronoun
     if pronoun not in ("it", "them", "they", "one"):
         return None
     spoken_of = [*(argument for frame in frames for argument in frame.arguments), *arguments]
-    things = [argument for argument in spoken_of if argument.role not in ("Agent", "Perceiver", "Cognizer", "Inspector")]
-    acted_on = [argument.entity for argument in things if argument.role in _ACTED_ON and argument.entity]
-    others = [argument.entity for argument in things if argument.entity]
-    return next(iter([*reversed(acted_on), *reversed(others)]), None)
-
-
-_ACTED_ON: Final = ("Theme", "Item", "Device", "Entity", "Sought_entity", "Phenomenon", "Containing_object", "Ground")
+    named = [a for a in reversed(spoken_of) if a.entity and a.role not in _DOERS]
+    acted_on = [a for a in named if a.role in _ACTED_ON]
+    return next((a.entity for a in (*acted_on, *named)), None)
 
 
 def _grounded(s: Sentence, frames: Sequence[Frame]) -> tuple[Grounded, ...]:

@@ -32,7 +32,12 @@ def _of_word(s: Sentence, i: int) -> list[str]:
     for rank, frame in enumerate(frames):
         seen += [f"may={frame}", f"rank{rank}={frame}"]
     around = _clause(s, i)
-    return [*seen, *around, *(f"{word.lemma}|{text}" for text in around), *(f"{among}|{text}" for text in around)]
+    return [
+        *seen,
+        *around,
+        *(f"{word.lemma}|{text}" for text in around),
+        *(f"{among}|{text}" for text in around),
+    ]
 
 
 def _clause(s: Sentence, i: int) -> list[str]:
@@ -61,5 +66,9 @@ def _clause(s: Sentence, i: int) -> list[str]:
                     seen.append(f"has {kind}")
     if things and places:
         nearest = s.near(things[0], places[0])
-        seen += [f"np-pp {nearest}", f"np-lastpp {s.near(things[0], places[-1])}", f"np-pp {nearest} {len(places)}"]
+        seen += [
+            f"np-pp {nearest}",
+            f"np-lastpp {s.near(things[0], places[-1])}",
+            f"np-pp {nearest} {len(places)}",
+        ]
     return seen

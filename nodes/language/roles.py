@@ -8,7 +8,7 @@ from nodes.language.sentence import Sentence
 
 
 def features(s: Sentence, verb: int, frame: str, others: Sequence[int]) -> list[list[str]]:
-    """For each word what is seen of it, from the verb of a frame. others: the words that call for other frames."""
+    """For each word what is seen of it, from a frame's verb. others: the words that call for other frames."""
     after = s.clause(verb)
     return [_of_word(s, i, verb, frame, others, after) for i in range(len(s.words))]
 
@@ -23,7 +23,9 @@ def _of_word(s: Sentence, i: int, verb: int, frame: str, others: Sequence[int], 
     inside = k in after
     kinds = [s.phrases[j].kind for j in after]
     here = k - after.start
-    places_before, things_before = (kinds[:here].count("pp"), kinds[:here].count("np")) if inside else (-1, -1)
+    places_before, things_before = (
+        (kinds[:here].count("pp"), kinds[:here].count("np")) if inside else (-1, -1)
+    )
     places_after = kinds[here + 1 :].count("pp") if inside else -1
     last = inside and not {"np", "pp"} & set(kinds[here + 1 :])
     steps = max(-4, min(k - s.phrase_of[verb], 5))
@@ -51,7 +53,10 @@ def _of_word(s: Sentence, i: int, verb: int, frame: str, others: Sequence[int], 
         ]
         if phrase.kind == "pp" and previous.names:
             nearness = s.near(k - 1, k)
-            seen += [f"{begin} near={nearness}", f"{begin} near={nearness} left={places_after} pps={places_before}"]
+            seen += [
+                f"{begin} near={nearness}",
+                f"{begin} near={nearness} left={places_after} pps={places_before}",
+            ]
     if i + 1 < len(s.words):
         seen += [f"+1={s.words[i + 1].text}", f"+1pos={s.words[i + 1].kind}"]
     if i:

@@ -12,7 +12,7 @@ from nodes.language.lexicon import Lexicon
 from nodes.language.phrases import Phrase, phrases
 from nodes.language.words import Word, based, tag
 
-_NEAR_M = 2.0  # of what is nearer, one says where it is by the other
+_NEAR_M = 1.5  # of what is nearer, one says where it is by the other
 
 
 @dataclass(frozen=True, slots=True)

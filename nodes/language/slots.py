@@ -1,7 +1,7 @@
 """What fills a role, told for all frames alike: the thing acted on is Taking's Theme and Attaching's Item.
 
-What is learnt of one frame so holds of others. A slot of a frame is a role of it; the roles are FrameNet's, as
-the Human Robot Interaction Corpus uses them.
+What is learnt of one frame so holds of others. A slot of a frame is a role of it; the roles are FrameNet's,
+as the Human Robot Interaction Corpus uses them.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def slot(frame: str, role: str) -> str:
 
 
 def role(frame: str, slot: str, branch: str, verb: str) -> str:
-    """The role that a slot is in a frame; branch: what kind of thing fills it, verb: base form of the frame's."""
+    """The role that a slot is in a frame. branch: what kind of thing fills it; verb: the base form."""
     if frame == "Closure" and slot == "thing" and branch in _PORTALS:
         return "Container_portal"
     if frame == "Locating" and slot == "agent" and verb != "find":

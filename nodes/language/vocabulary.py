@@ -11,14 +11,15 @@ from nodes.language.lexicon import Lexicon
 from nodes.language.words import based
 
 BRANCHES: Final = (
-    "Robot", "Person", "Location", "Door", "Window", "Connecting_Architecture", "Vessel", "Container", "Light",
-    "Television", "Appliance", "Device", "Fixture", "Bed", "Table", "Couch", "Furniture", "Food", "Cloth",
-    "Clothes", "Tableware",
+    "Robot", "Person", "Location", "Door", "Window", "Connecting_Architecture", "Vessel", "Container",
+    "Light", "Television", "Appliance", "Device", "Fixture", "Bed", "Table", "Couch", "Furniture", "Food",
+    "Cloth", "Clothes", "Tableware",
 )  # fmt: skip
 """The branches of the household taxonomy that decide how one speaks of a thing, most special first."""
 
 _GENERAL: Final = {
-    *BRANCHES, "Object", "Physical_Thing", "Living_Thing", "Building_Subparts", "Covering", "Accessories", "Dishware",
+    *BRANCHES, "Object", "Physical_Thing", "Living_Thing", "Building_Subparts", "Covering", "Accessories",
+    "Dishware",
 }  # fmt: skip
 
 
@@ -56,7 +57,7 @@ class Vocabulary:
 def vocabulary(
     labels: Iterable[tuple[str, str]], subclasses: Iterable[tuple[str, str]], lexicon: Lexicon
 ) -> Vocabulary:
-    """What there is to be named. labels: class and label; subclasses: class and superclass; by local names."""
+    """What there is to be named. labels: class and label; subclasses: class and superclass."""
     direct: dict[str, set[str]] = {}
     for below, superclass in subclasses:
         direct.setdefault(below, set()).add(superclass)

@@ -10,7 +10,20 @@ from typing import Final, Literal
 from nodes.language.lexicon import Lexicon
 
 PartOfSpeech = Literal[
-    "noun", "verb", "aux", "modal", "det", "pron", "rel", "prep", "conj", "adj", "adv", "num", "neg", "particle"
+    "noun",
+    "verb",
+    "aux",
+    "modal",
+    "det",
+    "pron",
+    "rel",
+    "prep",
+    "conj",
+    "adj",
+    "adv",
+    "num",
+    "neg",
+    "particle",
 ]
 
 _WORD: Final = re.compile(r"n't\b|'\w+|\d+(?:[.,]\d+)?|[^\W\d_]+(?:-[^\W_]+)*(?=n't\b)|[^\W_]+(?:-[^\W_]+)*")
@@ -113,12 +126,8 @@ def _kind(texts: Sequence[str], i: int, before: Sequence[Word], lexicon: Lexicon
 
 
 def _begins_as_verb(text: str, previous: Word | None, following: str, lexicon: Lexicon) -> bool:
-    """Whether the word stands where a verb does: at the start of a clause, or anywhere if it is hardly a noun."""
-    opens = (
-        previous is None
-        or previous.kind in _OPENS_CLAUSE
-        or lexicon.is_a(previous.text, "clause_opener")
-    )
+    """Whether the word stands where a verb does: at the start of a clause, or where no noun would."""
+    opens = previous is None or previous.kind in _OPENS_CLAUSE or lexicon.is_a(previous.text, "clause_opener")
     base = _verb(text, lexicon)
     if not base:  # not known, and yet said as one
         known = any(lexicon.is_a(text, name) for name in ("preposition", "adverb", "adjective", "robot"))
@@ -130,7 +139,7 @@ def _begins_as_verb(text: str, previous: Word | None, following: str, lexicon: L
 
 
 def _is_particle(text: str, following: str, before: Sequence[Word], lexicon: Lexicon) -> bool:
-    """Whether the word belongs to the verb (turn on the light, turn it off) and opens no phrase of its own."""
+    """Whether the word belongs to the verb (turn on the light, turn it off) and opens no phrase."""
     if not lexicon.is_a(text, "particle"):
         return False
     verb = next((word for word in reversed(before) if word.kind == "verb"), None)

@@ -1,4 +1,4 @@
-"""What is known of a language's words before anything is learnt: closed classes, verbs by frame, irregular forms."""
+"""What is known of a language before anything is learnt: words by class, verbs by frame, irregular forms."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class Example:
 
 
 def read(folder: Path) -> list[Example]:
-    """The examples of all `.hrc` files under a folder, by name. Raises FileNotFoundError when there are none."""
+    """The examples of all `.hrc` files under a folder, by name. Raises FileNotFoundError for none."""
     paths = sorted(folder.rglob("*.hrc"), key=lambda path: path.stem)
     if not paths:
         raise FileNotFoundError(f"there are no .hrc files under {folder}")

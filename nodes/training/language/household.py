@@ -17,7 +17,9 @@ def household(language: str = "english") -> Vocabulary:
     """The classes of `household.ttl`, by their labels in all of its languages."""
     graph = rdflib.Graph().parse(str(resources.files("ontology") / "household.ttl"))
     classes = sorted(c for c in graph.subjects(RDF.type, OWL.Class) if isinstance(c, rdflib.URIRef))
-    labels = [(_local(c), str(label)) for c in classes for label in sorted(graph.objects(c, RDFS.label))]
+    labels = [
+        (_local(c), str(label)) for c in classes for label in sorted(graph.objects(c, RDFS.label), key=str)
+    ]
     named = [(_local(c), _local(c)) for c in classes]
     above = [
         (_local(c), _local(superclass))

@@ -16,8 +16,10 @@ from nodes.training.language.corpus import Example, Filled
 _PARAMETERS: Final = {"c1": 0.05, "c2": 0.05, "max_iterations": 80, "feature.possible_transitions": True}
 
 
-def learn(examples: Iterable[Example], known: Vocabulary, frames: Path, fillers: Path, language: str = "english") -> None:
-    """Write what tells frames and what tells roles, learnt from examples. The same files for the same examples."""
+def learn(
+    examples: Iterable[Example], known: Vocabulary, frames: Path, fillers: Path, language: str = "english"
+) -> None:
+    """Write what tells frames and what tells roles; the same files for the same examples."""
     words = lexicon.load(language)
     of_frames, of_roles = pycrfsuite.Trainer(verbose=False), pycrfsuite.Trainer(verbose=False)
     for example in examples:
