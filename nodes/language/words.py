@@ -116,8 +116,11 @@ def _kind(texts: Sequence[str], i: int, before: Sequence[Word], lexicon: Lexicon
         return "particle"
     if is_a(text, "preposition"):
         return "prep"
-    if in_nominal and is_a(text, "adjective") and following and not is_a(following, "preposition"):
-        return "adj"
+    if in_nominal and is_a(text, "adjective"):
+        ends = not following or any(
+            is_a(following, name) for name in ("preposition", "conjunction", "auxiliary")
+        )
+        return "noun" if ends else "adj"
     if is_a(text, "adverb"):
         return "adv"
     if is_a(text, "adjective") or lexicon.is_manner(text):
