@@ -23,6 +23,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
@@ -209,7 +210,20 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(
+            Classes,
+            Properties,
+            Get,
+            Check,
+            Infer,
+            Explain,
+            Could,
+            Export,
+            History,
+            LastSeen,
+            Relations,
+            Understand,
+        ),
         *(Sparql, Watch, Renew),
         *(Backup, Compact),
     )

@@ -31,6 +31,7 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.language import Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -303,6 +304,12 @@ class Could(Command[Possible], frozen=True, tag="could"):
     name: Word
     predicate: Word
     value: str
+
+
+class Understand(Command[Understood], frozen=True, tag="understand"):
+    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+
+    text: Text
 
 
 class Export(Command[Document], frozen=True, tag="export"):
