@@ -144,6 +144,20 @@ def test_patience_begins_when_who_had_the_question_goes(pair):
     assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
 
 
+def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, monkeypatch):
+    _, client = pair
+    asked = itertools.count()
+
+    def ask_slowly(*args, **how):
+        assert next(asked) < 20, "it was to give up"
+        time.sleep(0.15)
+        return ()
+
+    monkeypatch.setattr("nodes.bus.asking._get", ask_slowly)
+    with pytest.raises(errors.NoAnswer):
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, lifelines=bus.Lifelines(client))
+
+
 def test_ask_later_tells_that_the_node_went(pair):
     server, client = pair
     answers: queue.SimpleQueue = queue.SimpleQueue()
