@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from nodes import bus
-from nodes.runtime.futures import settle
+from nodes.runtime.futures import OwnFuture, settle
 from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import Call, Relay
@@ -45,7 +45,7 @@ class Bridge:
         """The same as `change_later`, waited for here while somebody is there: that takes less time."""
         beating = _takes_long(call)
         timeout_s = _BUSY_S if beating else _AT_ONCE_S
-        future: Future[R] = Future()
+        future: Future[R] = OwnFuture()
         settle(
             future,
             lambda: self._node.ask(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=0.0, beating=beating),
