@@ -104,6 +104,15 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
+ROBOTS = f"*/{ROOT}/@live/*/*"
+"""The liveliness tokens of the nodes of all robots that have a name, as a session without one sees them."""
+
+
+def live_robot(key: str) -> str:
+    """The robot of such a token's key."""
+    return key.partition("/")[0]
+
+
 @cache
 def servers(prefix: str, verb: str) -> tuple[str, ...]:
     """The nodes that may answer `prefix/verb`."""

@@ -85,6 +85,7 @@ class Coordinator:
             c.Explain.answered_by(relay),
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
+            c.Understand.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
@@ -175,7 +176,8 @@ class Coordinator:
         return made
 
     def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
-        ask = self._bridge.change_later if len(changes) > 1 else self._bridge.change
+        nobody_waits = len(changes) == 1 and not len(self._turns)
+        ask = self._bridge.change if nobody_waits else self._bridge.change_later
         return hold_later(self._door.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:

@@ -24,7 +24,7 @@ from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording

@@ -51,7 +51,7 @@ def test_one_that_is_not_resolved_cannot_be_waited_for():
     for read in (future.result, future.exception):
         with pytest.raises(InvalidStateError, match="cannot wait"):
             read()
-    assert not (future.done() or future.running() or future.cancel() or future.cancelled())
+    assert not any((future.done(), future.running(), future.cancel(), future.cancelled()))
 
 
 def test_one_is_resolved_once():
