@@ -2,7 +2,7 @@
 
 from nodes.bus import own_config
 from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
-from nodes.bus.lifelines import Lifelines, appear, follow_presence, robots
+from nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -47,6 +47,7 @@ __all__ = [
     "follow",
     "follow_cameras",
     "follow_presence",
+    "follow_robots",
     "host_of",
     "includes",
     "is_local",
