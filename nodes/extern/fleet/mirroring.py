@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from nodes import bus
 from nodes.extern.connection import identity as identify
 from nodes.extern.fleet import frames as frames_
 from nodes.extern.fleet.frames import Frame
-from nodes.extern.fleet.mirror import Mirror as Mirror
-from nodes.extern.fleet.mirror import MirrorConfig
+from nodes.extern.fleet.mirror import Mirror, MirrorConfig
 from nodes.extern.fleet.robots import endpoints, words
 
 
@@ -33,6 +32,26 @@ def config(
         endpoints=reached if who is None else tuple(map(bus.over_tls, reached)),
         identity=who,
     )
+
+
+def mirror(
+    update_url: str,
+    query_url: str | None = None,
+    *,
+    robots: str | Sequence[str] = "*",
+    frames: Sequence[str] | Mapping[str, Frame] = (),
+    where: str | Sequence[str] | None = None,
+    identity: str | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Mirror:
+    """A mirror of the robots whose names match, which `run()` sets to work until `stop()`.
+
+    It writes to the SPARQL 1.1 server at `update_url`. `frames` say where robots' maps are in the fleet's
+    frame, as `robot1=X,Y,Z,YAW` [m, rad] or by name. `tell` is called with what a person wants to know.
+    Raises BadRequest, BadFile.
+    """
+    settings = config(update_url, query_url, robots=robots, frames=frames, where=where, identity=identity)
+    return Mirror(settings, tell)
 
 
 def query_url_of(update_url: str) -> str:

@@ -63,10 +63,12 @@ def mirror(
     """
     from nodes.extern.fleet import mirroring
 
-    config = mirroring.config(
-        update_url, query_url, robots=robots, frames=frames, where=where, identity=identity
+    def tell(text: str) -> None:
+        say(f"{time.strftime('%H:%M:%S')}  {text}")
+
+    running = mirroring.mirror(
+        update_url, query_url, robots=robots, frames=frames, where=where, identity=identity, tell=tell
     )
-    running = mirroring.Mirror(config, lambda text: say(f"{time.strftime('%H:%M:%S')}  {text}"))
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: running.stop())
     running.run(once=once)
