@@ -56,9 +56,9 @@ def mirror(
     where: str | None,
     identity: str | None,
 ) -> None:
-    """Write the commits of robots into one named graph each of a SPARQL server.
+    """Copy robots' maps into named graphs of a SPARQL server.
 
-    It follows the robots until Ctrl-C, goes on where it was when it is started again, and waits for robots
+    One graph for each robot. It follows their commits until Ctrl-C, goes on where it was when it is started again, and waits for robots
     and servers that are down. The URL may have a user and a password.
     """
     from nodes.extern.fleet import mirroring
