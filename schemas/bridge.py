@@ -23,6 +23,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
@@ -98,6 +99,11 @@ class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknow
 
     names: tuple[str, ...]
 
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
+
 
 class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a thing bears: all that stands on it or is inside it, what bears before what is borne.
@@ -120,6 +126,11 @@ class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid
 
     ids: tuple[CommandId, ...]
 
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
+
 
 class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """These commits again, for a follower that has missed them; those that there never were are left out."""
@@ -127,6 +138,11 @@ class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown
     VERB: ClassVar[str] = "recall"
 
     seqs: Annotated[tuple[Annotated[int, Meta(ge=0, le=1 << 53)], ...], Meta(max_length=100)]
+
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
 
 
 class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -137,6 +153,11 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
     VERB: ClassVar[str] = "commits"
 
     transactions: tuple[Transaction, ...]
+
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
 
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -192,6 +213,11 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     as_of: When | None = None
     where: Where | None = None
 
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
+
 
 class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
@@ -212,7 +238,20 @@ BRIDGE: dict[str, type[Call]] = {
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
         *(SnapshotQuery, CopyQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(
+            Classes,
+            Properties,
+            Get,
+            Check,
+            Infer,
+            Explain,
+            Could,
+            Export,
+            History,
+            LastSeen,
+            Relations,
+            Understand,
+        ),
         *(Sparql, Watch, Renew),
         *(Backup, Compact),
     )

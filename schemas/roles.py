@@ -33,6 +33,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "explain",
             "could",
             "relations",
+            "understand",
             "export",
             "classes",
             "properties",

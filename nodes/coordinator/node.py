@@ -85,6 +85,7 @@ class Coordinator:
             c.Explain.answered_by(relay),
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
+            c.Understand.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),

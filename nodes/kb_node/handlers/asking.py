@@ -12,6 +12,7 @@ from msgspec import structs
 from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.answers.understanding import Understanding
 from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -37,6 +38,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star
@@ -69,6 +71,7 @@ class Asking:
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
+        self._understanding = Understanding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self._aside = FairPool(2, asker)
 
@@ -88,6 +91,7 @@ class Asking:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
+            Understand.answered_by(self._understanding.understand),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),

@@ -58,8 +58,8 @@ def mirror(
 ) -> None:
     """Copy robots' maps into named graphs of a SPARQL server.
 
-    One graph for each robot. It follows their commits until Ctrl-C, goes on where it was when it is started again, and waits for robots
-    and servers that are down. The URL may have a user and a password.
+    One graph for each robot. It follows their commits until Ctrl-C, goes on where it was when it is started
+    again, and waits for robots and servers that are down. The URL may have a user and a password.
     """
     from nodes.extern.fleet import mirroring
 
