@@ -101,6 +101,11 @@ class Asking:
             Renew.answered_by(self.on_renew),
         )
 
+    @property
+    def is_being_fetched(self) -> bool:
+        """Whether somebody fetches the map page by page, or is about to as after a start."""
+        return self._pages.may_follow
+
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
         return self._pages.snapshot(query)
