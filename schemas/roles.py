@@ -81,6 +81,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.ACK, follow=_NODES),
     Grant("ask", f"{keys.BRIDGE}/snapshot", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/recall", ANYBODY),
+    Grant("ask", f"{keys.BRIDGE}/copy", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/*", _NODES),
     Grant("ask", f"{keys.SIM}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),

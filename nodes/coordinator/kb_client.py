@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from nodes import bus
-from nodes.runtime.futures import settle
+from nodes.runtime.futures import OwnFuture, settle
 from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import Call, Relay
@@ -43,7 +43,7 @@ class Bridge:
         """
         if not call.is_quick:
             return self.change_later(call)
-        future: Future[R] = Future()
+        future: Future[R] = OwnFuture()
         settle(
             future,
             lambda: self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0),

@@ -24,7 +24,7 @@ from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime import heap
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.following import Begun, Follower
-from nodes.runtime.futures import settle, then
+from nodes.runtime.futures import OwnFuture, settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import calls, keys, wording
 from schemas import commands as c
@@ -165,7 +165,7 @@ class Coordinator:
         made = self._noted(command)
         if not command.wait or command.dry_run:
             return made
-        future: Future[Changed] = Future()
+        future: Future[Changed] = OwnFuture()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
@@ -181,7 +181,7 @@ class Coordinator:
         return hold_later(self._door.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
-        future: Future[Changed] = Future()
+        future: Future[Changed] = OwnFuture()
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
         return future
 

@@ -28,7 +28,7 @@ PUBLIC = {
         Add Check Classes Clear Command Explain Export Get History Infer LastSeen List Load Move Pause Remove
         Reset Sparql Status StepOnce TakePicture Undo Update
     """,
-    "semmap.fleet": "Answer Robots robots",
+    "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",
     "semmap.reasoner": "Change Explanation Inconsistent Reasoner Step Term Triple",
     "semmap.testing": "free_endpoint own_system",
     "semmap.wire": """

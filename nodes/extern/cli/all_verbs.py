@@ -26,6 +26,7 @@ _MODULES = {
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
     "keys": ("keys",),
+    "fleet": ("fleet",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

@@ -22,7 +22,7 @@ from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.fair_pool import FairPool
 from schemas import errors
-from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import CopyQuery, Entities, LoadOf, MapCopy, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
@@ -79,6 +79,7 @@ class Asking:
         """By verb."""
         return by_verb(
             SnapshotQuery.answered_by(self.on_snapshot),
+            CopyQuery.answered_by(self.on_copy),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
             LoadOf.answered_by(self.on_load_of),
@@ -100,9 +101,32 @@ class Asking:
             Renew.answered_by(self.on_renew),
         )
 
+    @property
+    def is_being_fetched(self) -> bool:
+        """Whether somebody fetches the map page by page, or is about to as after a start."""
+        return self._pages.may_follow
+
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
         return self._pages.snapshot(query)
+
+    def on_copy(self, query: CopyQuery) -> MapCopy:
+        """The map whole, or which it is."""
+        map_id, begun_ns = self._journal.origin()
+        seq = self._map.seq
+        return MapCopy(
+            map_id=map_id,
+            begun_ns=begun_ns,
+            seq=seq,
+            digest=self._map.digest,
+            stamp_ns=self._stamp_of_last(seq),
+            triples=tuple(self._map.abox()) if query.content else (),
+            entities=tuple(self._map.entities()) if query.content else (),
+        )
+
+    def _stamp_of_last(self, seq: int) -> int:
+        begins = self._journal.beginning
+        return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
         """Commits of the history, whole."""
