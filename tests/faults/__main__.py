@@ -43,12 +43,18 @@ def _row(fault: Fault) -> Row:
     print(f"{fault.name} ...", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(prefix="semmap-faults-") as folder:
         try:
-            return outcome(fault, Path(folder, "data"), fault.often)
+            row = outcome(fault, Path(folder, "data"), fault.often)
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
             traceback.print_exc()
             return Row(fault.name, failed=str(error) or type(error).__name__)
+    told = (
+        row.skipped
+        or f"{row.done} done, lost {row.lost}, doubled {row.doubled}, whole after {row.whole_s:.1f} s"
+    )
+    print(f"    {told}", file=sys.stderr, flush=True)
+    return row
 
 
 if __name__ == "__main__":
