@@ -36,6 +36,7 @@ _CLIENTS_A_PROCESS = 5
 _OWN = 10
 """Entities that a client keeps in the map at most: it removes the oldest before it adds another."""
 _LOOK_S = 0.05
+_LOOKS = 100
 _LAST_ACK_S = 60.0
 
 Times = dict[str, list[float]]
@@ -95,11 +96,11 @@ def _uss_mb(process: psutil.Process) -> float:
 
 
 def figures(times: Times) -> dict[str, dict[str, float]]:
-    """Count, p50, p99 and the longest [ms], by verb."""
+    """Count, p50, p90, p99 and the longest [ms], by verb."""
     table = {}
     for verb, took in sorted(times.items()):
         took = sorted(took)
-        at = {"p50": took[len(took) // 2], "p99": took[int(len(took) * 0.99)], "max": took[-1]}
+        at = {f"p{p}": took[len(took) * p // 100] for p in (50, 90, 99)} | {"max": took[-1]}
         table[verb] = {"count": len(took), **{name: round(s * 1000, 1) for name, s in at.items()}}
     return table
 
@@ -216,16 +217,14 @@ def sessions(endpoint: str, count: int) -> dict[str, Any]:
 
 
 def puts(pool: Pool, endpoint: str, count: int) -> dict[str, Any]:
-    """What became of each, and how long `status` took meanwhile."""
-    halves = [pool.apply_async(_flood, (endpoint, who, count // 2)) for who in "ab"]
-    took = []
+    """What became of each, and how long `status` took meanwhile, and before."""
     with connect(endpoint) as client:
+        idle = [_status_s(client) for _ in range(_LOOKS)]
         before = client.status().commit
+        halves = [pool.apply_async(_flood, (endpoint, who, count // 2)) for who in "ab"]
+        took = []
         while not all(half.ready() for half in halves):
-            began_s = time.perf_counter()
-            client.status()
-            took.append(time.perf_counter() - began_s)
-            time.sleep(_LOOK_S)
+            took.append(_status_s(client))
         acks: Counter[str] = Counter()
         for half in halves:
             acks.update(half.get())
@@ -234,9 +233,18 @@ def puts(pool: Pool, endpoint: str, count: int) -> dict[str, Any]:
     return {
         "acknowledged": dict(acks),
         "commits": commits,
-        "status": figures({"status": took})["status"],
+        "status": figures({"meanwhile": took, "before": idle}),
         "memory_mb": memory,
     }
+
+
+def _status_s(client: Client) -> float:
+    """How long an answer took [s]; then there is a pause."""
+    began_s = time.perf_counter()
+    client.status()
+    took_s = time.perf_counter() - began_s
+    time.sleep(_LOOK_S)
+    return took_s
 
 
 def _flood(endpoint: str, who: str, count: int) -> dict[str, int]:
