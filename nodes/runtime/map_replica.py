@@ -66,7 +66,7 @@ class MapReplica(Generic[C]):
         self.entities: dict[str, Entity] = {}
         self._heard = -1
         self._lacking = -1
-        self._doubted = False
+        self._doubted = self._doubted_meanwhile = False
         self._ahead: dict[int, C] = {}
         """Commits that came before those they follow: a reply may be read while others wait to be."""
         self._during_pages: dict[int, C] | None = None
@@ -111,7 +111,8 @@ class MapReplica(Generic[C]):
         if snapshot.seq < self.seq and not self._doubted:
             self._during_pages = None
             return False
-        self._doubted = False
+        self._doubted, is_doubted_anew = False, self._doubted_meanwhile
+        self._doubted_meanwhile = False
         self.seq = self._confirmed = snapshot.seq
         self._digests = {snapshot.seq: snapshot.digest}
         self.entities = {entity.name: entity for entity in snapshot.entities}
@@ -120,6 +121,8 @@ class MapReplica(Generic[C]):
         self._ahead.clear()
         for _, commit in sorted(since.items()):
             self.take(commit)
+        if is_doubted_anew:  # one of those may be forged, and hide what the next snapshot shows
+            self.doubt()
         return True
 
     def _forget_what_never_was(self, seq: int) -> None:
@@ -138,14 +141,20 @@ class MapReplica(Generic[C]):
             self._compare(commit.seq, commit.digest)
         self._heard = max(self._heard, commit.seq)
         if self._during_pages is not None:
-            self._during_pages[commit.seq] = commit
+            self._keep(self._during_pages, commit)
         following: C | None = commit
         if commit.seq > self.seq + 1 and len(self._ahead) < _MOST_AHEAD:
-            self._ahead[commit.seq] = commit
+            self._keep(self._ahead, commit)
         while following is not None and following.seq == self.seq + 1 and following.abridged is None:
             self._apply(following)
             following = self._ahead.pop(self.seq + 1, None)
         return commit.seq <= self.seq and not self._doubted
+
+    def _keep(self, waiting: dict[int, C], commit: C) -> None:
+        """Let it wait; all is in doubt if another one of its number does."""
+        other = waiting.setdefault(commit.seq, commit)
+        if commit.digest and other.digest != commit.digest:
+            self.doubt()
 
     def _apply(self, commit: C) -> None:
         """Let the entities be as the next commit leaves them."""
@@ -164,8 +173,8 @@ class MapReplica(Generic[C]):
 
     def _compare(self, seq: int, digest: str) -> bool:
         """Is it known that this is commit `seq`? All is in doubt if another one is known."""
-        known = self._digests.get(seq, "")
-        if known and digest and known != digest:
+        known = self._digests.get(seq)
+        if known is not None and digest and known != digest:
             self.doubt()
         return bool(known) and known == digest
 
@@ -176,4 +185,5 @@ class MapReplica(Generic[C]):
         """
         self._heard = -1
         self._doubted = True
+        self._doubted_meanwhile = self._during_pages is not None
         self._ahead.clear()

@@ -1,4 +1,5 @@
 import msgspec
+import pytest
 
 from nodes.runtime.map_replica import MapReplica
 from schemas.commits import Extent, Snapshot
@@ -171,9 +172,36 @@ def test_a_commit_that_contradicts_one_that_was_taken_puts_all_in_doubt():
     assert set(view.entities) == {"cup1", "cup2"}
 
 
-def test_so_does_what_the_knowledge_base_confirms():
+@pytest.mark.parametrize("forged_first", [True, False])
+@pytest.mark.parametrize("gap", [0, 1])
+def test_commits_that_contradict_one_another_while_a_snapshot_is_fetched_have_it_fetched_again(
+    forged_first, gap
+):
     view = known()
-    view.take(signed(2, "forged", removed=("cup1",)))
+    view.begin_pages()
+    seq = 2 + gap  # with a gap neither is taken at once
+    both = [signed(seq, "forged", removed=("cup1",)), signed(seq, "true", entity("cup2"))]
+    for one in both if forged_first else reversed(both):
+        view.take(one)
+    view.begin(Snapshot(seq=seq - 1, entities=(entity("cup1"),), digest="before"))
+    assert not view.is_current
+    view.begin_pages()
+    view.begin(Snapshot(seq=seq, entities=(entity("cup1"), entity("cup2")), digest="true"))
+    assert view.is_confirmed
+    assert set(view.entities) == {"cup1", "cup2"}
+
+
+def test_a_commit_without_a_digest_is_in_doubt_when_the_true_one_comes():
+    view = known()
+    view.take(signed(2, "", removed=("cup1",)))
+    assert not view.take(signed(2, "two", entity("cup2")))
+    assert not view.is_current
+
+
+@pytest.mark.parametrize("digest", ["forged", ""])
+def test_so_does_what_the_knowledge_base_confirms(digest):
+    view = known()
+    view.take(signed(2, digest, removed=("cup1",)))
     view.confirm(2, "two")
     assert not view.is_current
 
