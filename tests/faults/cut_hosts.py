@@ -78,8 +78,8 @@ def spread_out(network: Network, parts: dict[str, str], *, secure: bool) -> Iter
         system.start()
         yield system
     finally:
-        for host in system.hosts:
-            host.do(on_a_host.end)
+        for ended in [host.begin(on_a_host.end) for host in system.hosts]:
+            ended.result()
 
 
 class SpreadOut:
