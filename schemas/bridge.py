@@ -13,6 +13,7 @@ from schemas.commands import (
     Classes,
     Compact,
     Could,
+    Diff,
     Explain,
     Export,
     Get,
@@ -24,11 +25,13 @@ from schemas.commands import (
     Renew,
     Sparql,
     Understand,
+    WasWhen,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
+from schemas.explanations import Triple
 from schemas.moments import When
 from schemas.relations import Where
 
@@ -60,6 +63,33 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
     VERB: ClassVar[str] = "snapshot"
     after: str = ""
     limit: Annotated[int, Meta(ge=1, le=1_000_000)] | None = None
+
+
+class MapCopy(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A map as it is after commit `seq`, for who keeps it elsewhere and follows its commits from there.
+
+    Its `triples` are all that was asserted and is not the TBox's; blank nodes have the labels that commits
+    call them by.
+    """
+
+    map_id: str
+    """The digest of the map's very first commit: a map that is begun anew has another."""
+    begun_ns: int
+    """When that was made."""
+    seq: int
+    digest: str
+    """That of all commits up to `seq`."""
+    stamp_ns: int
+    """When commit `seq` was made."""
+    triples: tuple[Triple, ...] = ()
+    entities: tuple[Entity, ...] = ()
+
+
+class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The whole map; without `content` only which map it is, and as of which commit."""
+
+    VERB: ClassVar[str] = "copy"
+    content: bool = True
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -209,7 +239,7 @@ BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
-        *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
+        *(SnapshotQuery, CopyQuery, Recall, StarQuery, MadeBy, Entities),
         *(
             Classes,
             Properties,
@@ -222,7 +252,7 @@ BRIDGE: dict[str, type[Call]] = {
             History,
             LastSeen,
             Relations,
-            Understand,
+            *(Understand, Diff, WasWhen),
         ),
         *(Sparql, Watch, Renew),
         *(Backup, Compact),

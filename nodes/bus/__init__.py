@@ -12,7 +12,7 @@ from nodes.bus.asking import (
     first_round_s,
     read_reply,
 )
-from nodes.bus.lifelines import Lifelines, appear, follow_presence, robots
+from nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
 from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
@@ -60,6 +60,7 @@ __all__ = [
     "follow",
     "follow_cameras",
     "follow_presence",
+    "follow_robots",
     "host_of",
     "includes",
     "is_local",
