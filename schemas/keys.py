@@ -104,8 +104,9 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
-ROBOTS = f"*/{ROOT}/@live/*/*"
-"""The liveliness tokens of the nodes of all robots that have a name, as a session without one sees them."""
+def robots_live(node: str = "*") -> str:
+    """The liveliness tokens of a node of all robots that have a name, as a session without one sees them."""
+    return f"*/{live_key(node)}"
 
 
 def live_robot(key: str) -> str:

@@ -30,6 +30,7 @@ PARSED = {
     "tbox",
     "backup",
     "restore",
+    "fleet",
 }
 """Verbs that start, stop or need something else than one running system."""
 CLOCK = re.compile(r"\b12:30\b")
