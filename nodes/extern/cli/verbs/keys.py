@@ -124,9 +124,10 @@ def list_(folder: Path) -> None:
 @click.option("--connect", multiple=True, metavar="EP", help="Another router to connect to; may be repeated.")
 @click.option("--namespace", default="", metavar="ROBOT", help="The robot whose keys it routes; * is all.")
 def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) -> None:
-    """Print a configuration file with which zenohd is a router of the secure system.
+    """Print a configuration that makes zenohd a router.
 
-    It has the rules for everybody who is admitted now: print it again after each change.
+    It is for a secure system, with the rules for everybody who is admitted now: print it again after each
+    change.
     """
     from nodes import bus
     from nodes.identity import Identity
