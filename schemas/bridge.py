@@ -129,6 +129,8 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     strict: bool = False
     parts: bool = False
     dry_run: bool = False
+    told: bool = False
+    """The coordinator asks for one commit, and takes it from the reply; see `Transaction.told`."""
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -173,6 +175,8 @@ class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
     reason: str = ""
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
+    told: bool = False
+    """The coordinator asks; see `Transaction.told`."""
 
 
 BRIDGE: dict[str, type[Call]] = {

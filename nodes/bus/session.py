@@ -154,6 +154,11 @@ def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
     return {f"transport/link/tls/{key}": value for key, value in values.items()}
 
 
+def linked_routers(session: zenoh.Session) -> int:
+    """To how many routers a session has a link just now."""
+    return len(session.info.routers_zid())
+
+
 @contextmanager
 def open_session(network: Network) -> Iterator[zenoh.Session]:
     """A session that is closed whatever happens. Raises NoAnswer or BadRequest (a malformed endpoint)."""

@@ -66,8 +66,11 @@ Rule = tuple[Flow, tuple[str, ...], Sequence[str]]
 
 
 def _of_name(name: str) -> list[Rule]:
-    """Everybody asks for commands as themselves, and as nobody else."""
-    mine = f"{keys.commands_as(name)}/*"
+    """Everybody asks for commands as themselves, and as nobody else.
+
+    The router of another host passes on what those ask whom it has admitted, each as themselves.
+    """
+    mine = f"{keys.commands_as() if name == keys.ROUTER else keys.commands_as(name)}/*"
     return [("ingress", ("query",), [mine]), ("egress", ("reply",), [mine])]
 
 

@@ -108,7 +108,7 @@ class Changing:
         def change() -> Commit:
             return undo.undo(self._map, self._journal, command, self._undoing)
 
-        return self.changed(change, command.dry_run)
+        return self.changed(change, command.dry_run, told=command.told)
 
     @contextmanager
     def _undoing(self, target: Commit) -> Iterator[None]:
@@ -145,7 +145,7 @@ class Changing:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit, told=told, at_once=at_once)
+            self._spread(commit, told=told and not commit.tbox, at_once=at_once)
         return commit
 
 
