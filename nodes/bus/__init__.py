@@ -4,7 +4,7 @@ from nodes.bus import own_config
 from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
 from nodes.bus.lifelines import Lifelines, appear, follow_presence
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
-from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
+from nodes.bus.pubsub import follow, follow_cameras, includes, listen, meets, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import (
     DEFAULT_ENDPOINT,
@@ -50,6 +50,7 @@ __all__ = [
     "includes",
     "is_local",
     "listen",
+    "meets",
     "open_session",
     "over_tls",
     "own_config",

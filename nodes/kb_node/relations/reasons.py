@@ -24,6 +24,8 @@ def why_not(space: Space, relation: RelationName, solid: Solid, other: Solid) ->
     if relation == "isBetween":
         return "that takes two others; relations of a thing lists what it is between"
     if relation in SIDES:
+        if borne := _rests(space, solid, other) or _by_way_of(space, solid, other):
+            return f"{borne}, and what bears a thing is on no side of it"
         found = [spoken(side.relation).removeprefix("is ") for side in own_sides(solid, other)]
         where = f"it is {' and '.join(found)} it" if found else "it is neither beside it nor before it"
         return f"by the front of {other.name}, {where}"
