@@ -11,7 +11,9 @@ from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import own_sides
 from schemas.relations import RelationName
 
-_OF_SIZES = frozenset({"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches"})
+_OF_SIZES = frozenset(
+    {"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches", "isNear", "isNextTo"}
+)
 """The relations of which nothing can be said where a size is not known."""
 
 

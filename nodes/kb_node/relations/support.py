@@ -46,7 +46,7 @@ def on_nothing(space: Space, solid: Solid) -> Relation | None:
         return None
     if not solid.is_measured:
         reason = (
-            "neither the map nor a model says how large it is, so it is measured in places only;"
+            "neither the map nor a model says how large it is, so only its place can be told;"
             f" give it a size: semmap update {solid.name} --size X Y Z"
         )
         return _told(solid, f"{solid.name} is on nothing that is known: {reason}")

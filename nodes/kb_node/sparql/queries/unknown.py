@@ -7,6 +7,9 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 
 import pyoxigraph as ox
+import rapidfuzz.fuzz
+import rapidfuzz.process
+import rapidfuzz.utils  # noqa: F401  a reader is without files, so what `did_you_mean` needs is there before
 
 from nodes.kb_node.sparql.queries.naming import terms_of
 from nodes.kb_node.sparql.triples.dataset import Dataset
@@ -45,8 +48,10 @@ def unknown(query: str, dataset: Dataset, known: Mapping[str, str]) -> Iterator[
         namespace, local = prefixes.split(f"<{iri}>")
         if namespace in _OTHERS or ":" not in iri or _is_mentioned(dataset, ox.NamedNode(iri)):
             continue
-        near = errors.did_you_mean(local, _called(dataset, namespace))
-        yield f"nothing in the map is called {text}{near}"
+        begin = "" if text.startswith("<") else text.partition(":")[0] + ":"
+        near = [f"{begin}{name}" for name in errors.nearest(local, _called(dataset, namespace))]
+        meant = f"; did you mean {errors.enumerated(near)}?" if near else ""
+        yield f"nothing in the map is called {text}{meant}"
 
 
 def _is_mentioned(dataset: Dataset, node: ox.NamedNode) -> bool:

@@ -81,10 +81,10 @@ def _by_commits(triples):
 @pytest.mark.parametrize(
     ("query", "notes"),
     [
-        ("SELECT ?x { ?x dm:masss ?m }", ["nothing in the map is called dm:masss; did you mean mass?"]),
+        ("SELECT ?x { ?x dm:masss ?m }", ["nothing in the map is called dm:masss; did you mean dm:mass?"]),
         (
             "SELECT (COUNT(*) AS ?n) { ?x a dm:Chiar }",
-            ["nothing in the map is called dm:Chiar; did you mean Chair?"],
+            ["nothing in the map is called dm:Chiar; did you mean dm:Chair?"],
         ),
         ("ASK { :nobody a dm:Chair }", ["nothing in the map is called :nobody"]),
         ("PREFIX my: <urn:my#> SELECT * { ?x my:x <urn:y> }", ["... my:x", "... <urn:y>"]),
