@@ -7,7 +7,7 @@ alike. Positions and sizes are metres in the map frame, angles are radians.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
@@ -31,6 +31,7 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.language import Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -55,6 +56,10 @@ ListFormat = Literal["json", "lu4r", "legacy"]
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 
 
+_SLOW: Final = frozenset({"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step"})
+"""Commands that may be at work for long, or that do more when they come twice."""
+
+
 class Command(
     Call[R], frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="verb", omit_defaults=True
 ):
@@ -67,6 +72,11 @@ class Command(
     source: Source = "operator"
     agent: Annotated[str, Meta(max_length=200)] = ""
     reason: Remark = ""
+
+    @property
+    def is_quick(self) -> bool:
+        """Most are, and what changes the map is done once under its id."""
+        return self.VERB not in _SLOW
 
     def __post_init__(self) -> None:
         """Names are compared in composed form, however they were typed."""
@@ -294,6 +304,12 @@ class Could(Command[Possible], frozen=True, tag="could"):
     name: Word
     predicate: Word
     value: str
+
+
+class Understand(Command[Understood], frozen=True, tag="understand"):
+    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+
+    text: Text
 
 
 class Export(Command[Document], frozen=True, tag="export"):

@@ -69,7 +69,8 @@ class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     orientation_wxyz: Quaternion = IDENTITY
 
     def __post_init__(self) -> None:
-        require_unit(self.orientation_wxyz)
+        if self.orientation_wxyz != IDENTITY:  # as that of most is not: a map has very many
+            require_unit(self.orientation_wxyz)
 
     @property
     def yaw_rad(self) -> float:

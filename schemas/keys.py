@@ -110,6 +110,16 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
+def robots_live(node: str = "*") -> str:
+    """The liveliness tokens of a node of all robots that have a name, as a session without one sees them."""
+    return f"*/{live_key(node)}"
+
+
+def live_robot(key: str) -> str:
+    """The robot of such a token's key."""
+    return key.partition("/")[0]
+
+
 @cache
 def servers(prefix: str, verb: str) -> tuple[str, ...]:
     """The nodes that may answer `prefix/verb`."""

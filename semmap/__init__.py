@@ -7,10 +7,11 @@
         for entity in client.list("Graspable_Thing"):
             print(entity.name, entity.pose)
 
-`semmap.aio` has the same client for an event loop, `semmap.testing` a system for your tests,
-`semmap.reasoner` the OWL 2 RL reasoner by itself, `semmap.commands` what can be sent, and `semmap.wire` what
-programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public; `nodes`,
-`schemas` and `ontology` are private, and may change with any version.
+`semmap.aio` has the same client for an event loop, `semmap.fleet` asks several robots together,
+`semmap.testing` has a system for your tests, `semmap.reasoner` the OWL 2 RL reasoner by itself,
+`semmap.commands` what can be sent, and `semmap.wire` what programs need that speak Zenoh themselves. Only the
+names in `__all__` of these modules are public; `nodes`, `schemas` and `ontology` are private, and may change
+with any version.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ from schemas.replies import (
 from schemas.sparql import RowsChanged, SparqlResult
 
 if TYPE_CHECKING:
-    from semmap import aio, commands, reasoner, testing, wire
+    from semmap import aio, commands, fleet, reasoner, testing, wire
 
 __all__ = [
     "BadFile",
@@ -94,13 +95,14 @@ __all__ = [
     "aio",
     "commands",
     "connect",
+    "fleet",
     "local_name",
     "reasoner",
     "testing",
     "wire",
 ]
 
-_MODULES = {"aio", "commands", "reasoner", "testing", "wire"}
+_MODULES = {"aio", "commands", "fleet", "reasoner", "testing", "wire"}
 
 
 def __getattr__(name: str) -> ModuleType | str:

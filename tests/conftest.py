@@ -25,6 +25,10 @@ from nodes.runtime.loop import Node
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Containers often forbid bytecode; each of the many processes that are spawned would compile everything anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
 # On a busy machine the clock says nothing of the code: no deadlines, and input may take its time to be made.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("busy")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -31,6 +32,12 @@ FOREVER_S = math.inf
 _MEET_MS = 100
 """Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
+
+_READERS: Final = 8
+"""Threads that read links. One whose messages wait for a busy callback holds up its thread; of Zenoh's own
+number, 2, two senders that flood would take both, and whoever asks over another link would wait for them."""
+_THREADS: Final = "ZENOH_RUNTIME"
+"""The environment variable by which Zenoh takes the numbers of its threads, once in a process."""
 
 _LARGEST: Final = "transport/link/rx/max_message_size"
 
@@ -96,6 +103,11 @@ class Network(Struct, frozen=True):
         return config
 
 
+def read_links_apart() -> None:
+    """Let a flood on some links not hold up the others; to be called before the process's first session."""
+    os.environ.setdefault(_THREADS, f"(rx: (worker_threads: {_READERS}))")
+
+
 def require_tls(endpoint: str) -> None:
     """Raises BadRequest for an endpoint without certificates, or with a set-up of its own."""
     if not endpoint.startswith(TLS) or "#" in endpoint:
@@ -140,6 +152,11 @@ def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
     if listens:
         values |= {"listen_certificate": identity.certificate, "listen_private_key": identity.key}
     return {f"transport/link/tls/{key}": value for key, value in values.items()}
+
+
+def linked_routers(session: zenoh.Session) -> int:
+    """To how many routers a session has a link just now."""
+    return len(session.info.routers_zid())
 
 
 @contextmanager

@@ -44,7 +44,7 @@ async def connect(
     *,
     source: Source | None = None,
     agent: str = "",
-    namespace: str = "",
+    namespace: str | None = None,
     identity: str | None = None,
 ) -> AsyncIterator[AsyncClient]:
     """A client of the system at `where`; see `semmap.connect`. Raises NoAnswer when nothing answers there."""

@@ -252,6 +252,7 @@ class Verbs:
     explain = Verb(commands.Explain)
     could = Verb(commands.Could)
     relations = Verb(commands.Relations)
+    understand = Verb(commands.Understand)
     export = Verb(commands.Export)
     classes = Verb(commands.Classes)
     properties = Verb(commands.Properties)

@@ -16,10 +16,19 @@ from schemas.explanations import Term, Triple
 _FEW = 64
 """Triples of one subject: so many are looked through together, and of more each by itself."""
 
+_FEW_OF_ALL = 8
+"""One triple in so many is not much."""
+_FEW_AT_ALL = 1000
+
 
 def subjects(*groups: Iterable[Triple]) -> set[Term]:
     """Those of all triples."""
     return set(map(itemgetter(0), chain(*groups)))
+
+
+def is_much(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
+    """Whether some triples are so many that it is quicker to go through all that are asserted."""
+    return sum(map(len, groups)) > max(_FEW_AT_ALL, len(reasoner) // _FEW_OF_ALL)
 
 
 def held(
@@ -27,6 +36,9 @@ def held(
 ) -> set[Triple]:
     """Those of some triples that are asserted already. `progress` is called now and then."""
     groups = tuple(groups)
+    if is_much(groups, reasoner):
+        named = set(chain(*groups))
+        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
     known = reasoner.mentioned(subjects(*groups))
     found: set[Triple] = set()
     many: set[Term] = set()

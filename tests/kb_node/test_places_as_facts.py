@@ -12,7 +12,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors

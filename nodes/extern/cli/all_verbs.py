@@ -17,6 +17,7 @@ _MODULES = {
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
     ),
+    "words": ("understand",),
     "past": ("undo", "history", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
@@ -25,6 +26,7 @@ _MODULES = {
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
     "keys": ("keys",),
+    "fleet": ("fleet",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

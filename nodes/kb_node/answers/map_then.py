@@ -12,7 +12,7 @@ from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
-from nodes.kb_node.storage.compaction import asserted_after
+from nodes.kb_node.storage.compaction.compaction import asserted_after
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from schemas.commands import Sparql

@@ -12,6 +12,7 @@ from msgspec import structs
 from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.answers.understanding import Understanding
 from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -21,7 +22,7 @@ from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.fair_pool import FairPool
 from schemas import errors
-from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import CopyQuery, Entities, LoadOf, MapCopy, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
@@ -37,6 +38,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star
@@ -69,6 +71,7 @@ class Asking:
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
+        self._understanding = Understanding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self._aside = FairPool(2, asker)
 
@@ -76,6 +79,7 @@ class Asking:
         """By verb."""
         return by_verb(
             SnapshotQuery.answered_by(self.on_snapshot),
+            CopyQuery.answered_by(self.on_copy),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
             LoadOf.answered_by(self.on_load_of),
@@ -87,6 +91,7 @@ class Asking:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
+            Understand.answered_by(self._understanding.understand),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -96,9 +101,32 @@ class Asking:
             Renew.answered_by(self.on_renew),
         )
 
+    @property
+    def is_being_fetched(self) -> bool:
+        """Whether somebody fetches the map page by page, or is about to as after a start."""
+        return self._pages.may_follow
+
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
         return self._pages.snapshot(query)
+
+    def on_copy(self, query: CopyQuery) -> MapCopy:
+        """The map whole, or which it is."""
+        map_id, begun_ns = self._journal.origin()
+        seq = self._map.seq
+        return MapCopy(
+            map_id=map_id,
+            begun_ns=begun_ns,
+            seq=seq,
+            digest=self._map.digest,
+            stamp_ns=self._stamp_of_last(seq),
+            triples=tuple(self._map.abox()) if query.content else (),
+            entities=tuple(self._map.entities()) if query.content else (),
+        )
+
+    def _stamp_of_last(self, seq: int) -> int:
+        begins = self._journal.beginning
+        return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
         """Commits of the history, whole."""

@@ -137,3 +137,45 @@ def test_nothing_is_left_of_what_bears_it():
         ((1.5, 1.5, -0.3), "is on nothing: its bottom is at a height of -30.0 cm, and it is in no place"),
         ((9.0, 9.0, 0.42), "is on nothing: its bottom is at a height of 42.0 cm, and it is in no place"),
         ((0.0, 0.0, TOP + 0.2), "is on nothing: its bottom is 20.0 cm above a surface of table1"),
+        ((0.0, 0.0, TOP), None),
+        ((1.5, 1.5, 0.0), None),
+        ((9.0, 9.0, 0.0), None),
+    ],
+)
+def test_what_hovers_is_on_nothing(at, said):
+    space = Space([ROOM, CORNER, TABLE, thing("egg1", at)])
+    found = [r for r in relations(space, Relations(name="egg1")) if r.relation == "isOn" and not r.object]
+    assert [r.text.removeprefix("egg1 ").partition(" that has")[0] for r in found] == ([said] if said else [])
+    assert not any(r.holds for r in found)
+    fixed = list(relations(space, Relations(name="egg1"), is_fixed=True))
+    assert all(r.object for r in fixed)
+
+
+def test_too_little_of_its_base_over_an_edge_is_on_nothing():
+    edge = TABLE.size_m[0] / 2
+    box = thing("box1", (edge + 0.09, 0.0, TOP), size=(0.2, 0.2, 0.1))
+    (found,) = (r for r in relations(Space([ROOM, TABLE, box]), Relations(name="box1")) if not r.object)
+    assert found.text.endswith("level with a surface of table1, but 8% of its base is over that")
+
+
+def test_what_hangs_or_is_on_a_plan_is_not_said_to_hover():
+    wall = thing("wall1", (0.0, 0.0, 0.0), size=(0.1, 3.0, 2.5))
+    picture = thing("picture1", (0.07, 0.0, 1.3))
+    assert all(r.object for r in relations(Space([wall, picture]), Relations(name="picture1")))
+    plan = [thing("lamp1", (0.0, 0.0, 0.0)), thing("rug1", (0.0, 0.0, 0.0))]
+    assert all(r.object for r in relations(Space(plan), Relations(name="lamp1")))
+
+
+def test_what_has_no_known_size_is_told_what_is_missing():
+    relic = thing("relic1", (0.0, 0.0, TOP))
+    (found,) = (r for r in relations(Space([ROOM, TABLE, relic]), Relations(name="relic1")) if not r.object)
+    assert "give it a size: semmap update relic1 --size X Y Z" in found.text
+
+
+def test_what_has_no_known_size_is_near_nothing():
+    relic = thing("relic1", (0.0, 0.0, TOP))
+    space = Space([ROOM, TABLE, thing("cup1", (0.1, 0.0, TOP)), relic])
+    assert [r.relation for r in relations(space, Relations(name="relic1")) if r.holds] == ["isLocatedIn"]
+    pair = list(relations(space, Relations(name="cup1", other="relic1")))
+    assert not any(r.holds for r in pair)
+    assert "relic1" not in {r.object for r in relations(space, Relations(name="cup1"))}

@@ -141,14 +141,16 @@ def class_tree(classes: Iterable[ClassInfo]) -> Tree:
 
 
 def status_table(status: SystemStatus) -> Table:
-    """One row a node."""
+    """One row a node; with its host, if they run on several."""
     worries = ("last error",) if any(n.last_error for n in status.nodes) else ()
-    columns = ("node", "state", "pid", "uptime", "heartbeat", "detail", *worries)
+    hosts = ("host",) if len({n.host for n in status.nodes}) > 1 else ()
+    columns = ("node", *hosts, "state", "pid", "uptime", "heartbeat", "detail", *worries)
     rows = table(*columns, fold=("detail", *worries))
     for n in status.nodes:
         colour = {"ready": "green", "starting": "yellow"}.get(n.state, "red")
         rows.add(
             n.node,
+            *((n.host,) if hosts else ()),
             Text(n.state, style=colour),
             str(n.pid),
             _duration(n.uptime_s),

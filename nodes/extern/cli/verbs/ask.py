@@ -12,12 +12,20 @@ import click
 
 from nodes.extern.cli import output
 from nodes.extern.cli.angles import ANGLE
-from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
+from nodes.extern.cli.calling import (
+    TIME,
+    answered_by_robots,
+    complain,
+    print_json,
+    print_lines,
+    talks,
+)
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.output.printable import say
+from nodes.extern.cli.verbs import robots as of_robots
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys, roles
@@ -56,6 +64,7 @@ _STATUS_S = 20.0
 @click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
+@answered_by_robots(of_robots.entities)
 @talks
 def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
@@ -89,6 +98,7 @@ def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
 @click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
+@answered_by_robots(of_robots.entity)
 @talks
 def get(client: Client, name: str, format: str, as_of: str | None) -> None:
     """Show one entity, and where it is."""
@@ -236,6 +246,7 @@ def properties(client: Client, format: str) -> None:
 
 @click.command()
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@answered_by_robots(of_robots.status)
 @talks
 def status(client: Client, format: str) -> None:
     """Show the state of the nodes, the map and the scene."""
@@ -273,6 +284,7 @@ def status(client: Client, format: str) -> None:
     help="Refuse results of more than N rows.",
 )
 @_as_of
+@answered_by_robots(of_robots.rows)
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
     """Run a read-only SPARQL 1.1 query.

@@ -51,7 +51,7 @@ def restore(file: Path, data: Path, replace: bool) -> None:
     Then start it: semmap up --data DIR.
     """
     extras.require("semmap restore", "kb")
-    from nodes.kb_node.storage.restoring import restore as restore_journal
+    from nodes.kb_node.storage.backup.restoring import restore as restore_journal
     from nodes.supervisor.privacy import UMASK, make_private
     from nodes.supervisor.up import alone
 

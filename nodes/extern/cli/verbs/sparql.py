@@ -51,7 +51,7 @@ def ask(
         write(output.sparql_formats.text(result, format))
         return
     if result.rows:
-        _print_rows(result.variables, result.rows)
+        print_rows(result.variables, result.rows)
     print(f"{_rows(len(result.rows))} (commit {result.seq})")
 
 
@@ -60,7 +60,7 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
     with client.watch(read_query(query), inferred=inferred) as standing:
         _note(standing.notes)
         if standing.rows:
-            _print_rows(standing.variables, standing.rows)
+            print_rows(standing.variables, standing.rows)
         print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
             for line in output.sparql_formats.news(standing.variables, changed):
@@ -73,7 +73,8 @@ def _note(notes: Iterable[str]) -> None:
         say(f"  note: {note}", file=sys.stderr)
 
 
-def _print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
+def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
+    """As a table: one that is drawn, in a terminal."""
     if sys.stdout.isatty():
         output.show.console().print(output.sparql_formats.table(variables, rows))
     else:
