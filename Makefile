@@ -72,6 +72,9 @@ train-perception: setup  ## Learn anew what perception knows: an hour on two cor
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	$(BIN)/python -m nodes.training.recognition
 
+train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
+	$(BIN)/python -m nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric
+
 wheel: setup  ## Build the wheel into dist/
 	$(BIN)/python -m hatchling build -t wheel
 

@@ -33,6 +33,10 @@ class Lifelines:
         """Is a process of this node ready?"""
         return any(keys.live_node(key) == node for key in tuple(self._there))
 
+    def has_seen(self, nodes: tuple[str, ...]) -> bool:
+        """Has a process of any of these nodes been ready since this session began?"""
+        return any(node in self._instances for node in nodes)
+
     def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
         """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
         ready = [there for node in nodes if (there := self._instances.get(node))]
@@ -77,12 +81,26 @@ def robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
     The session has no namespace. A system without one is a robot without a name: "".
     """
     found: dict[str, set[str]] = {}
-    for pattern, name_of in ((keys.ROBOTS, keys.live_robot), (keys.live_key("*"), lambda _: "")):
+    for pattern, name_of in ((keys.robots_live(), keys.live_robot), (keys.live_key("*"), lambda _: "")):
         for reply in session.liveliness().get(pattern, timeout=_ROBOTS_S):
             if reply.ok is not None:
                 key = str(reply.ok.key_expr)
                 found.setdefault(name_of(key), set()).add(keys.live_node(key))
     return {name: frozenset(nodes) for name, nodes in sorted(found.items())}
+
+
+def follow_robots(session: zenoh.Session, node: str, receive: Callable[[str, str, bool], None]) -> Any:
+    """Call `receive(robot, instance, there)` whenever a process of this node of a robot appears or goes.
+
+    It is called on a thread of Zenoh's, at first for those that are there already. The session has no
+    namespace. The subscriber is returned.
+    """
+
+    def on_change(sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        receive(keys.live_robot(key), keys.last_chunk(key), sample.kind != zenoh.SampleKind.DELETE)
+
+    return session.liveliness().declare_subscriber(keys.robots_live(node), on_change, history=True)
 
 
 def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:

@@ -51,7 +51,7 @@ def access_control(members: Iterable[Member], namespace: str = "") -> dict[str, 
     for rule in rules if namespace else ():
         rule["key_exprs"] = [f"{namespace}/{key}" for key in rule["key_exprs"]]
         if "liveliness_query" in rule["messages"]:  # who asks which robots there are names none
-            rule["key_exprs"].append(keys.ROBOTS)
+            rule["key_exprs"].append(keys.robots_live())
     return {
         "enabled": True,
         "default_permission": "deny",

@@ -33,6 +33,7 @@ PARSED = {
     "tbox",
     "backup",
     "restore",
+    "fleet",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0

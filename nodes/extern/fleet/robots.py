@@ -140,12 +140,12 @@ def robots(
     systems that this user runs on this machine. Names without wildcards that are not there are answered for
     with an error. Raises NoAnswer when there is no robot at all.
     """
-    patterns = _words(pattern)
+    patterns = words(pattern)
     who = identity(identity_)
     missing: list[Answer[Any]] = []
     with contextlib.ExitStack() as stack:
         places: dict[str, str] = {}
-        for place in _endpoints(where):
+        for place in endpoints(where):
             try:
                 for name in _there(place, who):
                     places.setdefault(name, place)
@@ -170,7 +170,7 @@ def robots_there(where: str | None, identity_: str | None) -> tuple[str, ...]:
     Raises NoAnswer, BadFile.
     """
     who = identity(identity_)
-    return tuple(dict.fromkeys(name for place in _endpoints(where) for name in _there(place, who)))
+    return tuple(dict.fromkeys(name for place in endpoints(where) for name in _there(place, who)))
 
 
 def _there(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
@@ -179,18 +179,20 @@ def _there(place: str, who: Identity | None) -> dict[str, frozenset[str]]:
         return bus.robots(session)
 
 
-def _endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
+def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
+    """Those that are given, or of the system that is meant, or of all that this user runs here."""
     if where:
-        return _words(where)
+        return words(where)
     try:
-        return _words(endpoint())
+        return words(endpoint())
     except errors.BadRequest:  # it could be any of several: all of them, then
         return tuple(dict.fromkeys(system.reachable for system in registry.systems()))
 
 
-def _words(text: str | Sequence[str]) -> tuple[str, ...]:
-    words = text.split(",") if isinstance(text, str) else text
-    return tuple(word.strip() for word in words if word.strip())
+def words(text: str | Sequence[str]) -> tuple[str, ...]:
+    """Several, separated by commas."""
+    said = text.split(",") if isinstance(text, str) else text
+    return tuple(word.strip() for word in said if word.strip())
 
 
 def _not_there(name: str, others: Sequence[str] | dict[str, str]) -> Answer[Any]:
