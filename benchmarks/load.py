@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import tempfile
 import time
@@ -273,6 +274,7 @@ def main(words: argparse.Namespace) -> dict[str, Any]:
             found["sessions"] = sessions(endpoint, words.sessions)
         if "puts" in parts:
             found["puts"] = puts(pool, endpoint, words.puts)
+    found["load_average"] = os.getloadavg()
     return found
 
 

@@ -31,6 +31,7 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
@@ -304,6 +305,21 @@ class Could(Command[Possible], frozen=True, tag="could"):
     name: Word
     predicate: Word
     value: str
+
+
+class Diff(Command[Difference], frozen=True, tag="diff"):
+    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+
+    since: When
+    until: When | None = None
+
+
+class WasWhen(Command[Spells], frozen=True, tag="when"):
+    """When a thing was on, inside, in or attached to another, as measured after each commit."""
+
+    name: Word
+    relation: KeptRelation
+    other: Word
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):

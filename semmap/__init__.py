@@ -21,8 +21,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from nodes.extern.client import Client, connect
+from nodes.extern.restoring import restore
 from nodes.extern.sparql_client import StandingQuery
 from ontology.vocabulary import local_name
+from schemas.backups import Restored
 from schemas.commits import Commit, Departed
 from schemas.entities import BodyState, ClassInfo, Entity, Pose, Provenance
 from schemas.errors import (
@@ -83,6 +85,7 @@ __all__ = [
     "PreconditionFailed",
     "Provenance",
     "Refused",
+    "Restored",
     "RowsChanged",
     "SemmapError",
     "Sighting",
@@ -98,6 +101,7 @@ __all__ = [
     "fleet",
     "local_name",
     "reasoner",
+    "restore",
     "testing",
     "wire",
 ]

@@ -179,7 +179,8 @@ def _ask(
                 raise
             round_s = timeout_s
             continue
-        if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
+        took_s = (now_s := time.monotonic()) - asked_at_s
+        if took_s > _HAD_IT_S and (lifelines is None or lifelines.has_seen(servers)):
             deadline_s = now_s + patience_s
         if first_hand:
             first_hand = False

@@ -33,6 +33,10 @@ class Lifelines:
         """Is a process of this node ready?"""
         return any(keys.live_node(key) == node for key in tuple(self._there))
 
+    def has_seen(self, nodes: tuple[str, ...]) -> bool:
+        """Has a process of any of these nodes been ready since this session began?"""
+        return any(node in self._instances for node in nodes)
+
     def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
         """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
         ready = [there for node in nodes if (there := self._instances.get(node))]

@@ -80,8 +80,8 @@ def test_questions_that_may_take_long_leave_no_memory_behind_when_they_took_a_mo
         time.sleep(0.5)
         return float(process.memory_full_info().uss - before) / 1e6
 
-    grown_mb()
-    assert grown_mb() < 1.5  # with a time-out of an hour they would leave 3.4 MB
+    # with a time-out of an hour each round would leave 3.4 MB; what Zenoh sets up for itself comes once
+    assert min(grown_mb() for _ in range(3)) < 1.5
 
 
 ASKED = (commands.Get(name="x"), replies.Done)
@@ -142,6 +142,20 @@ def test_patience_begins_when_who_had_the_question_goes(pair):
     bus.serve(server, keys.BRIDGE, receive)
     how = {"patience_s": 0.3, "lifelines": lifelines}
     assert bus.ask(client, keys.BRIDGE, "get", *ASKED, **how).text == "back"
+
+
+def test_a_busy_machine_is_not_taken_for_a_node_that_goes_again_and_again(pair, monkeypatch):
+    _, client = pair
+    asked = itertools.count()
+
+    def ask_slowly(*args, **how):
+        assert next(asked) < 20, "it was to give up"
+        time.sleep(0.15)
+        return ()
+
+    monkeypatch.setattr("nodes.bus.asking._get", ask_slowly)
+    with pytest.raises(errors.NoAnswer):
+        bus.ask(client, keys.BRIDGE, "get", *ASKED, patience_s=0.3, lifelines=bus.Lifelines(client))
 
 
 def test_ask_later_tells_that_the_node_went(pair):

@@ -19,9 +19,9 @@ PUBLIC = {
     "semmap": """
         BadFile BadRequest BodyState Changed Checked ClassInfo Client Commit Departed Document Done Entity
         Explanation Inconsistent Inferred InternalError LoggedCommit Moved NameTaken NoAnswer NodeStatus Pose
-        PreconditionFailed Provenance Refused RowsChanged SemmapError Sighting SparqlResult StandingQuery
-        SystemStatus UnknownClass UnknownName UnknownVerb
-        aio commands connect fleet local_name reasoner testing wire
+        PreconditionFailed Provenance Refused Restored RowsChanged SemmapError Sighting SparqlResult
+        StandingQuery SystemStatus UnknownClass UnknownName UnknownVerb
+        aio commands connect fleet local_name reasoner restore testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """

@@ -63,14 +63,26 @@ def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresh
 def beginnings(
     history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
 ) -> dict[Fact, int]:
-    """The commit since which each fact has held without a break, measured with these thresholds.
+    """The commit since which each fact has held without a break; what does not hold at the end is left out.
 
-    `history` are the commits in order, `first` the entities before them. What held before the first of
-    them is given as 0; what does not hold at the end is not among them.
+    Commits and thresholds are as for `spells`.
+    """
+    found = spells(history, first, facts, limits)
+    return {fact: spans[-1][0] for fact, spans in found.items() if spans and spans[-1][1] is None}
+
+
+def spells(
+    history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+) -> dict[Fact, list[tuple[int, int | None]]]:
+    """From which commit until before which each fact held, in order; None for what holds at the end.
+
+    `history` are the commits in order, `first` the entities before them; what held before the first of
+    them begins with 0. All is measured with the thresholds given.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
     spots = [_Spot(name, frozenset(about), limits, there) for name, about in by_name]
+    found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
         before = {name: there.get(name) for name in _names(moves)}
@@ -82,11 +94,13 @@ def beginnings(
             if spot.follow(shifted, there):
                 holding = spot.holding()
                 for fact in spot.facts:
-                    if fact not in holding:
-                        since.pop(fact, None)
-                    else:
+                    if fact in holding:
                         since.setdefault(fact, moves.seq)
-    return since
+                    elif fact in since:
+                        found[fact].append((since.pop(fact), moves.seq))
+    for fact, seq in since.items():
+        found[fact].append((seq, None))
+    return found
 
 
 def _names(moves: Moves) -> list[str]:

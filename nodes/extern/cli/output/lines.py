@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from schemas import wording
 from schemas.explanations import Explanation
+from schemas.happenings import Difference
 from schemas.replies import Changed, Inferred
 
 _MOST = 20
@@ -18,6 +20,18 @@ def changed(reply: Changed) -> Iterable[str]:
     yield from (f"  note: {note}" for note in reply.notes)
     yield from _few("would follow", reply.follows)
     yield from _few("would no longer follow", reply.no_longer_follows)
+
+
+def difference(found: Difference) -> Iterable[str]:
+    """What is otherwise, one line an entity."""
+    about: dict[str, list[str]] = {}
+    for change in found.changes:
+        about.setdefault(change.name, []).append(change.text)
+    for related in found.relations:
+        about.setdefault(related.subject, []).append(related.text)
+    yield from (f"{name}: {'; '.join(texts)}" for name, texts in sorted(about.items()))
+    same = "nothing is otherwise" if not about else f"{wording.entities(len(about))} otherwise"
+    yield f"{same} (commit {found.last} against {found.first})"
 
 
 def _few(what: str, texts: Sequence[str]) -> Iterable[str]:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import closing, suppress
-from datetime import datetime
+from contextlib import closing
 from pathlib import Path
 
 from nodes.kb_node.semantic_map import SemanticMap
@@ -14,15 +13,15 @@ from nodes.kb_node.storage.encoding import dense
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.journal.beginning import TABLE
 from nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
-from schemas import backups, errors, wording
-from schemas.backups import Opening, Piece
+from schemas import backups, errors
+from schemas.backups import Opening, Piece, Restored
 from schemas.commits import Commit
 
 
 def restore(
     file: Path, data: Path, *, replace: bool = False, tell: Callable[[str], None] = lambda text: None
-) -> str:
-    """Make the map of the backup `file` that of the folder `data`; say which map it is.
+) -> Restored:
+    """Make the map of the backup `file` that of the folder `data`.
 
     A map that is there is moved to `data/kept/<time>/` if `replace`. `tell` is told how far long work is.
     Raises BadFile for what is no sound backup; Refused when there is a map, one that is in use too, or the
@@ -44,11 +43,7 @@ def restore(
         raise errors.Refused(f"the map cannot be restored to {data}: {error.strerror}") from None
     finally:
         seed.remove(new)
-    aside = "" if kept is None else f"; the map before is kept in {kept}"
-    return (
-        f"map {opening.map_id[:12]}, begun {_at(opening.begun_ns)}, as it was after commit {opening.last}"
-        f" ({_at(opening.stamp_ns)}), {wording.entities(size)}{aside}"
-    )
+    return Restored(opening=opening, entities=size, kept=None if kept is None else str(kept))
 
 
 def _made(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[Opening, int]:
@@ -94,9 +89,3 @@ def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callabl
         else:
             table = "tboxes" if row.kind == "tbox" else "checkpoints"
             db.execute(f"INSERT INTO {table} VALUES (?, ?, ?)", (row.seq, row.content, row.digest))
-
-
-def _at(stamp_ns: int) -> str:
-    with suppress(OverflowError, OSError, ValueError):
-        return f"{datetime.fromtimestamp(stamp_ns / 1e9):%Y-%m-%d %H:%M:%S}"
-    return "at an unknown time"

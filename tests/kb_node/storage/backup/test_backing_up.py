@@ -65,7 +65,9 @@ def test_what_is_restored_is_what_was_backed_up(tmp_path, semantic_map, size):
     opening = backed_up(semantic_map, tmp_path / "b", size, go_on)
     assert (opening.last, opening.digest) == (8, commits[-1].digest)
     assert opening.map_id == semantic_map._journal.origin()[0]
-    told = restore(tmp_path / "b", tmp_path / "other")
+    restored_map = restore(tmp_path / "b", tmp_path / "other")
+    assert (restored_map.opening, restored_map.entities, restored_map.kept) == (opening, 7, None)
+    told = restored_map.text
     assert told.startswith(f"map {opening.map_id[:12]}, begun 20")
     assert "as it was after commit 8 (20" in told
     assert told.endswith("), 7 entities")
@@ -153,9 +155,10 @@ def test_a_map_that_is_there_is_moved_aside_or_stays(tmp_path, semantic_map):
         restore(tmp_path / "b", other, replace=True)
     home.close(theirs)
     before = (other / FILENAME).read_bytes()
-    told = restore(tmp_path / "b", other, replace=True)
+    restored = restore(tmp_path / "b", other, replace=True)
     (kept,) = (other / "kept").iterdir()
-    assert told.endswith(f"; the map before is kept in {kept}")
+    assert restored.kept == str(kept)
+    assert restored.text.endswith(f"; the map before is kept in {kept}")
     assert (kept / FILENAME).read_bytes() == before
     assert len(opened(other)[1]) == len(list(semantic_map._journal.commits()))
 
