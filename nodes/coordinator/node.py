@@ -188,6 +188,8 @@ class Coordinator:
         return future
 
     def _answer_waiting(self) -> None:
+        if not self._waiting:
+            return
         still = []
         undecided = {"pending"}
         if self._health.may_be_there("sim_node"):

@@ -157,7 +157,7 @@ def up(settings: Settings) -> None:
     if settings.secure is not None:
         for name in (SUPERVISOR, *settings.nodes):
             Identity.read(Path(settings.secure) / name).require_valid()
-    extras.require_nodes(settings.nodes)
+    extras.require_nodes(settings.nodes, named=bool(settings.only))
     from nodes.supervisor.up import up as run_up
 
     if settings.truth == "perceived" and not settings.perception and not settings.only:
