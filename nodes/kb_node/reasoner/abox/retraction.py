@@ -235,13 +235,12 @@ class Retraction:
 
     def _may_have_been_a_value(self, node: int, other: int) -> bool:
         """Whether a node's classes come with values of which another, which it lost, may have been one."""
-        values = self._store.kind[node].values
+        values = self._store.kind[node].value_terms
         if not values:
             return False
-        abox, term = self._abox, self._store.terms[other]
-        if abox.equals or self._loosened or abox.is_literal(other):
-            return True  # it may have stood for another that is the same
-        return any(term == value for _, value in values)
+        is_one = self._store.terms[other] in values
+        # or it stood for one that is the same
+        return is_one or bool(self._abox.equals or self._loosened) or self._abox.is_literal(other)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
         """An individual between two that a chain goes through, sought from the end with fewer edges."""
