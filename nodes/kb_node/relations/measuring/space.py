@@ -144,8 +144,10 @@ class Space:
 
     def bearers_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Those of them who may bear and hold it; of what does not count itself, only what is larger."""
+        if not self.grid.crowds:
+            return self.around(solid, margin_m)
         around = self.counted_around(solid, margin_m)
-        if not self.grid.crowds or self.grid.counts(solid):
+        if self.grid.counts(solid):
             return around
         return [other for other in around if other.is_place or other.volume > solid.volume]
 
@@ -243,7 +245,7 @@ class Space:
         gaps += [made.gap_m for _, made in below]
         if floor_m is not None and on_floor:
             gaps.append(floor_m)
-        nearest = min(gaps, key=_nearness)
+        nearest = gaps[0] if len(gaps) == 1 else min(gaps, key=_nearness)
         level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
         if sum(made.share for _, made in level) < limits.base_share and not measures.is_balanced(
             solid, [other for other, _ in level], solid.bottom - nearest
