@@ -32,8 +32,8 @@ test: setup  ## The tests, under 5 minutes
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n 2 --dist worksteal -m "not long"
 
-test-long: setup  ## The tests that take longer too
-	$(BIN)/pytest -n 2
+test-long: setup  ## The tests that take longer too, and all tries of those that search
+	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2
 
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000
@@ -71,6 +71,9 @@ relations-picture: setup  ## Draw the sixty situations of docs/relations.md
 train-perception: setup  ## Learn anew what perception knows: an hour on two cores; recorded scenes too where they are
 	$(BIN)/python -m nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	$(BIN)/python -m nodes.training.recognition
+
+train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
+	$(BIN)/python -m nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric
 
 wheel: setup  ## Build the wheel into dist/
 	$(BIN)/python -m hatchling build -t wheel

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import tempfile
 import time
@@ -33,7 +34,7 @@ from schemas.replies import Ack
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _CLIENTS_A_PROCESS = 5
 _OWN = 10
-"""Entities that a client keeps in the map; it removes the oldest then."""
+"""Entities that a client keeps in the map at most: it removes the oldest before it adds another."""
 _LOOK_S = 0.05
 _LAST_ACK_S = 60.0
 
@@ -172,7 +173,7 @@ def _act(client: Client, random_: random.Random, own: list[str], name: str, enti
     somebody = f"cup{random_.randrange(max(1, entities))}"
     place = (random_.uniform(-500.0, -10.0), random_.uniform(-500.0, 500.0), 0.0)
     chance = random_.random()
-    if chance < 0.1 and len(own) >= _OWN:
+    if chance < 0.35 and len(own) >= _OWN:
         return "remove", lambda: client.remove(own.pop(0))
     if chance < 0.35:
         return "add", lambda: own.extend(client.add("Bowl", name, at=place).names)
@@ -273,6 +274,7 @@ def main(words: argparse.Namespace) -> dict[str, Any]:
             found["sessions"] = sessions(endpoint, words.sessions)
         if "puts" in parts:
             found["puts"] = puts(pool, endpoint, words.puts)
+    found["load_average"] = os.getloadavg()
     return found
 
 

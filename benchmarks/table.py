@@ -37,5 +37,14 @@ def lines(rows: Sequence[Row]) -> str:
     )
 
 
+def as_json(row: Row) -> dict[str, object]:
+    """A row as other programs read it."""
+    better = "higher" if row.more else "lower"
+    return {
+        "what": row.what, "value": row.value, "unit": row.unit, "reach": row.reach, "aim": row.aim,
+        "better": better,
+    }  # fmt: skip
+
+
 def _bound(bound: float | None) -> str:
     return "" if bound is None else f"{bound:g}"

@@ -9,12 +9,15 @@ from __future__ import annotations
 import hashlib
 from collections import deque
 from collections.abc import Iterator
+from contextlib import suppress
+from datetime import datetime
 from pathlib import Path
 from typing import BinaryIO, Final, Literal
 
 import msgspec
 from msgspec import Struct
 
+from schemas import wording
 from schemas.errors import BadFile
 
 MAGIC: Final = b"semmap backup 1\n"
@@ -61,6 +64,32 @@ class End(Struct, frozen=True, kw_only=True, tag="end"):
 Frame = Opening | Piece | End
 _encoder = msgspec.msgpack.Encoder()
 _decoder = msgspec.msgpack.Decoder(Frame)
+
+
+class Restored(Struct, frozen=True, kw_only=True):
+    """A map that a backup was restored to."""
+
+    opening: Opening
+    """Which map it is, and as of which commit."""
+    entities: int
+    kept: str | None = None
+    """The folder that the map before it was moved to, if there was one."""
+
+    @property
+    def text(self) -> str:
+        """What there is to say of it, in a sentence."""
+        map_ = self.opening
+        aside = "" if self.kept is None else f"; the map before is kept in {self.kept}"
+        return (
+            f"map {map_.map_id[:12]}, begun {_at(map_.begun_ns)}, as it was after commit {map_.last}"
+            f" ({_at(map_.stamp_ns)}), {wording.entities(self.entities)}{aside}"
+        )
+
+
+def _at(stamp_ns: int) -> str:
+    with suppress(OverflowError, OSError, ValueError):
+        return f"{datetime.fromtimestamp(stamp_ns / 1e9):%Y-%m-%d %H:%M:%S}"
+    return "at an unknown time"
 
 
 class BackupPart(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -13,6 +13,7 @@ from schemas.commands import (
     Classes,
     Compact,
     Could,
+    Diff,
     Explain,
     Export,
     Get,
@@ -23,11 +24,14 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
+    WasWhen,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from schemas.entities import CommandId, Entity, Source
 from schemas.errors import ErrorMessage
+from schemas.explanations import Triple
 from schemas.moments import When
 from schemas.relations import Where
 
@@ -61,6 +65,33 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
     limit: Annotated[int, Meta(ge=1, le=1_000_000)] | None = None
 
 
+class MapCopy(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A map as it is after commit `seq`, for who keeps it elsewhere and follows its commits from there.
+
+    Its `triples` are all that was asserted and is not the TBox's; blank nodes have the labels that commits
+    call them by.
+    """
+
+    map_id: str
+    """The digest of the map's very first commit: a map that is begun anew has another."""
+    begun_ns: int
+    """When that was made."""
+    seq: int
+    digest: str
+    """That of all commits up to `seq`."""
+    stamp_ns: int
+    """When commit `seq` was made."""
+    triples: tuple[Triple, ...] = ()
+    entities: tuple[Entity, ...] = ()
+
+
+class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The whole map; without `content` only which map it is, and as of which commit."""
+
+    VERB: ClassVar[str] = "copy"
+    content: bool = True
+
+
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The stars of these entities, taken together; UnknownName if one is not there."""
 
@@ -69,6 +100,11 @@ class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknow
     VERB: ClassVar[str] = "star"
 
     names: tuple[str, ...]
+
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
 
 
 class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -92,6 +128,11 @@ class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid
 
     ids: tuple[CommandId, ...]
 
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
+
 
 class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """These commits again, for a follower that has missed them; those that there never were are left out."""
@@ -99,6 +140,11 @@ class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown
     VERB: ClassVar[str] = "recall"
 
     seqs: Annotated[tuple[Annotated[int, Meta(ge=0, le=1 << 53)], ...], Meta(max_length=100)]
+
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
 
 
 class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -109,6 +155,11 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
     VERB: ClassVar[str] = "commits"
 
     transactions: tuple[Transaction, ...]
+
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
 
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -129,6 +180,8 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     strict: bool = False
     parts: bool = False
     dry_run: bool = False
+    told: bool = False
+    """The coordinator asks for one commit, and takes it from the reply; see `Transaction.told`."""
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -162,6 +215,11 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
     as_of: When | None = None
     where: Where | None = None
 
+    @property
+    def is_quick(self) -> bool:
+        """It is."""
+        return True
+
 
 class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Take back a commit by another one; see `schemas.commands.Undo`."""
@@ -173,14 +231,29 @@ class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
     reason: str = ""
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
+    told: bool = False
+    """The coordinator asks; see `Transaction.told`."""
 
 
 BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
         *(Transaction, Transactions, LoadDocument, LoadTBox, TakeBack),
-        *(SnapshotQuery, Recall, StarQuery, MadeBy, Entities),
-        *(Classes, Properties, Get, Check, Infer, Explain, Could, Export, History, LastSeen, Relations),
+        *(SnapshotQuery, CopyQuery, Recall, StarQuery, MadeBy, Entities),
+        *(
+            Classes,
+            Properties,
+            Get,
+            Check,
+            Infer,
+            Explain,
+            Could,
+            Export,
+            History,
+            LastSeen,
+            Relations,
+            *(Understand, Diff, WasWhen),
+        ),
         *(Sparql, Watch, Renew),
         *(Backup, Compact),
     )

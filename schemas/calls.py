@@ -32,6 +32,14 @@ class Call(Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=
     LARGEST: ClassVar[int] = 1 << 20
     """Bytes that such a message may have, encoded. What takes more than that to say is said in a document."""
 
+    @property
+    def is_quick(self) -> bool:
+        """Is it answered in moments by one who is not busy, and does it do no more when it is asked twice?
+
+        Such a call is asked anew when a minute has brought no answer.
+        """
+        return False
+
     @classmethod
     def answered_by(cls, function: Callable[[Self], R | Future[R] | Relay[R]]) -> Handler:
         """Pair this type of call with the function that answers it, at once, later, or by another node."""

@@ -7,7 +7,7 @@ alike. Positions and sizes are metres in the map frame, angles are radians.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
@@ -31,6 +31,8 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.happenings import Difference, KeptRelation, Spells
+from schemas.language import Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -55,6 +57,10 @@ ListFormat = Literal["json", "lu4r", "legacy"]
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 
 
+_SLOW: Final = frozenset({"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step"})
+"""Commands that may be at work for long, or that do more when they come twice."""
+
+
 class Command(
     Call[R], frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="verb", omit_defaults=True
 ):
@@ -67,6 +73,11 @@ class Command(
     source: Source = "operator"
     agent: Annotated[str, Meta(max_length=200)] = ""
     reason: Remark = ""
+
+    @property
+    def is_quick(self) -> bool:
+        """Most are, and what changes the map is done once under its id."""
+        return self.VERB not in _SLOW
 
     def __post_init__(self) -> None:
         """Names are compared in composed form, however they were typed."""
@@ -104,10 +115,10 @@ class Update(Command[Changed], frozen=True, tag="update"):
     """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
-    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
-    that would make an object a place, or a place an object, is refused without `force`. With `carry`, what
-    stands on the entity or is inside it moves with it as one rigid body, in the same commit; not what `leave`
-    names, and what stands on that.
+    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
+    property replace its values. A class that would make an object a place, or a place an object, is refused
+    without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
+    in the same commit; not what `leave` names, and what stands on that.
     """
 
     name: Word
@@ -294,6 +305,27 @@ class Could(Command[Possible], frozen=True, tag="could"):
     name: Word
     predicate: Word
     value: str
+
+
+class Diff(Command[Difference], frozen=True, tag="diff"):
+    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+
+    since: When
+    until: When | None = None
+
+
+class WasWhen(Command[Spells], frozen=True, tag="when"):
+    """When a thing was on, inside, in or attached to another, as measured after each commit."""
+
+    name: Word
+    relation: KeptRelation
+    other: Word
+
+
+class Understand(Command[Understood], frozen=True, tag="understand"):
+    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+
+    text: Text
 
 
 class Export(Command[Document], frozen=True, tag="export"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from msgspec import Struct, structs
 
@@ -236,6 +236,9 @@ class Effects(Struct, frozen=True, kw_only=True):
         return tuple(dict.fromkeys([*(e.name for e in self.changed), *(gone.name for gone in self.removed)]))
 
 
+_FEW: Final = 1000
+
+
 class Transaction(
     Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
@@ -273,6 +276,11 @@ class Transaction(
     """Answered with what it would do, and not done."""
     told: bool = False
     """The coordinator asks: it takes the commit from the reply, and need not hear of it a second time."""
+
+    @property
+    def is_quick(self) -> bool:
+        """Where it changes few entities."""
+        return len(self.add) + len(self.remove) + len(self.edit) <= _FEW
 
 
 MANY_ENTITIES = 10_000

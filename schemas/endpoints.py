@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
+
+from schemas.errors import BadRequest
 
 DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 CONNECT_VARIABLE: Final = "SEMMAP_CONNECT"
@@ -11,3 +14,14 @@ CONFIG_VARIABLE: Final = "SEMMAP_ZENOH_CONFIG"
 """The environment variable with a Zenoh configuration file, for a system that was started with its own."""
 IDENTITY_VARIABLE: Final = "SEMMAP_IDENTITY"
 """The environment variable with who somebody is."""
+NAMESPACE_VARIABLE: Final = "SEMMAP_NAMESPACE"
+"""The environment variable with which robot is meant, where several share a network."""
+
+_ROBOT: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,127}")
+
+
+def robot_name(name: str) -> str:
+    """`name`, if a robot may be called so; empty is a robot without a name. Raises BadRequest."""
+    if name and not _ROBOT.fullmatch(name):
+        raise BadRequest(f"'{name}' cannot name a robot; use letters, digits, '_', '.' and '-', as in robot1")
+    return name

@@ -14,6 +14,8 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Sent once a second by the thread that owns a node's state, so a hung node falls silent."""
 
     node: str
+    host: str = ""
+    """The name of the machine that it runs on."""
     pid: int
     started_ns: int
     stamp_ns: int

@@ -67,6 +67,12 @@ HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
 
 
+def published() -> tuple[str, ...]:
+    """Key expressions of all that is published, or put as a command, in whatever namespace."""
+    commands = (CMD, f"{CMD}/*", f"{commands_as()}/*")
+    return tuple(f"**/{key}" for key in (*(topic.key for topic in TOPICS), *commands))
+
+
 def entity_key(class_name: str, name: str) -> str:
     """Where the state of one entity is published under one of its classes."""
     return f"{ROOT}/jena/entity/{_chunk(class_name)}/{_chunk(name)}"
@@ -102,6 +108,16 @@ def health_key(node: str) -> str:
 def live_key(node: str, instance: str = "*") -> str:
     """The liveliness token of one instance of a node; `**` does not match its `@` chunk."""
     return f"{ROOT}/@live/{node}/{instance}"
+
+
+def robots_live(node: str = "*") -> str:
+    """The liveliness tokens of a node of all robots that have a name, as a session without one sees them."""
+    return f"*/{live_key(node)}"
+
+
+def live_robot(key: str) -> str:
+    """The robot of such a token's key."""
+    return key.partition("/")[0]
 
 
 @cache

@@ -92,6 +92,8 @@ class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     node: str
     state: Literal["starting", "ready", "silent"]
+    host: str = ""
+    """The name of the machine that it runs on."""
     pid: int
     uptime_s: float
     heartbeat_age_s: float

@@ -7,10 +7,11 @@
         for entity in client.list("Graspable_Thing"):
             print(entity.name, entity.pose)
 
-`semmap.aio` has the same client for an event loop, `semmap.testing` a system for your tests,
-`semmap.reasoner` the OWL 2 RL reasoner by itself, `semmap.commands` what can be sent, and `semmap.wire` what
-programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public; `nodes`,
-`schemas` and `ontology` are private, and may change with any version.
+`semmap.aio` has the same client for an event loop, `semmap.fleet` asks several robots together,
+`semmap.testing` has a system for your tests, `semmap.reasoner` the OWL 2 RL reasoner by itself,
+`semmap.commands` what can be sent, and `semmap.wire` what programs need that speak Zenoh themselves. Only the
+names in `__all__` of these modules are public; `nodes`, `schemas` and `ontology` are private, and may change
+with any version.
 """
 
 from __future__ import annotations
@@ -20,8 +21,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from nodes.extern.client import Client, connect
+from nodes.extern.restoring import restore
 from nodes.extern.sparql_client import StandingQuery
 from ontology.vocabulary import local_name
+from schemas.backups import Restored
 from schemas.commits import Commit, Departed
 from schemas.entities import BodyState, ClassInfo, Entity, Pose, Provenance
 from schemas.errors import (
@@ -54,7 +57,7 @@ from schemas.replies import (
 from schemas.sparql import RowsChanged, SparqlResult
 
 if TYPE_CHECKING:
-    from semmap import aio, commands, reasoner, testing, wire
+    from semmap import aio, commands, fleet, reasoner, testing, wire
 
 __all__ = [
     "BadFile",
@@ -82,6 +85,7 @@ __all__ = [
     "PreconditionFailed",
     "Provenance",
     "Refused",
+    "Restored",
     "RowsChanged",
     "SemmapError",
     "Sighting",
@@ -94,13 +98,15 @@ __all__ = [
     "aio",
     "commands",
     "connect",
+    "fleet",
     "local_name",
     "reasoner",
+    "restore",
     "testing",
     "wire",
 ]
 
-_MODULES = {"aio", "commands", "reasoner", "testing", "wire"}
+_MODULES = {"aio", "commands", "fleet", "reasoner", "testing", "wire"}
 
 
 def __getattr__(name: str) -> ModuleType | str:

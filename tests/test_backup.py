@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
 import time
 
 import pytest
 
+import semmap
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.seed import seed
@@ -44,8 +46,15 @@ def test_a_backup_of_a_system_that_goes_on_is_a_map_of_its_own(tmp_path):
         with system.client() as client:
             assert client.backup(file, overwrite=True).last == added[-1]
             last, there = added[-1], {entity.name for entity in client.list()}
+        with pytest.raises(errors.Refused, match="a system is already running on"):
+            semmap.restore(file, tmp_path / "one", replace=True)
         running_already = system.cli("restore", file, "--data", tmp_path / "one", "--replace", status=1)
         assert "a system is already running on" in running_already
+        umask = os.umask(0o022)
+        restored = semmap.restore(file, tmp_path / "three")
+        assert (restored.opening.last, restored.entities, restored.kept) == (last, len(there), None)
+        assert (tmp_path / "three" / FILENAME).stat().st_mode & 0o777 == 0o600
+        assert os.umask(umask) == 0o022  # the program's own is as before
         told = system.cli("restore", file, "--data", tmp_path / "two")
         assert f"as it was after commit {last} " in told
         assert (tmp_path / "two" / FILENAME).stat().st_mode & 0o777 == 0o600

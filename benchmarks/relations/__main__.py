@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from benchmarks.relations import kept, rightness, speed, watched
-from benchmarks.table import Row, lines
+from benchmarks.table import Row, as_json, lines
 
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
@@ -79,15 +79,6 @@ def main() -> None:
     print(lines(found))
     if words.json_file is not None:
         words.json_file.write_text(json.dumps([as_json(row) for row in found], indent=1) + "\n")
-
-
-def as_json(row: Row) -> dict[str, object]:
-    """A row as other programs read it."""
-    better = "higher" if row.more else "lower"
-    return {
-        "what": row.what, "value": row.value, "unit": row.unit, "reach": row.reach, "aim": row.aim,
-        "better": better,
-    }  # fmt: skip
 
 
 if __name__ == "__main__":

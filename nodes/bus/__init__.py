@@ -1,10 +1,20 @@
 """The only code that knows Zenoh: open a session, ask, serve, publish, follow."""
 
 from nodes.bus import own_config
-from nodes.bus.asking import TIMEOUT_S, Encoded, ForeignReply, Patience, ask, ask_later, read_reply
-from nodes.bus.lifelines import Lifelines, appear, follow_presence
+from nodes.bus.asking import (
+    TIMEOUT_S,
+    Encoded,
+    ForeignReply,
+    Patience,
+    TimedOut,
+    ask,
+    ask_later,
+    first_round_s,
+    read_reply,
+)
+from nodes.bus.lifelines import Lifelines, appear, follow_presence, follow_robots, robots
 from nodes.bus.pieces import MESSAGE, PIECE, PUBLISHED
-from nodes.bus.pubsub import follow, follow_cameras, includes, listen, publisher, watched
+from nodes.bus.pubsub import follow, follow_cameras, includes, listen, meets, publisher, watched
 from nodes.bus.serving import Request, serve, serve_puts
 from nodes.bus.session import (
     DEFAULT_ENDPOINT,
@@ -17,8 +27,10 @@ from nodes.bus.session import (
     Session,
     host_of,
     is_local,
+    linked_routers,
     open_session,
     over_tls,
+    read_links_apart,
     require_tls,
 )
 
@@ -40,22 +52,29 @@ __all__ = [
     "Patience",
     "Request",
     "Session",
+    "TimedOut",
     "appear",
     "ask",
     "ask_later",
+    "first_round_s",
     "follow",
     "follow_cameras",
     "follow_presence",
+    "follow_robots",
     "host_of",
     "includes",
     "is_local",
+    "linked_routers",
     "listen",
+    "meets",
     "open_session",
     "over_tls",
     "own_config",
     "publisher",
+    "read_links_apart",
     "read_reply",
     "require_tls",
+    "robots",
     "serve",
     "serve_puts",
     "watched",

@@ -41,6 +41,20 @@ _ERROR_ENCODING = "application/msgpack;semmap.ErrorMessage.v1"
 _AS_THEY_COME = zenoh.ConsolidationMode.NONE
 
 
+_ROUND_S: Final = 60.0
+"""Zenoh (1.10.2) keeps a kilobyte of every question until its time-out, long after it was answered. So what
+is quick as a rule has this time-out, and is asked a second time with all the time that it may take."""
+
+
+class TimedOut(errors.NoAnswer):
+    """Who was asked has not answered in the time that was given for it."""
+
+
+def first_round_s(message: Any, timeout_s: float) -> float:
+    """The time-out [s] of the first question when the answer may take `timeout_s`; raises TimedOut then."""
+    return min(timeout_s, _ROUND_S) if getattr(message, "is_quick", False) else timeout_s
+
+
 class ForeignReply(errors.NoAnswer):
     """Only somebody has answered who is not one of the nodes that serve the key."""
 
@@ -133,6 +147,7 @@ def _ask(
     payload, encoding = codec.encode(message), codec.encoding_of(message)
     deadline_s = time.monotonic() + patience_s
     servers, foreign = keys.servers(prefix, verb), False
+    round_s = first_round_s(message, timeout_s)
     target = zenoh.QueryTarget.ALL_COMPLETE if first_hand else zenoh.QueryTarget.BEST_MATCHING
     while True:
         asked_at_s = time.monotonic()
@@ -143,22 +158,29 @@ def _ask(
                 key,
                 lifelines.of(servers) if lifelines else None,
                 encoding=encoding,
-                timeout=timeout_s,
+                timeout=round_s,
                 target=target,
                 **last,
             )
         gathered = pieces.Gathered()
-        for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
-            if lifelines is None or lifelines.vouch(servers, reply):
-                if (whole := read_reply(key, reply, kind, timeout_s, gathered)) is not None:
-                    return whole.decode()
-                continue
-            if not foreign:
-                foreign, deadline_s = True, time.monotonic() + patience_s
-                if lifelines.is_news(key):
-                    log.warning("%s", _foreign(key, servers))
-            target = zenoh.QueryTarget.ALL
-        if (now_s := time.monotonic()) - asked_at_s > _HAD_IT_S:
+        try:
+            for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
+                if lifelines is None or lifelines.vouch(servers, reply):
+                    if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
+                        return whole.decode()
+                    continue
+                if not foreign:
+                    foreign, deadline_s = True, time.monotonic() + patience_s
+                    if lifelines.is_news(key):
+                        log.warning("%s", _foreign(key, servers))
+                target = zenoh.QueryTarget.ALL
+        except TimedOut:
+            if round_s == timeout_s:
+                raise
+            round_s = timeout_s
+            continue
+        took_s = (now_s := time.monotonic()) - asked_at_s
+        if took_s > _HAD_IT_S and (lifelines is None or lifelines.has_seen(servers)):
             deadline_s = now_s + patience_s
         if first_hand:
             first_hand = False
@@ -337,7 +359,7 @@ def read_reply(
     error = reply.err
     assert error is not None
     if str(error.encoding) != _ERROR_ENCODING:
-        raise errors.NoAnswer(f"{key} did not answer within {timeout_s:g} s")
+        raise TimedOut(f"{key} did not answer within {timeout_s:g} s")
     raise errors.from_message(codec.decode(error.payload.to_bytes(), errors.ErrorMessage))
 
 

@@ -7,11 +7,13 @@ until that is noticed nobody has, and it waits for its time-out.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import zenoh
 
 from schemas import keys
+
+_ROBOTS_S: Final = 3.0
 
 
 class Lifelines:
@@ -30,6 +32,10 @@ class Lifelines:
     def is_there(self, node: str) -> bool:
         """Is a process of this node ready?"""
         return any(keys.live_node(key) == node for key in tuple(self._there))
+
+    def has_seen(self, nodes: tuple[str, ...]) -> bool:
+        """Has a process of any of these nodes been ready since this session began?"""
+        return any(node in self._instances for node in nodes)
 
     def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
         """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
@@ -67,6 +73,34 @@ def appear(session: zenoh.Session, node: str) -> Any:
     The token bears the session's id, which replies bear too, so that others can tell whose they are.
     """
     return session.liveliness().declare_token(keys.live_key(node, str(session.info.zid())))
+
+
+def robots(session: zenoh.Session) -> dict[str, frozenset[str]]:
+    """The robots that can be reached, by name, and which of their nodes are there.
+
+    The session has no namespace. A system without one is a robot without a name: "".
+    """
+    found: dict[str, set[str]] = {}
+    for pattern, name_of in ((keys.robots_live(), keys.live_robot), (keys.live_key("*"), lambda _: "")):
+        for reply in session.liveliness().get(pattern, timeout=_ROBOTS_S):
+            if reply.ok is not None:
+                key = str(reply.ok.key_expr)
+                found.setdefault(name_of(key), set()).add(keys.live_node(key))
+    return {name: frozenset(nodes) for name, nodes in sorted(found.items())}
+
+
+def follow_robots(session: zenoh.Session, node: str, receive: Callable[[str, str, bool], None]) -> Any:
+    """Call `receive(robot, instance, there)` whenever a process of this node of a robot appears or goes.
+
+    It is called on a thread of Zenoh's, at first for those that are there already. The session has no
+    namespace. The subscriber is returned.
+    """
+
+    def on_change(sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        receive(keys.live_robot(key), keys.last_chunk(key), sample.kind != zenoh.SampleKind.DELETE)
+
+    return session.liveliness().declare_subscriber(keys.robots_live(node), on_change, history=True)
 
 
 def follow_presence(session: zenoh.Session, node: str, receive: Callable[[bool], None]) -> Any:

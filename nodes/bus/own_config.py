@@ -13,7 +13,7 @@ from schemas import errors
 _DECIDED: Final = {
     "mode": "it differs from process to process",
     "id": "every process has its own",
-    "namespace": "give it to clients as namespace",
+    "namespace": "use --namespace",
     "connect/endpoints": "use --connect",
     "listen/endpoints": "use --listen",
 }

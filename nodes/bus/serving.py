@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import queue
+import threading
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -17,6 +19,8 @@ from schemas.calls import largest
 from schemas.replies import Ack, Document, Done
 
 _JSON = "application/json"
+_ACKS = 1000
+"""Acknowledgements that wait to be published; then the next put is read when there are fewer."""
 
 
 def _send_nowhere(message: Any, ok: bool) -> None:
@@ -185,9 +189,10 @@ def _as_ours(error: Exception) -> errors.SemmapError:
 
 def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request], None]) -> None:
     """Puts on `prefix` and `prefix/<verb>` go to `receive`; what is replied is published on `semmap/ack`."""
-    acks = publisher(session, keys.ACK)
+    acks = _Acks(session)
 
     def on_put(sample: zenoh.Sample) -> None:
+        acks.wait_for_room()
         key, payload = str(sample.key_expr), sample.payload.to_bytes()
         said = _envelope(payload)
         verb = keys.last_chunk(key) if key != prefix else str(said.verb)
@@ -206,7 +211,45 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
             return
         receive(Request(verb, payload, {}, send, source=sample.source_info))
 
-    session.declare_subscriber(f"{prefix}/**", on_put)
+    session.declare_subscriber(f"{prefix}/**", zenoh.handlers.Callback(on_put, acks.end))
+
+
+class _Acks:
+    """Publishes acknowledgements in their order, on a thread of its own.
+
+    Whoever follows them slowly holds up this thread, and beyond some of them the puts that come in, but never
+    the thread that owns a node's state.
+    """
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._publisher = publisher(session, keys.ACK)
+        self._waiting: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+        self._has_room = threading.Event()
+        self._has_room.set()
+        threading.Thread(target=self._publish, name="acks", daemon=True).start()
+
+    def put(self, ack: bytes) -> None:
+        """Publish it soon. Any thread may do so; it never waits."""
+        self._waiting.put(ack)
+        if self._waiting.qsize() >= _ACKS:
+            self._has_room.clear()
+
+    def wait_for_room(self) -> None:
+        """Return when few acknowledgements wait."""
+        self._has_room.wait()
+
+    def end(self) -> None:
+        """Publish no more."""
+        self._waiting.put(None)
+
+    def _publish(self) -> None:
+        while (ack := self._waiting.get()) is not None:
+            if self._waiting.qsize() < _ACKS // 2:
+                self._has_room.set()
+            try:
+                self._publisher.put(ack)
+            except zenoh.ZError:  # the session is closed
+                self._has_room.set()
 
 
 class _Envelope(Struct):

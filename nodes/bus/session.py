@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -31,6 +32,12 @@ FOREVER_S = math.inf
 _MEET_MS = 100
 """Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
+
+_READERS: Final = 8
+"""Threads that read links. One whose messages wait for a busy callback holds up its thread; of Zenoh's own
+number, 2, two senders that flood would take both, and whoever asks over another link would wait for them."""
+_THREADS: Final = "ZENOH_RUNTIME"
+"""The environment variable by which Zenoh takes the numbers of its threads, once in a process."""
 
 _LARGEST: Final = "transport/link/rx/max_message_size"
 
@@ -64,8 +71,11 @@ class Network(Struct, frozen=True):
         """The prefix under which this process asks for commands: its own, where it has a name."""
         return keys.CMD if self.identity is None else keys.commands_as(self.identity.name)
 
-    def as_config(self) -> zenoh.Config:
-        """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
+    def values(self) -> dict[str, Any]:
+        """What Zenoh's configuration is to say, by path.
+
+        Scouting and shared memory are off; a node goes on trying to connect, a client gives up.
+        """
         node = bool(self.listen) or self.patience_s == FOREVER_S
         first_ms, last_ms = (100, 500) if self.identity is None else (50, 200)  # a router begins anew, too
         retry = {"period_init_ms": first_ms, "period_max_ms": last_ms, "period_increase_factor": 2}
@@ -88,12 +98,33 @@ class Network(Struct, frozen=True):
             values |= _tls(self.identity, listens=bool(self.listen))
         if self.access is not None:
             values["access_control"] = self.access
+        return values
+
+    def as_file(self) -> str:
+        """The same as a configuration file of Zenoh's, for a program that is not one of ours."""
+        document: dict[str, Any] = {}
+        for path, value in {**self.values(), _LARGEST: pieces.PLANE}.items():
+            *above, last = path.split("/")
+            inner = document
+            for name in above:
+                inner = inner.setdefault(name, {})
+            inner[last] = value
+        return json.dumps(document, indent=2)
+
+    def as_config(self) -> zenoh.Config:
+        """The configuration of a session. Raises BadFile for one of one's own that cannot be read."""
+        values = self.values()
         config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
         if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
             values[_LARGEST] = pieces.PLANE
         for key, value in values.items():
             config.insert_json5(key, json.dumps(value))
         return config
+
+
+def read_links_apart() -> None:
+    """Let a flood on some links not hold up the others; to be called before the process's first session."""
+    os.environ.setdefault(_THREADS, f"(rx: (worker_threads: {_READERS}))")
 
 
 def require_tls(endpoint: str) -> None:
@@ -140,6 +171,11 @@ def _tls(identity: Identity, *, listens: bool) -> dict[str, Any]:
     if listens:
         values |= {"listen_certificate": identity.certificate, "listen_private_key": identity.key}
     return {f"transport/link/tls/{key}": value for key, value in values.items()}
+
+
+def linked_routers(session: zenoh.Session) -> int:
+    """To how many routers a session has a link just now."""
+    return len(session.info.routers_zid())
 
 
 @contextmanager

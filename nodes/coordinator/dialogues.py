@@ -12,6 +12,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from nodes.runtime.futures import OwnFuture
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, Transactions
 from schemas.calls import Call
@@ -49,7 +50,7 @@ def hold(talk: Talk[T], ask: Ask) -> T:
 
 def hold_later(talk: Talk[T], ask_later: AskLater) -> Future[T]:
     """The result of a talk that goes on whenever an answer comes, on the thread that brings it."""
-    held = _Held(talk, ask_later, Future())
+    held = _Held(talk, ask_later, OwnFuture())
     held.go_on(None)
     return held.future
 

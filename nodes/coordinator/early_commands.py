@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from nodes import bus
-from nodes.runtime.futures import settle
+from nodes.runtime.futures import OwnFuture, settle
 from schemas import errors
 
 
@@ -25,7 +25,7 @@ class EarlyCommands:
 
     def wait(self, execute: Callable[[], Any]) -> Future[Any]:
         """The outcome of `execute()`, which is called when there is a map."""
-        future: Future[Any] = Future()
+        future: Future[Any] = OwnFuture()
         self._waiting.append((time.monotonic() + bus.RESTART_S, execute, future))
         return future
 

@@ -15,28 +15,30 @@ _NODES = 50
 
 
 class HealthView:
-    """The last heartbeat of each node, and when it came."""
+    """The last heartbeat of each node on each host, and when it came."""
 
     def __init__(self) -> None:
-        self._last: dict[str, tuple[Health, float]] = {}
+        self._last: dict[tuple[str, str], tuple[Health, float]] = {}
         self._told_from = time.monotonic() + _HEARD_WITHIN_S
 
     def take(self, health: Health) -> None:
         """Remember a heartbeat; of strange nodes no more than a few."""
-        if health.node not in self._last and len(self._last) >= _NODES:
+        which = health.node, health.host
+        if which not in self._last and len(self._last) >= _NODES:
             return
-        self._last[health.node] = (health, time.monotonic())
+        self._last[which] = (health, time.monotonic())
 
     def alive(self, node: str) -> bool:
         """Was the node heard of lately?"""
-        return node in self._last and time.monotonic() - self._last[node][1] < SILENT_AFTER_S
+        now_s = time.monotonic()
+        return any(name == node and now_s - at < SILENT_AFTER_S for (name, _), (_, at) in self._last.items())
 
     def may_be_there(self, node: str) -> bool:
         """Is the node alive, or is it too early to tell? A heart beats once a second."""
         return self.alive(node) or time.monotonic() < self._told_from
 
     def nodes(self) -> tuple[NodeStatus, ...]:
-        """One row a node, by name."""
+        """One row a node, by its name and its host's."""
         return tuple(self._status(health, at) for _, (health, at) in sorted(self._last.items()))
 
     def _status(self, health: Health, at: float) -> NodeStatus:
@@ -44,8 +46,9 @@ class HealthView:
         return NodeStatus(
             node=health.node,
             state=health.state if age_s < SILENT_AFTER_S else "silent",
+            host=health.host,
             pid=health.pid,
-            uptime_s=round((time.time_ns() - health.started_ns) / 1e9, 1),
+            uptime_s=round((health.stamp_ns - health.started_ns) / 1e9 + age_s, 1),  # by its own clock
             heartbeat_age_s=round(age_s, 2),
             detail=_detail(health),
             last_error=health.last_error,

@@ -6,23 +6,18 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from nodes import bus
-from nodes.runtime.futures import settle
+from nodes.runtime.futures import OwnFuture, settle
 from nodes.runtime.loop import Node
 from schemas import errors, keys
 from schemas.calls import Call, Relay
 from schemas.commands import Command
-from schemas.commits import Transaction
 
 R = TypeVar("R")
 
-_LONG = frozenset({"load", "load-tbox", "undo"})
-"""What keeps the knowledge base busy; the heart goes on beating meanwhile."""
 _BUSY_S = 6 * 3600.0
 """However long the knowledge base works: it is watched, and its end ends the question."""
 _AT_ONCE_S = 0.15
 """Then it goes on without waiting here, or `status` would wait, and the heart stop with the other one's."""
-_FEW = 1000
-"""Entities that are changed at once."""
 _OVER_A_START_S = 900.0
 """A large map takes its time to start."""
 
@@ -42,13 +37,16 @@ class Bridge:
         return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def change(self, call: Call[R]) -> Future[R]:
-        """The same as `change_later`, waited for here while somebody is there: that takes less time."""
-        beating = _takes_long(call)
-        timeout_s = _BUSY_S if beating else _AT_ONCE_S
-        future: Future[R] = Future()
+        """The same as `change_later`, waited for here while somebody is there: that takes less time.
+
+        What takes long is not waited for: other questions are answered meanwhile.
+        """
+        if not call.is_quick:
+            return self.change_later(call)
+        future: Future[R] = OwnFuture()
         settle(
             future,
-            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=timeout_s, patience_s=0.0, beating=beating),
+            lambda: self._node.ask(keys.BRIDGE, call, timeout_s=_AT_ONCE_S, patience_s=0.0),
         )
         return self.change_later(call) if _is_unanswered(future) else future
 
@@ -57,18 +55,12 @@ class Bridge:
 
         What is asked has the id of its command, so that it is done once.
         """
-        patience_s = _OVER_A_START_S if _takes_long(call) else bus.RESTART_S
+        patience_s = bus.RESTART_S if call.is_quick else _OVER_A_START_S
         return self._node.ask_later(keys.BRIDGE, call, timeout_s=_BUSY_S, patience_s=patience_s)
 
     def relay(self, command: Command[R]) -> Relay[R]:
         """Let the knowledge base answer a command itself."""
         return Relay(keys.BRIDGE, command, _BUSY_S)
-
-
-def _takes_long(call: Call[Any]) -> bool:
-    if isinstance(call, Transaction):
-        return len(call.add) + len(call.remove) + len(call.edit) > _FEW
-    return call.VERB in _LONG
 
 
 def _is_unanswered(asked: Future[Any]) -> bool:

@@ -24,7 +24,7 @@ from nodes.coordinator.turns import Change, Results, Turns
 from nodes.runtime import heap
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.following import Begun, Follower
-from nodes.runtime.futures import settle, then
+from nodes.runtime.futures import OwnFuture, settle, then
 from nodes.runtime.loop import Node, open_node
 from schemas import calls, keys, wording
 from schemas import commands as c
@@ -85,6 +85,9 @@ class Coordinator:
             c.Explain.answered_by(relay),
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
+            c.Understand.answered_by(relay),
+            c.Diff.answered_by(relay),
+            c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
@@ -164,7 +167,7 @@ class Coordinator:
         made = self._noted(command)
         if not command.wait or command.dry_run:
             return made
-        future: Future[Changed] = Future()
+        future: Future[Changed] = OwnFuture()
         made.add_done_callback(lambda done: settle(future, lambda: self._once_there_is_a_body(done.result())))
         return future
 
@@ -175,15 +178,18 @@ class Coordinator:
         return made
 
     def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
-        ask = self._bridge.change_later if len(changes) > 1 else self._bridge.change
+        nobody_waits = len(changes) == 1 and not len(self._turns)
+        ask = self._bridge.change if nobody_waits else self._bridge.change_later
         return hold_later(self._door.together(changes), ask)
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
-        future: Future[Changed] = Future()
+        future: Future[Changed] = OwnFuture()
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
         return future
 
     def _answer_waiting(self) -> None:
+        if not self._waiting:
+            return
         still = []
         undecided = {"pending"}
         if self._health.may_be_there("sim_node"):

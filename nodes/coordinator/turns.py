@@ -15,7 +15,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from nodes.coordinator.scene.settled import Settled
-from nodes.runtime.futures import settle
+from nodes.runtime.futures import OwnFuture, settle
 from schemas.commands import Add, Clear, Load, Remove, Set, Undo, Unset, Update
 from schemas.replies import Changed
 
@@ -55,7 +55,7 @@ class Turns:
 
     def change(self, change: Change) -> Future[Changed]:
         """The result of a change, in its turn."""
-        future: Future[Changed] = Future()
+        future: Future[Changed] = OwnFuture()
         self._waiting.append(_Waiting(change, lambda: None, future))
         if len(self._waiting) >= GROUP:
             self.go_on()
@@ -65,7 +65,7 @@ class Turns:
         """What `execute()` gives, or, when something came before it, a future of that."""
         if not self._waiting and not self._under_way:
             return execute()
-        future: Future[Any] = Future()
+        future: Future[Any] = OwnFuture()
         self._waiting.append(_Waiting(None, execute, future))
         return future
 
@@ -112,7 +112,7 @@ class Turns:
             for i, (_, _, future) in enumerate(members):
                 settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
 
-        results: Future[Results] = Future()
+        results: Future[Results] = OwnFuture()
         results.add_done_callback(on_done)
         settle(results, lambda: self._together(changes))
 

@@ -44,7 +44,7 @@ async def connect(
     *,
     source: Source | None = None,
     agent: str = "",
-    namespace: str = "",
+    namespace: str | None = None,
     identity: str | None = None,
 ) -> AsyncIterator[AsyncClient]:
     """A client of the system at `where`; see `semmap.connect`. Raises NoAnswer when nothing answers there."""
@@ -129,6 +129,7 @@ class AsyncStandingQuery:
         self.variables = standing.variables
         self.rows = standing.rows
         self.seq = standing.seq
+        self.notes = standing.notes
 
     def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
         """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""

@@ -28,6 +28,7 @@ from nodes.extern import backup
 from nodes.extern.client_verbs import Verbs
 from nodes.extern.connection import endpoint, open_session
 from nodes.extern.connection import identity as identify
+from nodes.extern.connection import namespace as robot
 from nodes.extern.sparql_client import StandingQuery
 from nodes.identity import Identity
 from nodes.runtime import version
@@ -54,7 +55,7 @@ def connect(
     *,
     source: Source | None = None,
     agent: str = "",
-    namespace: str = "",
+    namespace: str | None = None,
     identity: str | None = None,
 ) -> Iterator[Client]:
     """A client of the system at `where`. Raises NoAnswer when nothing answers there.
@@ -62,9 +63,13 @@ def connect(
     That is said at once where this machine refuses the connection and no system is starting. `identity` is
     `DIR/NAME` of a certificate, for a secure system. Changes are signed as `source`: unless it is given,
     "perception" for a certificate of that role, else "operator".
+
+    `namespace` is the name of one robot of several (`semmap up --namespace`): by default what
+    `SEMMAP_NAMESPACE` says, or else that of the system at `where`, if it runs on this machine.
     """
     who = identify(identity)
-    with open_session(where or endpoint(), namespace, who) as session:
+    where = where or endpoint(robot(namespace))
+    with open_session(where, robot(namespace, where), who) as session:
         yield Client(session, source=source, agent=agent, identity=who)
 
 

@@ -6,12 +6,19 @@ import contextlib
 import os
 import time
 from collections.abc import Iterator
+from typing import Literal
 
 from nodes import bus
 from nodes.identity import Identity
 from nodes.supervisor import presence, registry
 from schemas import errors
-from schemas.endpoints import CONFIG_VARIABLE, CONNECT_VARIABLE, IDENTITY_VARIABLE
+from schemas.endpoints import (
+    CONFIG_VARIABLE,
+    CONNECT_VARIABLE,
+    IDENTITY_VARIABLE,
+    NAMESPACE_VARIABLE,
+    robot_name,
+)
 
 _START_S = 15.0
 """Seconds: a system that is starting is waited for."""
@@ -20,15 +27,19 @@ _ANEW_S = 1.0
 _AGAIN_S = 0.1
 
 
-def endpoint() -> str:
+def endpoint(namespace: str | None = None) -> str:
     """The system that is meant when nothing else is said.
 
-    That is `SEMMAP_CONNECT`; or the one at the usual endpoint; or the only one that this user runs on this
-    machine. Raises BadRequest when it could be any of several.
+    That is `SEMMAP_CONNECT`; or the one that this user runs for the robot `namespace`; or the one at the
+    usual endpoint; or the only one that this user runs on this machine. Raises BadRequest when it could be
+    any of several.
     """
     if said := os.environ.get(CONNECT_VARIABLE):
         return said
     running = registry.systems()
+    of_robot = [system for system in running if system.namespace == namespace]
+    if namespace and of_robot:
+        return of_robot[0].reachable
     if not running or any(system.reachable == bus.DEFAULT_ENDPOINT for system in running):
         return bus.DEFAULT_ENDPOINT
     if len(running) > 1:
@@ -39,6 +50,19 @@ def endpoint() -> str:
     return running[0].reachable
 
 
+def namespace(said: str | None, where: str | None = None) -> str:
+    """The robot that is meant: `said`, or what `SEMMAP_NAMESPACE` says, or that of the system at `where`.
+
+    The latter is known of the systems that this user runs on this machine. Raises BadRequest for a word that
+    no robot can be called.
+    """
+    if said is None:
+        said = os.environ.get(NAMESPACE_VARIABLE) or None
+    if said is None and where is not None:
+        said = next((s.namespace for s in registry.systems() if where in (s.reachable, s.listen)), None)
+    return robot_name(said or "")
+
+
 def identity(path: str | None) -> Identity | None:
     """Who the client is: `DIR/NAME`, or else what `SEMMAP_IDENTITY` says; None without. Raises BadFile."""
     path = path or os.environ.get(IDENTITY_VARIABLE)
@@ -46,12 +70,19 @@ def identity(path: str | None) -> Identity | None:
 
 
 @contextlib.contextmanager
-def open_session(where: str, namespace: str, identity: Identity | None = None) -> Iterator[bus.Session]:
+def open_session(
+    where: str,
+    namespace: str,
+    identity: Identity | None = None,
+    *,
+    mode: Literal["peer", "client"] | None = None,
+) -> Iterator[bus.Session]:
     """A session with whoever listens at `where`, or will do so when the system has started.
 
-    On the system's own machine it is a peer: what the knowledge base answers itself comes straight from it.
-    With an identity it is a client of the router, and the endpoint one of TLS. Raises NoAnswer when nothing
-    answers there, the system takes too long to start, or it wants to know who this is.
+    On the system's own machine it is a peer, unless `mode` says otherwise: what the knowledge base answers
+    itself comes straight from it. With an identity it is a client of the router, and the endpoint one of TLS.
+    Raises NoAnswer when nothing answers there, the system takes too long to start, or it wants to know who
+    this is.
     """
     own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
@@ -66,7 +97,7 @@ def open_session(where: str, namespace: str, identity: Identity | None = None) -
     here = presence.is_loopback(where)
     network = bus.Network(
         connect=(where,),
-        mode="peer" if here and identity is None else "client",
+        mode=mode or ("peer" if here and identity is None else "client"),
         namespace=namespace,
         patience_s=0.0 if here else bus.PATIENCE_S,
         identity=identity,

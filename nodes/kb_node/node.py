@@ -24,7 +24,7 @@ from nodes.kb_node.sparql.service import SparqlService
 from nodes.kb_node.sparql.standing_queries.news import NewsStand
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from nodes.runtime import heap
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
@@ -33,6 +33,8 @@ from schemas.commits import Commit
 CHECKPOINT_PERIOD_S = 10.0
 STARTS_AGAIN = 70
 """The exit status after which supervisord starts the node again."""
+_FETCHED_S = 0.05
+"""Until it is looked again whether the map is still being fetched."""
 CHECKPOINT_DELAY_S = 3.0
 """After a very large commit, which others fetch first."""
 
@@ -82,8 +84,13 @@ class KnowledgeBase:
         node.ready(self._summary())
 
     def _follow_places(self) -> None:
-        """Between other work: the first commit after a start waits for what is left of it."""
-        if self.map.follow_some():
+        """Between other work: the first commit after a start waits for what is left of it.
+
+        Those who fetch the map go first: nobody is answered by the coordinator before it has all.
+        """
+        if self._asking.is_being_fetched:
+            self._node.later(_FETCHED_S, self._follow_places)
+        elif self.map.follow_some():
             self._node.soon(self._follow_places)
 
     def _spread(self, commit: Commit, *, told: bool, at_once: bool) -> None:

@@ -16,10 +16,19 @@ from schemas.explanations import Term, Triple
 _FEW = 64
 """Triples of one subject: so many are looked through together, and of more each by itself."""
 
+_FEW_OF_ALL = 8
+"""One triple in so many is not much."""
+_FEW_AT_ALL = 1000
+
 
 def subjects(*groups: Iterable[Triple]) -> set[Term]:
     """Those of all triples."""
     return set(map(itemgetter(0), chain(*groups)))
+
+
+def is_much(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
+    """Whether some triples are so many that it is quicker to go through all that are asserted."""
+    return sum(map(len, groups)) > max(_FEW_AT_ALL, len(reasoner) // _FEW_OF_ALL)
 
 
 def held(
@@ -28,6 +37,11 @@ def held(
     """Those of some triples that are asserted already. `progress` is called now and then."""
     groups = tuple(groups)
     known = reasoner.mentioned(subjects(*groups))
+    if not known:
+        return set()
+    named = {t for triples in groups for t in triples if t[0] in known}
+    if is_much((named,), reasoner):
+        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
     found: set[Triple] = set()
     many: set[Term] = set()
     for subject in steadily(known, progress):
@@ -35,7 +49,6 @@ def held(
         found.update(said)
         if len(said) == _FEW:
             many.add(subject)
-    named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
     return {t for t in named if t in found or (t[0] in many and any(reasoner.asserted(*t)))}
 
 

@@ -16,10 +16,12 @@ from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities import entity_reading
 from nodes.kb_node.map_state import MapState
 from nodes.kb_node.reasoner import Reasoner
-from nodes.kb_node.storage import closure_cache, commit_encoding, conclusions_format
+from nodes.kb_node.storage import closure_cache, conclusions_format
 from nodes.kb_node.storage.checkpoint_schedule import CheckpointSchedule
+from nodes.kb_node.storage.encoding import commit_encoding
 from nodes.kb_node.storage.journal import Checkpoint, Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.verification import verify
 from schemas import errors
 from schemas.commits import Commit, Transaction
 from schemas.entities import Entity
@@ -65,7 +67,7 @@ class SemanticMap(MapState):
         `progress` is called between the steps of long work. Raises Refused when the journal is damaged.
         """
         self._journal = journal
-        journal.verify(progress)
+        verify(journal, progress)
         start = journal.last_checkpoint(progress)
         tbox = self.tbox_at(start.seq)
         super().__init__(tbox, reasoner or closure_cache.reasoner(tbox, journal.path.parent), progress)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from itertools import chain
 
-from nodes.kb_node import gc_pause
+from nodes.kb_node import gc_pause, preconditions
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
@@ -182,22 +183,19 @@ def _is_disturbed(
     semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
 ) -> bool:
     """Is something no longer as it was left, or was more said of the individuals that were brought in?"""
-    mine = set(inserted)
-    steadily = semantic_map.steadily
+    mine, reasoner, steadily = set(inserted), semantic_map.reasoner, semantic_map.steadily
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
-    asserted = semantic_map.reasoner.asserted
-    about = (
-        t
-        for s in steadily(brought)
-        for pattern in ((s, None, None), (None, None, s))
-        for t in asserted(*pattern)
-    )
-    return (
-        not all(map(semantic_map.has, steadily(inserted)))
-        or any(map(semantic_map.has, steadily(retracted)))
-        or any(t not in mine for t in about)
-    )
+    if preconditions.is_much((inserted, retracted), reasoner):
+        held = set(chain.from_iterable(steadily(reasoner.by_subject())))
+        about = [t for t in held - mine if t[0] in brought or t[2] in brought]
+    else:
+        held = preconditions.held(reasoner, (inserted, retracted), semantic_map.progress)
+        asserted = chain.from_iterable(
+            chain(reasoner.asserted(term), reasoner.asserted(None, None, term)) for term in steadily(brought)
+        )
+        about = [t for t in asserted if t not in mine]
+    return bool(about) or not held >= mine or not held.isdisjoint(retracted)
 
 
 def _what_rests_on(target: Commit, others: list[Commit]) -> str:

@@ -1,6 +1,6 @@
-"""The one listener of a secure system, to which everybody connects with a certificate.
+"""The one listener of a host, where its nodes meet and clients join; it connects to routers of other hosts.
 
-It lets through what the role permits that the certificate says.
+In a secure system everybody shows it a certificate, and it lets through what their role permits.
 
 `access.py` makes Zenoh's access control from the table of roles; `node.py` runs it.
 """

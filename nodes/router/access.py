@@ -4,6 +4,8 @@ A rule lets a message through only if its key expression includes the message's,
 then some allowed. What is declared passes as it was declared: a client that does not hear of the queryable
 `semmap/as/*/cmd/*` never finds anybody who serves its own commands.
 
+Where the system has a namespace, the rules are about whole keys, with it.
+
 `ingress` is what the router takes from somebody, `egress` what it passes on to them.
 """
 
@@ -29,8 +31,11 @@ _BRANCHES: Final = sorted({f"{'/'.join(grant.key.split('/')[:2])}/**" for grant 
 _LOSSLESS: Final = frozenset(topic.key for topic in keys.TOPICS if topic.qos == "lossless")
 
 
-def access_control(members: Iterable[Member]) -> dict[str, Any]:
-    """The value of Zenoh's `access_control` that admits these members as their roles say."""
+def access_control(members: Iterable[Member], namespace: str = "") -> dict[str, Any]:
+    """The value of Zenoh's `access_control` that admits these members as their roles say.
+
+    `namespace` is that of the sessions: a robot's name, or `*` for the robots that share the router.
+    """
     by_role: dict[Role, list[str]] = {}
     for member in members:
         by_role.setdefault(member.role, []).append(member.name)
@@ -43,6 +48,10 @@ def access_control(members: Iterable[Member]) -> dict[str, Any]:
         for name in names:
             subjects.append({"id": f"as {name}", "cert_common_names": [name]})
             policies.append(_policy(rules, f"as {name}", _of_name(name), [f"as {name}"]))
+    for rule in rules if namespace else ():
+        rule["key_exprs"] = [f"{namespace}/{key}" for key in rule["key_exprs"]]
+        if "liveliness_query" in rule["messages"]:  # who asks which robots there are names none
+            rule["key_exprs"].append(keys.robots_live())
     return {
         "enabled": True,
         "default_permission": "deny",
@@ -57,8 +66,11 @@ Rule = tuple[Flow, tuple[str, ...], Sequence[str]]
 
 
 def _of_name(name: str) -> list[Rule]:
-    """Everybody asks for commands as themselves, and as nobody else."""
-    mine = f"{keys.commands_as(name)}/*"
+    """Everybody asks for commands as themselves, and as nobody else.
+
+    The router of another host passes on what those ask whom it has admitted, each as themselves.
+    """
+    mine = f"{keys.commands_as() if name == keys.ROUTER else keys.commands_as(name)}/*"
     return [("ingress", ("query",), [mine]), ("egress", ("reply",), [mine])]
 
 

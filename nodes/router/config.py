@@ -10,7 +10,10 @@ from nodes.bus import Network
 
 @dataclass(frozen=True)
 class RouterConfig:
-    """`keys` is the folder of keys, with the register of who is admitted; `network` says where to listen."""
+    """`keys` is the folder of keys, with the register of who is admitted; None admits everybody.
 
-    keys: Path
+    `network` says where to listen, and to which routers of other hosts to connect.
+    """
+
+    keys: Path | None
     network: Network

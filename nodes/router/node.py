@@ -1,5 +1,7 @@
 """The router on the wire: it listens, admits, and begins anew whenever the register of names has changed.
 
+It is ready once it has met a router of another host, where it is told to connect to some.
+
 Zenoh's access control cannot be changed while a session is open (1.10.2), so another register is another
 session. Everybody connects again by themselves, within a fraction of a second.
 """
@@ -7,6 +9,7 @@ session. Everybody connects again by themselves, within a fraction of a second.
 from __future__ import annotations
 
 import signal
+from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 
 from msgspec import structs
@@ -15,13 +18,16 @@ from nodes import bus
 from nodes.identity.register import LiveRegister, Register
 from nodes.router.access import access_control
 from nodes.router.config import RouterConfig
+from nodes.router.silent_links import give_up_after
 from nodes.runtime.loop import Node
 from schemas import keys
+from schemas.errors import enumerated
+from schemas.wording import counted
 
 _LOOK_S = 0.5
-
-
 _TELL_S = 60.0
+_SILENT_S = 2.5
+"""Seconds: longer than a link's lease."""
 _SOON = timedelta(days=30)
 
 
@@ -37,20 +43,27 @@ def in_words(register: Register, now: datetime) -> str:
     return said
 
 
+def told_of_links(met: int, connect: Sequence[str]) -> str:
+    """To how many routers of other hosts there is a link; nothing where none is to be."""
+    if met:
+        return f"linked to {counted(met, 'other router')}"
+    return f"waiting for {enumerated(connect)}" if connect else ""
+
+
 class Router:
     """Routes for one register after another, until it is told to stop."""
 
     def __init__(self, config: RouterConfig) -> None:
         """Raises BadFile for a folder without keys."""
         self._network = config.network
-        self._live = LiveRegister(config.keys)
+        self._live = None if config.keys is None else LiveRegister(config.keys)
         self._node: Node | None = None
         self._stopped = False
 
     def run(self) -> None:
         """Route until stopped."""
         while not self._stopped:
-            self._route(self._live.now)
+            self._route(None if self._live is None else self._live.now)
 
     def stop(self) -> None:
         """End `run`; fit for a signal's handler."""
@@ -58,18 +71,34 @@ class Router:
         if self._node is not None:
             self._node.stop()
 
-    def _route(self, register: Register) -> None:
-        """Admit those of `register` until there is another one."""
-        network = structs.replace(self._network, access=access_control(register.admitted))
+    def _route(self, register: Register | None) -> None:
+        """Admit those of `register`, or everybody, until there is another one."""
+        network = self._network
+        if register is not None:
+            access = access_control(register.admitted, network.namespace)
+            network = structs.replace(network, access=access)
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)
+            admitted = "admits everybody" if register is None else in_words(register, datetime.now(UTC))
 
             def look() -> None:
-                if self._stopped or self._live.now is not register:
+                if self._stopped or (self._live is not None and self._live.now is not register):
                     node.stop()
+                give_up_after(_SILENT_S)
+                met = bus.linked_routers(session)
+                said = "; ".join(filter(None, (told_of_links(met, network.connect), admitted)))
+                if met or not network.connect:
+                    node.ready(said)
+                else:
+                    node.describe(said)
 
-            node.ready(in_words(register, datetime.now(UTC)))
-            node.every(_TELL_S, lambda: node.describe(in_words(register, datetime.now(UTC))))
+            def read() -> None:
+                nonlocal admitted
+                if register is not None:
+                    admitted = in_words(register, datetime.now(UTC))
+
+            look()
+            node.every(_TELL_S, read)
             node.every(_LOOK_S, look)
             node.run()
 

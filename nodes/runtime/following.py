@@ -63,6 +63,7 @@ class Follower(Generic[C]):
         """A commit that the replica has and the knowledge base had not, and since when."""
         self._there = -1
         """The last commit, as of the knowledge base's last beat but one."""
+        node.describe("waiting for the knowledge base")
         node.follow(topic, self._on_commit)
         node.follow(keys.HEALTH, self._on_health)
         node.every(_LOOK_S, self._look)
@@ -108,7 +109,7 @@ class Follower(Generic[C]):
             self._fetch()
 
     def _look(self) -> None:
-        if not self._replica.is_current:
+        if not self._replica.is_current and not self._replica.is_being_fetched:
             self._fetch()
 
     def _fetch(self) -> None:
@@ -134,6 +135,10 @@ class Follower(Generic[C]):
 
         self._ask(Classes(), on_classes)
 
+    def _give_up(self) -> None:
+        self._fetching = False
+        self._replica.give_up_pages()
+
     def _begin(self, snapshot: Snapshot, classes: tuple[ClassInfo, ...]) -> None:
         before = self._replica.seq
         if self._replica.begin(snapshot):
@@ -145,9 +150,9 @@ class Follower(Generic[C]):
             try:
                 take(done.result())
             except errors.NoAnswer:
-                self._fetching = False
+                self._give_up()
             except Exception as error:
-                self._fetching = False
+                self._give_up()
                 self._node.report(f"cannot follow the map: {type(error).__name__}: {error}")
 
         self._node.ask_later(keys.BRIDGE, call).add_done_callback(on_done)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 import time
 from collections.abc import Callable
 from typing import Literal
@@ -26,6 +27,7 @@ class Heartbeat:
         self.due_s = 0.0
         """When it beats next, by the monotonic clock."""
         self._name = name
+        self._host = socket.gethostname()
         self._session = session
         self._started_ns = time.time_ns()
         self._state: Literal["starting", "ready"] = "starting"
@@ -46,6 +48,7 @@ class Heartbeat:
         commit, digest = self._head()
         health = Health(
             node=self._name,
+            host=self._host,
             pid=os.getpid(),
             started_ns=self._started_ns,
             stamp_ns=time.time_ns(),

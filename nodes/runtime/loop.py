@@ -246,6 +246,7 @@ class Node:
         future: Future[Any] = Future()
         patience: list[bus.Patience] = []
         deadline_s = time.monotonic() + patience_s
+        round_s = bus.first_round_s(call, timeout_s)
 
         def send(everybody: bool = False) -> None:
             try:
@@ -256,7 +257,7 @@ class Node:
                     call,
                     reply_type(type(call)),
                     answer,
-                    timeout_s=timeout_s,
+                    timeout_s=round_s,
                     lifelines=self._lifelines,
                     everybody=everybody,
                     source=None if asked_by is None else asked_by.source,
@@ -268,6 +269,7 @@ class Node:
             self._events.put(lambda: take(read))
 
         def take(read: Callable[[], bus.Encoded]) -> None:
+            nonlocal round_s
             try:
                 reply = read()
                 future.set_result(reply.decode() if decoded else reply)
@@ -287,6 +289,12 @@ class Node:
                     self._at(time.monotonic() + patience[0].pause_s(error), send)
                 except errors.Busy:
                     future.set_exception(error)
+            except bus.TimedOut as error:
+                if round_s == timeout_s:
+                    future.set_exception(error)
+                else:
+                    round_s = timeout_s
+                    send()
             except errors.NoAnswer as error:
                 if (now_s := time.monotonic()) < deadline_s:
                     self._at(now_s + _AGAIN_S, send)
@@ -458,6 +466,7 @@ def _wake() -> None:
 @contextmanager
 def open_node(name: str, network: bus.Network) -> Iterator[Node]:
     """A node with an open session that stops on SIGTERM and SIGINT."""
+    bus.read_links_apart()
     with bus.open_session(network) as session:
         node = Node(name, session, network.commands)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -86,10 +86,22 @@ class MapReplica(Generic[C]):
         """
         return self.seq >= 0 and self._heard <= self.seq and not self._doubted
 
+    @property
+    def is_being_fetched(self) -> bool:
+        """Whether somebody is fetching a snapshot in pages."""
+        return self._during_pages is not None
+
     def begin_pages(self) -> SnapshotPages:
-        """A snapshot in pages, to `begin` with when they are complete; commits are kept in mind meanwhile."""
+        """A snapshot in pages, to `begin` with when they are complete; commits are kept in mind meanwhile.
+
+        Who cannot complete them says so by `give_up_pages`.
+        """
         self._during_pages = {}
         return SnapshotPages()
+
+    def give_up_pages(self) -> None:
+        """The pages that were begun do not come."""
+        self._during_pages = None
 
     def begin(self, snapshot: Snapshot) -> bool:
         """Take over a snapshot, and the commits that came while its pages did.

@@ -38,11 +38,13 @@ class SharedParts:
             _set(pose, "orientation_wxyz", IDENTITY)
         if reference is not None:
             _set(entity, "preferred_reference", self._text(reference))
-        provenance = self._provenance
-        _set(entity, "provenance", provenance(entity.provenance))
-        _set(entity, "pose_provenance", provenance(entity.pose_provenance))
-        _set(entity, "shape_provenance", provenance(entity.shape_provenance))
-        _set(entity, "reference_provenance", provenance(entity.reference_provenance))
+        whole, pose_s = self._provenance(entity.provenance), entity.pose_provenance
+        shape_s, reference_s, seq = entity.shape_provenance, entity.reference_provenance, whole.commit
+        of = self._provenance  # one commit has said all of most entities
+        _set(entity, "provenance", whole)
+        _set(entity, "pose_provenance", whole if pose_s.commit == seq else of(pose_s))
+        _set(entity, "shape_provenance", whole if shape_s.commit == seq else of(shape_s))
+        _set(entity, "reference_provenance", whole if reference_s.commit == seq else of(reference_s))
         return entity
 
     def _text(self, text: str) -> str:

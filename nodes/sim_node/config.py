@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from nodes.bus import Network
+from nodes.bus import RESTART_S, Network
 
 
 @dataclass(frozen=True)
@@ -32,3 +32,5 @@ class SimConfig:
     network: Network = field(default_factory=Network)
     data: Path | None = None
     """The system's data folder, where model files may be, too."""
+    patience_s: float = RESTART_S
+    """Seconds to wait for the knowledge base, where the world is one that names classes."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from concurrent.futures import Future
-from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 from nodes import bus
@@ -60,7 +59,7 @@ class Simulator:
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
         models = Models(config.models, config.data)
-        self._world = open_world(config.world, models, node.tick, self._classes(config.world))
+        self._world = open_world(config.world, models, node.tick, self._classes(config))
         self._paused = False
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -89,13 +88,14 @@ class Simulator:
             node.every(1.0 / config.cameras.rate_hz, self._film)
         node.ready(self._summary())
 
-    def _classes(self, world: Path | None) -> ClassNames:
+    def _classes(self, config: SimConfig) -> ClassNames:
         """What the TBox says of classes, if the world is a file that names bodies by class."""
-        if not is_scene(world):
+        if not is_scene(config.world):
             return ClassNames()
+        self._node.describe("waiting for the knowledge base")
         try:
             found = self._node.ask(
-                keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=bus.RESTART_S, beating=True
+                keys.BRIDGE, Classes(), timeout_s=bus.TIMEOUT_S, patience_s=config.patience_s, beating=True
             )
         except errors.NoAnswer:
             self._node.report("the knowledge base is not answering; using models named like the classes")

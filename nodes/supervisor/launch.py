@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from nodes.bus import FOREVER_S, RESTART_S
 from nodes.supervisor.orphans import end_when_orphaned
 from nodes.supervisor.privacy import UMASK
 from nodes.supervisor.settings import Settings
@@ -33,7 +34,10 @@ def run_node(name: str, settings: Settings) -> None:
 
 
 def seed(settings: Settings) -> None:
-    """Create the journal, or report on stdout that it exists; validates the world and reads models first."""
+    """Create the journal, or report on stdout that it exists; validates the world and reads models first.
+
+    Without the knowledge base there is no journal, and nothing is printed.
+    """
     from nodes.kb_node.storage.existing_map import existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
@@ -47,6 +51,8 @@ def seed(settings: Settings) -> None:
 
         Path(settings.data).mkdir(parents=True, exist_ok=True)
         write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
+    if "kb_node" not in settings.nodes:
+        return
     if not settings.fresh and (told := existing_map(Path(settings.data))) is not None:
         print(told)
         return
@@ -102,7 +108,9 @@ def _sim_node(settings: Settings) -> None:
     )
     models = Path(settings.models) if settings.models is not None else None
     network = settings.network("sim_node")
-    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, Path(settings.data)))
+    patience_s = FOREVER_S if settings.only else RESTART_S  # another host may not be up yet
+    data = Path(settings.data)
+    run(SimConfig(Path(settings.world), models, settings.window, cameras, network, data, patience_s))
 
 
 def _perception_node(settings: Settings) -> None:
@@ -137,9 +145,8 @@ def _router(settings: Settings) -> None:
     from nodes.router.config import RouterConfig
     from nodes.router.node import run
 
-    if settings.secure is None:
-        raise errors.BadRequest("only a secure system has a router; name the folder of keys: --secure DIR")
-    run(RouterConfig(Path(settings.secure), settings.network(ROUTER)))
+    keys = None if settings.secure is None else Path(settings.secure)
+    run(RouterConfig(keys, settings.network(ROUTER)))
 
 
 _LAUNCHERS: dict[str, Callable[[Settings], None]] = {

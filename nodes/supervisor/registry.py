@@ -27,6 +27,8 @@ class System(msgspec.Struct, frozen=True, kw_only=True):
     listen: str
     reachable: str
     pid: int
+    namespace: str = ""
+    """Its robot's name, if it has one."""
     started: str
     """When the process started, as the system tells it: another process may get the same number later."""
 
@@ -36,10 +38,15 @@ class _Registry(msgspec.Struct, frozen=True):
 
 
 @contextlib.contextmanager
-def entered(*, data: Path, listen: str, reachable: str, pid: int) -> Iterator[None]:
+def entered(*, data: Path, listen: str, reachable: str, pid: int, namespace: str = "") -> Iterator[None]:
     """While this is open the system is in the registry. Raises Refused when that cannot be written."""
     system = System(
-        data=str(data.resolve()), listen=listen, reachable=reachable, pid=pid, started=_started(pid) or ""
+        data=str(data.resolve()),
+        listen=listen,
+        reachable=reachable,
+        pid=pid,
+        started=_started(pid) or "",
+        namespace=namespace,
     )
     _change(lambda others: (*(other for other in others if other.data != system.data), system))
     try:

@@ -10,8 +10,10 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta, Struct, structs
 
-from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network
+from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from nodes.identity import Identity
+from schemas.endpoints import robot_name
+from schemas.errors import BadRequest
 from schemas.keys import ROUTER
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
@@ -45,6 +47,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     angle_threshold_deg: Annotated[float, Meta(gt=0.0, le=180.0)] = 5.0
     listen: str = DEFAULT_ENDPOINT
     connect: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
+    """The nodes that run on this host, when others run elsewhere; empty is a whole system."""
+    single: bool = False
+    """One node in the foreground: it joins what is there, and has no router of its own."""
     sim: bool = True
     record: bool = True
     record_keep: str | None = None
@@ -65,7 +71,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     live_view: str | None = None
     """Where the recorder streams to Rerun viewers, `host:port`."""
     secure: str | None = None
-    """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener."""
+    """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener of
+    this host."""
+    namespace: str = ""
+    """The name of the robot, which prefixes every key: several robots can share a network."""
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 
@@ -76,10 +85,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"--record-keep: '{self.record_keep}' is neither an age nor a size; examples: 12h, 7d, 500MB,"
                 " 20GB"
             )
+        try:
+            robot_name(self.namespace)
+        except BadRequest as error:
+            raise ValueError(error.text) from None
         for endpoint in (self.listen, *self.connect):
             if not _is_endpoint(endpoint):
                 raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
-        if self.perception and self.sim and self.camera_hz and self.truth != "perceived":
+        decides = not self.only or "coordinator" in self.only  # else another host says what the truth is
+        if decides and self.perception and self.sim and self.camera_hz and self.truth != "perceived":
             raise ValueError(
                 f"with --truth {self.truth} the simulator's cameras only show what the map already says, so"
                 " perception cannot use them; add --truth perceived, or --camera-hz 0 to use other"
@@ -96,8 +110,19 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The nodes to run, in the order of starting."""
         optional = {"sim_node": self.sim, "recorder": self.record, "perception_node": self.perception}
         order = ("coordinator", "kb_node", "sim_node", "recorder", "perception_node")
-        router = (ROUTER,) if self.secure is not None and not self.connect else ()
+        router = (ROUTER,) if self.has_router else ()
+        if self.only:
+            return router + tuple(node for node in order if node in self.only)
         return router + tuple(node for node in order if optional.get(node, True))
+
+    @property
+    def has_router(self) -> bool:
+        """Do the nodes of this host meet at a router, which alone talks to other hosts?
+
+        So it is wherever somebody may come from elsewhere, and where certificates have to be shown.
+        """
+        elsewhere = not all(map(is_local, (self.listen, *self.connect)))
+        return self.secure is not None or bool(self.only) or elsewhere
 
     @property
     def angle_threshold_rad(self) -> float:
@@ -107,16 +132,17 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def network(self, node: str) -> Network:
         """The coordinator listens where the world expects it; the others connect to it and mesh by gossip.
 
-        In a secure system the router listens, and all others are its clients; or of one elsewhere.
+        Where there is a router it listens, and all others are its clients; it connects to other hosts. A
+        single node is a client of whoever listens there.
         """
-        return structs.replace(self._place(node), own_config=self.zenoh_config)
+        return structs.replace(self._place(node), namespace=self.namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
-        if self.secure is not None:
-            identity = Identity.read(Path(self.secure) / node)
-            if node == ROUTER:
-                return Network(mode="router", listen=(self.listen,), connect=(), identity=identity)
-            where = self.connect or (self.reachable,)
+        identity = None if self.secure is None else Identity.read(Path(self.secure) / node)
+        if node == ROUTER:
+            return Network(mode="router", listen=(self.listen,), connect=self.connect, identity=identity)
+        if self.has_router:
+            where = self.connect if self.single and self.connect else (self.reachable,)
             return Network(connect=where, identity=identity, patience_s=FOREVER_S)
         if node == "coordinator":
             return Network(mode="peer", listen=(self.listen,), connect=self.connect)

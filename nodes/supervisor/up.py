@@ -37,6 +37,8 @@ _COLUMN = max(map(len, keys.NODES))
 _LOOK_S = 0.2
 _INTRODUCED_S = 3.0
 """Seconds: hearts beat once a second."""
+_WAITS_S = 3.0
+"""Seconds: whoever waits for longer may do so for something on another host."""
 _RUNS = ("STARTING", "RUNNING")
 
 
@@ -54,7 +56,8 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         if settings.record and settings.secure is None:  # anybody on this machine may look at a live view
             settings = structs.replace(settings, live_view=_live_view())
         with presence.announced(settings.reachable):
-            say(f"{'map':<{_COLUMN}} {supervisor.seed(settings)}")
+            if seeded := supervisor.seed(settings):
+                say(f"{'map':<{_COLUMN}} {seeded}")
             notices = Notices(supervisor.notices)
             process = supervisor.start(settings)
             try:
@@ -63,6 +66,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
                     listen=settings.listen,
                     reachable=settings.reachable,
                     pid=process.pid,
+                    namespace=settings.namespace,
                 ):
                     _Foreground(supervisor, settings, process, notices, say).run()
             finally:
@@ -117,6 +121,9 @@ class _Foreground:
         self._watchdog = Watchdog()
         self._stopping = False
         self._deadline_s = time.monotonic() + _START_TIMEOUT_S
+        self._waits_from_s = time.monotonic() + _WAITS_S
+        self._waits: set[tuple[str, str]] = set()
+        """What was said of a node that waits."""
 
     def run(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -148,12 +155,26 @@ class _Foreground:
             return
         if health.state == "starting":  # a large map takes its time, and tells so
             self._deadline_s = time.monotonic() + _START_TIMEOUT_S
+            self._tell_of_waiting(health)
         if health.state == "ready" and self._pids.get(health.node) != health.pid:
             again = " again" if health.node in self._pids else ""
             self._pids[health.node] = health.pid
             self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
             for note in health.notes:
                 self._say(f"{'TBox':<{_COLUMN}} {note}")
+
+    def _tell_of_waiting(self, health: Health) -> None:
+        """In a part of a system, say once for what a node waits: it may be on a host that is not up yet."""
+        said = health.node, health.detail
+        is_long = time.monotonic() > self._waits_from_s
+        if (
+            self._settings.only
+            and is_long
+            and health.detail.startswith("waiting")
+            and said not in self._waits
+        ):
+            self._waits.add(said)
+            self._say(f"{health.node:<{_COLUMN}} {health.detail}")
 
     def _look(self) -> None:
         """See which processes there are.
@@ -188,8 +209,12 @@ class _Foreground:
     def _network(self) -> bus.Network:
         secure = self._settings.secure
         identity = None if secure is None else Identity.read(Path(secure) / SUPERVISOR)
-        own_config = self._settings.zenoh_config
-        return bus.Network(connect=(self._settings.reachable,), identity=identity, own_config=own_config)
+        return bus.Network(
+            connect=(self._settings.reachable,),
+            namespace=self._settings.namespace,
+            identity=identity,
+            own_config=self._settings.zenoh_config,
+        )
 
     def _replace_what_hangs(self) -> None:
         for hang in self._watchdog.hanging():
@@ -205,10 +230,20 @@ class _Foreground:
             deadline_s = time.monotonic() + _INTRODUCED_S
             while time.monotonic() < deadline_s:
                 status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
-                if {node.node for node in status.nodes if node.state == "ready"} >= self._pids.keys():
+                if {node.pid for node in status.nodes if node.state == "ready"} >= {*self._pids.values()}:
                     break
                 time.sleep(0.05)
+            self._tell_of_truth(status.truth)
             self._tell_of_models(session)
+
+    def _tell_of_truth(self, truth: str) -> None:
+        """Say where perception looks at what the map itself has placed, as the coordinator elsewhere says."""
+        sees_the_simulator = {"sim_node", "perception_node"} <= {*self._settings.only}
+        if sees_the_simulator and self._settings.camera_hz and truth != "perceived":
+            self._say(
+                f"{'perception':<{_COLUMN}} with --truth {truth}, as the coordinator runs, the simulator's"
+                " cameras only show what the map already says; start it with --truth perceived"
+            )
 
     def _tell_of_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""
@@ -228,6 +263,8 @@ class _Foreground:
         if self._settings.secure is not None:
             connect += f" --identity {shlex.quote(self._settings.secure)}/NAME"
         lines = {"zenoh": self._settings.reachable, "data": self._settings.data}
+        if self._settings.namespace:
+            lines = {"robot": self._settings.namespace} | lines
         if self._settings.record:
             lines["recording"] = f"{self._settings.data}/recordings"
         if self._settings.live_view is not None:

@@ -1,10 +1,9 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
-from benchmarks.relations.__main__ import as_json
 from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
-from benchmarks.table import Row
+from benchmarks.table import Row, as_json
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.facts.said import PROPERTIES, fact_of

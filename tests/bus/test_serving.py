@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 import time
 
 import msgpack
@@ -11,6 +12,9 @@ import pytest
 from nodes import bus
 from schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
+from tests.conftest import until
+
+MANY = 500
 
 
 def test_parameters_of_a_selector_are_fields_and_format_json_answers_in_json(pair):
@@ -48,3 +52,23 @@ def test_a_put_is_executed_and_acknowledged(pair):
     assert (ack["id"], ack["verb"], ack["ok"], ack["reply"]["text"]) == ("7", "get", True, "get")
     client.put(f"{PREFIX}/add", b'{"class": "Chair"}')
     assert json.loads(acks.recv().payload.to_bytes())["verb"] == "add"
+
+
+def test_one_who_answers_puts_does_not_wait_for_those_who_read_the_acknowledgements_slowly(pair):
+    server, client = pair
+    requests, acks, reading = [], [], threading.Event()
+    client.declare_subscriber(keys.ACK.key, lambda ack: reading.wait() and acks.append(ack))
+    bus.serve_puts(server, PREFIX, requests.append)
+    time.sleep(0.3)
+    for number in range(MANY):
+        client.put(f"{PREFIX}/get", codec.encode({"id": str(number)}))
+    assert until(lambda: len(requests) == MANY, "all have come")
+    began_s = time.monotonic()
+    for request in requests:
+        request.reply(replies.Done(text="x" * 100_000))
+    took_s = time.monotonic() - began_s
+    reading.set()
+    assert until(lambda: len(acks) == MANY, "all are acknowledged")
+    ids = [codec.decode(ack.payload.to_bytes(), replies.Ack).id for ack in acks]
+    assert ids == [str(number) for number in range(MANY)]
+    assert took_s < 1.0  # waiting for the reader would last until Zenoh gives it up, after seconds

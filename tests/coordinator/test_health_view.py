@@ -5,8 +5,23 @@ from nodes.coordinator.health_view import HealthView
 from schemas.health import Health
 
 
-def beat(state, pid=1):
-    return Health(node="kb_node", pid=pid, started_ns=0, stamp_ns=0, state=state)
+def beat(state, pid=1, host="", at_s=0):
+    stamp_ns = at_s * 10**9
+    return Health(node="kb_node", host=host, pid=pid, started_ns=0, stamp_ns=stamp_ns, state=state)
+
+
+def test_nodes_of_one_name_on_two_hosts_are_two_rows():
+    view = HealthView()
+    for host in ("lab", "robot"):
+        view.take(beat("starting", host=host))
+        view.take(beat("ready", host=host))
+    assert [(row.host, row.state) for row in view.nodes()] == [("lab", "ready"), ("robot", "ready")]
+
+
+def test_how_long_a_node_has_run_is_told_by_its_own_clock():
+    view = HealthView()
+    view.take(beat("ready", at_s=70))
+    assert 70.0 <= view.nodes()[0].uptime_s < 71.0
 
 
 def test_a_silent_node_is_not_alive(monkeypatch):

@@ -10,8 +10,9 @@ from nodes import bus
 from nodes.coordinator.kb_client import Bridge
 from nodes.runtime.loop import Node
 from schemas import errors, keys
+from schemas.bridge import TakeBack
 from schemas.commits import Commit, Effects, Transaction
-from tests.conftest import free_endpoint, handling
+from tests.conftest import free_endpoint, handling, until
 
 TRANSACTION = Transaction(id="42", source="operator")
 COMMIT = Commit(seq=1, stamp_ns=1, id="42", source="operator")
@@ -64,3 +65,16 @@ def test_a_refusal_is_an_answer(network):
     bus.serve(kb, keys.BRIDGE, lambda request: request.refuse(errors.Refused("no")))
     with pytest.raises(errors.Refused, match="no"):
         bridge.change(TRANSACTION).result(timeout=20)
+
+
+def test_what_takes_long_is_not_waited_for(network):
+    bridge, kb = network
+    requests = []
+    bus.serve(kb, keys.BRIDGE, requests.append)
+    time.sleep(0.3)
+    began_s = time.monotonic()
+    answer = bridge.change(TakeBack(id="43", source="operator"))
+    assert time.monotonic() - began_s < 0.1
+    assert until(lambda: requests, "it was asked")
+    requests[0].reply(COMMIT)
+    assert answer.result(timeout=20) == Effects.of(COMMIT)

@@ -11,13 +11,18 @@ from rich.console import Console
 from rich.table import Table
 
 from tests.faults.all_faults import FAULTS
+from tests.faults.cut_hosts import CUTS
 from tests.faults.table import Fault, Row, outcome
 
 
 def main(words: list[str]) -> int:
     """Exit status 1 if anything was lost or doubled, or another promise was broken."""
     chosen = [fault for fault in FAULTS if not words or any(word in fault.name for word in words)]
+    cuts = [several for several in CUTS if not words or any(word in several.name for word in words)]
     rows = [_row(fault) for fault in chosen]
+    for several in cuts:
+        print(f"{several.name} ...", file=sys.stderr, flush=True)
+        rows += several.rows()
     console = Console(width=120)
     table = Table("what was done", "times", "lost", "doubled", "whole after [s]", "")
     for row in rows:

@@ -29,9 +29,15 @@ def free_place() -> tuple[float, float, float]:
 class Load(threading.Thread):
     """Adds cups one after another: by turns with a name, and without one so that a repetition would show."""
 
-    def __init__(self, endpoint: str, number: int, breath_s: float) -> None:
-        """`number` tells its cups from those of other loads; it rests for `breath_s` after each."""
+    def __init__(self, endpoint: str, number: int, breath_s: float, *, insists: bool = False) -> None:
+        """`number` tells its cups from those of other loads; it rests for `breath_s` after each.
+
+        One that `insists` sends a change that was not answered again, under its id, until it is.
+        """
         super().__init__(daemon=True)
+        self._insists = insists
+        self.in_doubt = False
+        """Has the last change that it asked for not been answered?"""
         self._breath_s = breath_s
         self._number = number
         self.added: list[str] = []
@@ -46,9 +52,13 @@ class Load(threading.Thread):
             try:
                 with connect(self._endpoint, agent="load") as client:
                     while not self._stopping.is_set():
-                        asked += 1
-                        name = f"cup_of_load_{self._number}_{asked}" if asked % 2 else None
-                        self.added += client.add("Cup", name, at=free_place()).names
+                        if not (self._insists and self.in_doubt):
+                            asked += 1
+                            name = f"cup_of_load_{self._number}_{asked}" if asked % 2 else None
+                            at, change = free_place(), f"load {self._number} {asked} {random.random()}"
+                        self.in_doubt = True
+                        self.added += client.add("Cup", name, at=at, id=change).names
+                        self.in_doubt = False
                         self._stopping.wait(self._breath_s)
             except errors.NoAnswer:
                 self.unanswered += 1

@@ -23,29 +23,29 @@ ALL = ("--abox", "none", "--world", "empty")
 
 
 def kill(node: str, ground: Ground) -> None:
-    pid = _pids(ground)[node]
+    pid = pids_of(ground.data)[node]
     os.kill(pid, signal.SIGKILL)
-    wait_for(lambda: _pids(ground).get(node, pid) != pid, f"{node} is back")
+    wait_for(lambda: pids_of(ground.data).get(node, pid) != pid, f"{node} is back")
 
 
 def stop(node: str, ground: Ground) -> None:
     """It hangs: it is replaced within seconds, and nobody else is."""
-    before = _pids(ground)
+    before = pids_of(ground.data)
     os.kill(before[node], signal.SIGSTOP)
     began_s = time.monotonic()
     wait_for(lambda: not _runs(before[node]), f"{node}, which hangs, is ended")
     noticed_s = time.monotonic() - began_s
     assert noticed_s < NOTICED_S, f"{node} hung for {noticed_s:.1f} s"
-    wait_for(lambda: node in _pids(ground), f"{node} is back")
+    wait_for(lambda: node in pids_of(ground.data), f"{node} is back")
     ground.observe(NOTICED_S)
-    now = _pids(ground)
+    now = pids_of(ground.data)
     others = {other: (pid, now.get(other)) for other, pid in before.items() if other != node}
     assert all(was == is_ for was, is_ in others.values()), f"besides {node} others were replaced: {others}"
 
 
 def kill_supervisord(ground: Ground) -> None:
     """`semmap up` ends with an error, and nothing is left."""
-    pids, up = _pids(ground), ground.system.process
+    pids, up = pids_of(ground.data), ground.system.process
     os.kill(_supervisord(ground), signal.SIGKILL)
     assert up.wait(30) not in (0, None)
     _require_gone(pids)
@@ -54,7 +54,7 @@ def kill_supervisord(ground: Ground) -> None:
 
 def kill_up(ground: Ground) -> None:
     """Nothing is left serving for long."""
-    pids, up = _pids(ground), ground.system.process
+    pids, up = pids_of(ground.data), ground.system.process
     up.kill()
     up.wait(30)
     _require_gone(pids)
@@ -63,7 +63,7 @@ def kill_up(ground: Ground) -> None:
 
 def kill_up_and_start_at_once(ground: Ground) -> None:
     """The next `semmap up` takes over, also from a node that hangs."""
-    pids, up = _pids(ground), ground.system.process
+    pids, up = pids_of(ground.data), ground.system.process
     os.kill(pids["kb_node"], signal.SIGSTOP)
     up.kill()
     up.wait(30)
@@ -73,7 +73,7 @@ def kill_up_and_start_at_once(ground: Ground) -> None:
 
 def kill_everybody_above_and_go_down(ground: Ground) -> None:
     """`semmap down` finds a node that hangs and has been left behind."""
-    pids, up = _pids(ground), ground.system.process
+    pids, up = pids_of(ground.data), ground.system.process
     supervisord = _supervisord(ground)
     up.kill()
     os.kill(supervisord, signal.SIGKILL)
@@ -91,17 +91,18 @@ def kill_everybody_above_and_go_down(ground: Ground) -> None:
 
 def stop_up(ground: Ground) -> None:
     """Whoever watches is held up; then nobody is taken to hang because of that."""
-    before = _pids(ground)
+    before = pids_of(ground.data)
     ground.system.process.send_signal(signal.SIGSTOP)
     ground.observe(2 * NOTICED_S)
     ground.system.process.send_signal(signal.SIGCONT)
     ground.observe(NOTICED_S)
-    assert _pids(ground) == before
+    assert pids_of(ground.data) == before
 
 
-def _pids(ground: Ground) -> dict[str, int]:
+def pids_of(data: Path) -> dict[str, int]:
+    """The processes of the nodes that `semmap up` runs on a data folder."""
     with contextlib.suppress(Exception):
-        processes = Supervisor(ground.data).processes()
+        processes = Supervisor(data).processes()
         return {node: info["pid"] for node, info in processes.items() if info["statename"] == "RUNNING"}
     return {}
 

@@ -8,13 +8,14 @@ import resource
 import sqlite3
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 
 from tests.faults.ground import Ground, wait_for
-from tests.faults.processes import _pids
+from tests.faults.processes import pids_of
 from tests.faults.table import Fault
 
 _BIN = Path(sys.executable).parent
@@ -26,7 +27,7 @@ _SPARE_BYTES = 4 << 20
 def disk_full(ground: Ground) -> None:
     """Commits are refused, `status` says so, and they go on when there is room."""
     ground.may_be_refused = "could not be written"
-    pid = _pids(ground)["kb_node"]
+    pid = pids_of(ground.data)["kb_node"]
     largest = max(path.stat().st_size for path in ground.data.glob("journal.sqlite*"))
     refused = len(ground.load.refused)
     with _limited(pid, resource.RLIMIT_FSIZE, largest):
@@ -36,13 +37,13 @@ def disk_full(ground: Ground) -> None:
             "the status says that it is full",
         )
         ground.observe(_GIVEN_OUT_S)
-    assert _pids(ground)["kb_node"] == pid
+    assert pids_of(ground.data)["kb_node"] == pid
 
 
 def no_memory(ground: Ground) -> None:
     """What takes memory that there is not is answered as an error, or the node is started again."""
     ground.may_be_refused = ""
-    pid = _pids(ground)["kb_node"]
+    pid = pids_of(ground.data)["kb_node"]
     with (
         contextlib.suppress(ProcessLookupError),
         _limited(pid, resource.RLIMIT_AS, psutil.Process(pid).memory_info().vms + _SPARE_BYTES),
@@ -99,10 +100,12 @@ def restored_backup(ground: Ground) -> None:
 def links_cut(ground: Ground) -> None:
     """In a network of its own, a whole system bears that nothing comes through for a while."""
     words = ["unshare", "-rn", sys.executable, "-m", "tests.faults.cut_links", str(_CUT_S)]
+    began_s = time.monotonic()
     ended = subprocess.run(words, capture_output=True, text=True, timeout=300)
     assert ended.returncode == 0, ended.stderr[-2000:]
     found = json.loads(ended.stdout.splitlines()[-1])
     assert (found["lost"], found["doubled"]) == (0, 0), found
+    ground.observed_s += time.monotonic() - began_s - found["whole_s"]  # it was started, and cut
 
 
 @contextlib.contextmanager

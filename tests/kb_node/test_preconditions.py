@@ -34,3 +34,12 @@ def test_what_is_required_must_be_held():
     preconditions.require(transaction(1, require=(TYPE,)), {TYPE})
     with pytest.raises(errors.PreconditionFailed, match="no longer holds that cup1"):
         preconditions.require(transaction(1, require=(TYPE, ABSENT)), {TYPE})
+
+
+def test_what_is_much_is_looked_up_otherwise_and_is_the_same(reasoner, monkeypatch):
+    groups = [(TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))]
+    one_by_one = preconditions.held(reasoner, groups)
+    assert not preconditions.is_much(groups, reasoner)
+    monkeypatch.setattr(preconditions, "_FEW_AT_ALL", 1)
+    assert preconditions.is_much(groups, reasoner)
+    assert preconditions.held(reasoner, groups) == one_by_one

@@ -5,7 +5,7 @@ from msgspec import structs
 
 from nodes.kb_node.applier import Applier
 from nodes.kb_node.storage import conclusions_format
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from ontology import stars
 from ontology import vocabulary as v
 from schemas import codec, errors
@@ -13,7 +13,7 @@ from schemas.commits import Commit, Edit, NewEntity, Snapshot
 from schemas.entities import Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, state, transaction, turtle
-from tests.kb_node.storage.test_journal import BULKY, full_by_page_count
+from tests.kb_node.storage.journal.test_journal import BULKY, full_by_page_count
 
 CHAIR1, CHAIR2 = v.entity_iri("chair1"), v.entity_iri("chair2")
 
@@ -367,7 +367,7 @@ def test_a_restart_gives_the_same_map_with_and_without_checkpoints(tmp_path_fact
     expected, classes = state(semantic_map), list(semantic_map.class_table())
     again = home.reopened(semantic_map)
     assert (state(again), list(again.class_table())) == (expected, classes)
-    with again._journal._file.reading() as db:
+    with again._journal.file.reading() as db:
         db.execute("DELETE FROM checkpoints")
     from_nothing = home.reopened(again)
     assert (state(from_nothing), list(from_nothing.class_table())) == (expected, classes)

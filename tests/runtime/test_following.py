@@ -1,5 +1,7 @@
 """A follower before a knowledge base that is played here, over real Zenoh."""
 
+import time
+
 import msgspec
 import pytest
 
@@ -10,7 +12,7 @@ from nodes.runtime.map_replica import MapReplica
 from schemas import codec, keys
 from schemas.bridge import SnapshotQuery
 from schemas.commands import Classes
-from schemas.commits import Commit, Snapshot
+from schemas.commits import Commit, Extent, Snapshot
 from schemas.health import Health
 from tests.conftest import free_endpoint, handling, until
 from tests.recorder.messages import commit, entity
@@ -164,3 +166,17 @@ def test_a_commit_of_which_nothing_came_is_noticed_by_the_second_beat(both):
     kb.beat(0, commit=2)
     until(lambda: follower.map.seq == 2, "it was fetched")
     assert kb.asked == 2
+
+
+def test_a_follower_leaves_pages_to_whoever_fetches_them_already(both):
+    kb, follower = both
+    follower.map.begin_pages()
+    left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)
+    follower.map.take(msgspec.structs.replace(commit(2), abridged=left_out))
+    asked = kb.asked
+    time.sleep(0.5)
+    assert kb.asked == asked
+    kb.snapshot = Snapshot(seq=2, entities=(entity("sink1"),))
+    follower.map.give_up_pages()
+    until(lambda: follower.map.is_current, "a snapshot came")
+    assert set(follower.map.entities) == {"sink1"}

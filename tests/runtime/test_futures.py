@@ -2,38 +2,76 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future
+from concurrent.futures import Future, InvalidStateError
 
-from nodes.runtime.futures import settle, then
+import pytest
+
+from nodes.runtime.futures import OwnFuture, settle, then
+
+KINDS = pytest.mark.parametrize("kind", [Future, OwnFuture])
 
 
 def fail():
     raise ZeroDivisionError("oops")
 
 
-def test_settling_takes_the_result_or_the_error():
-    done: Future = Future()
+@KINDS
+def test_settling_takes_the_result_or_the_error(kind):
+    done = kind()
     settle(done, lambda: 42)
     assert done.result() == 42
-    broken: Future = Future()
+    broken = kind()
     settle(broken, fail)
     assert isinstance(broken.exception(), ZeroDivisionError)
 
 
-def test_settling_with_a_future_waits_for_it():
-    inner: Future = Future()
-    outer: Future = Future()
+@KINDS
+def test_settling_with_a_future_waits_for_it(kind):
+    inner, outer = kind(), kind()
     settle(outer, lambda: inner)
     assert not outer.done()
     inner.set_result(42)
     assert outer.result() == 42
 
 
-def test_then_passes_results_and_errors_on():
-    first: Future = Future()
+@KINDS
+def test_then_passes_results_and_errors_on(kind):
+    first = kind()
     doubled = then(first, lambda x: 2 * x)
+    assert type(doubled) is kind  # one that other threads resolve is followed by one of its sort
     first.set_result(21)
     assert doubled.result() == 42
     broken = then(doubled, lambda x: x / 0)
     assert isinstance(broken.exception(), ZeroDivisionError)
     assert then(broken, str).exception() is broken.exception()
+
+
+def test_one_that_is_not_resolved_cannot_be_waited_for():
+    future: OwnFuture[int] = OwnFuture()
+    for read in (future.result, future.exception):
+        with pytest.raises(InvalidStateError, match="cannot wait"):
+            read()
+    assert not any((future.done(), future.running(), future.cancel(), future.cancelled()))
+
+
+def test_one_is_resolved_once():
+    future: OwnFuture[int] = OwnFuture()
+    future.set_result(42)
+    with pytest.raises(InvalidStateError, match="already"):
+        future.set_result(43)
+    with pytest.raises(InvalidStateError, match="already"):
+        future.set_exception(ZeroDivisionError())
+    assert (future.done(), future.result(), future.exception()) == (True, 42, None)
+
+
+def test_what_follows_is_called_in_order_and_goes_on_after_an_error(caplog):
+    future: OwnFuture[int] = OwnFuture()
+    seen = []
+    future.add_done_callback(lambda done: seen.append(done.result()))
+    future.add_done_callback(lambda _: fail())
+    future.add_done_callback(lambda done: seen.append(-done.result()))
+    assert not seen
+    future.set_result(42)
+    future.add_done_callback(lambda _: seen.append(0))
+    assert seen == [42, -42, 0]
+    assert "ZeroDivisionError" in caplog.text

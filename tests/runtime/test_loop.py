@@ -29,6 +29,12 @@ class Get(Call[replies.Done]):
     name: str
 
 
+class Quick(Get):
+    """The same, which may be asked anew."""
+
+    is_quick = True
+
+
 class Fly(Get):
     VERB = "fly"
 
@@ -260,6 +266,22 @@ def test_somebody_who_comes_late_is_waited_for(network):
     assert not served[0].done()
     bus.serve(client, "semmap/late", lambda request: request.reply(replies.Done(text="here")))
     assert served[0].result(timeout=5).text == "here"
+
+
+def test_what_is_quick_is_asked_anew_when_it_has_got_lost(network, monkeypatch):
+    node, client = network
+    monkeypatch.setattr("nodes.bus.asking._ROUND_S", 0.3)
+    asked, answers = [], []
+
+    def receive(request):
+        asked.append(request)
+        if len(asked) == 2:
+            request.reply(replies.Done(text="here"))
+
+    bus.serve(client, "semmap/late", receive)
+    node._events.put(lambda: answers.append(node.ask_later("semmap/late", Quick(name="x"), patience_s=5.0)))
+    until(lambda: answers, "the question")
+    assert answers[0].result(timeout=5).text == "here"
 
 
 def overloaded(node, client, monkeypatch, *, each=3):

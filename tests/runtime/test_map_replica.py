@@ -119,6 +119,18 @@ def test_commits_between_two_pages_of_a_snapshot_are_taken_in_order():
     assert {name: e.class_ for name, e in view.entities.items()} == {"a": "Bowl", "z": "Bowl"}
 
 
+def test_a_replica_says_whether_its_pages_are_on_their_way():
+    view = begun()
+    pages = view.begin_pages()
+    assert view.is_being_fetched
+    view.give_up_pages()
+    assert not view.is_being_fetched
+    pages = view.begin_pages()
+    pages.take(Snapshot(seq=2, entities=()))
+    view.begin(pages.snapshot)
+    assert not view.is_being_fetched
+
+
 def test_entities_of_a_page_share_what_they_have_in_common():
     pages = MapReplica().begin_pages()
     said = msgspec.msgpack.encode(Snapshot(seq=1, entities=(entity("a", "Cup"), entity("b", "Cup"))))

@@ -19,15 +19,16 @@ PUBLIC = {
     "semmap": """
         BadFile BadRequest BodyState Changed Checked ClassInfo Client Commit Departed Document Done Entity
         Explanation Inconsistent Inferred InternalError LoggedCommit Moved NameTaken NoAnswer NodeStatus Pose
-        PreconditionFailed Provenance Refused RowsChanged SemmapError Sighting SparqlResult StandingQuery
-        SystemStatus UnknownClass UnknownName UnknownVerb
-        aio commands connect local_name reasoner testing wire
+        PreconditionFailed Provenance Refused Restored RowsChanged SemmapError Sighting SparqlResult
+        StandingQuery SystemStatus UnknownClass UnknownName UnknownVerb
+        aio commands connect fleet local_name reasoner restore testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """
         Add Check Classes Clear Command Explain Export Get History Infer LastSeen List Load Move Pause Remove
         Reset Sparql Status StepOnce TakePicture Undo Update
     """,
+    "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",
     "semmap.reasoner": "Change Explanation Inconsistent Reasoner Step Term Triple",
     "semmap.testing": "free_endpoint own_system",
     "semmap.wire": """

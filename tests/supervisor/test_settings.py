@@ -11,11 +11,48 @@ def settings(**fields) -> Settings:
 
 
 def test_the_coordinator_listens_and_the_others_connect_to_it():
-    chosen = settings(listen="tcp/127.0.0.1:7000", connect=("tcp/10.0.0.1:7447",))
+    chosen = settings(listen="tcp/127.0.0.1:7000", connect=("tcp/127.0.0.1:7447",))
     door, other = chosen.network("coordinator"), chosen.network("kb_node")
-    assert (door.listen, door.connect) == (("tcp/127.0.0.1:7000",), ("tcp/10.0.0.1:7447",))
-    assert other.connect == ("tcp/127.0.0.1:7000", "tcp/10.0.0.1:7447")
+    assert (door.listen, door.connect) == (("tcp/127.0.0.1:7000",), ("tcp/127.0.0.1:7447",))
+    assert other.connect == ("tcp/127.0.0.1:7000", "tcp/127.0.0.1:7447")
     assert other.listen == ("tcp/127.0.0.1:0",)
+    assert "router" not in chosen.nodes
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"listen": "tcp/0.0.0.0:7447"},
+        {"connect": ("tcp/10.0.0.1:7447",)},
+        {"only": ("kb_node", "coordinator")},
+        {"only": ("sim_node",), "connect": ("tcp/127.0.0.1:7448",)},
+    ],
+)
+def test_where_somebody_may_come_from_elsewhere_all_meet_at_a_router(fields):
+    chosen = settings(**fields)
+    router = chosen.network("router")
+    assert chosen.nodes[0] == "router"
+    assert (router.mode, router.listen, router.connect) == ("router", (chosen.listen,), chosen.connect)
+    for node in chosen.nodes[1:]:
+        network = chosen.network(node)
+        assert (network.mode, network.listen, network.connect) == ("client", (), (chosen.reachable,))
+
+
+def test_a_single_node_joins_the_router_of_another_host():
+    there = ("tcp/10.0.0.1:7447",)
+    assert settings(connect=there, single=True).network("recorder").connect == there
+
+
+def test_a_part_has_the_nodes_that_are_named():
+    assert settings(only=("sim_node", "kb_node")).nodes == ("router", "kb_node", "sim_node")
+    assert settings(only=("router",)).nodes == ("router",)
+
+
+def test_where_the_truth_is_said_elsewhere_perception_may_see_the_simulator():
+    part = {"perception": True, "camera_hz": 5.0}
+    assert settings(**part, only=("sim_node", "perception_node")).camera_hz == 5.0
+    with pytest.raises(ValueError, match="--truth map"):
+        settings(**part, only=("sim_node", "perception_node", "coordinator"))
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import gc
 import uuid
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -82,10 +83,15 @@ def taken(view: KnownMap, commit: Effects | None) -> Talk[Effects | None]:
 def taken_anew(view: KnownMap) -> Talk[None]:
     """The map as it is, page by page."""
     pages = view.begin_pages()
-    while not pages.are_complete:
-        pages.take((yield from ask(pages.query)))
+    try:
+        while not pages.are_complete:
+            pages.take((yield from ask(pages.query)))
+    except BaseException:
+        view.give_up_pages()
+        raise
     view.begin(pages.snapshot)
     heap.trim()
+    gc.freeze()  # most of the map stays as it is: the collector need not look through it again
 
 
 def taken_with_classes(view: KnownMap, commit: Effects) -> Talk[None]:

@@ -118,6 +118,7 @@ def _load_document(view: KnownMap, command: Load) -> Talk[Changed]:
         strict=command.strict,
         parts=command.parts,
         dry_run=command.dry_run,
+        told=not command.parts,
     )
     loaded = yield from ask(document)
     if loaded.parts == 1:

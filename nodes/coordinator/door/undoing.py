@@ -22,6 +22,7 @@ def undo(view: KnownMap, command: Undo) -> Talk[Changed]:
             reason=command.reason,
             commit=command.commit,
             dry_run=command.dry_run,
+            told=True,
         )
     )
     if commit is None:  # a dry run of what was done before

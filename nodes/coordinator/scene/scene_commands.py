@@ -10,7 +10,7 @@ from nodes.coordinator.config import Truth
 from nodes.coordinator.door import Door
 from nodes.coordinator.plausibility import require_carrying
 from nodes.coordinator.scene.reconciler import GHOSTLY, AskSim, Keeping
-from nodes.runtime.futures import settle, then
+from nodes.runtime.futures import OwnFuture, settle, then
 from schemas import commands as c
 from schemas import errors, wording
 from schemas.bridge import LoadOf
@@ -44,7 +44,7 @@ class Running:
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
         if not command.carry:
             return self._put(command, body, ())
-        future: Future[Moved] = Future()
+        future: Future[Moved] = OwnFuture()
         asked = self._ask_map(LoadOf(name=command.name, leave=command.leave))
         asked.add_done_callback(lambda done: settle(future, lambda: self._put(command, body, done.result())))
         return future

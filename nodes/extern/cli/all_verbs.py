@@ -17,7 +17,8 @@ _MODULES = {
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
     ),
-    "past": ("undo", "history", "last-seen"),
+    "words": ("understand",),
+    "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
     "scene": ("move", "pause", "step", "reset", "picture", "replay"),
@@ -25,6 +26,7 @@ _MODULES = {
     "keep": ("backup", "restore", "compact"),
     "tbox": ("tbox",),
     "keys": ("keys",),
+    "fleet": ("fleet",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

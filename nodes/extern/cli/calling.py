@@ -12,7 +12,7 @@ import click
 
 from nodes.extern.cli.output.printable import escaped_json, say
 from schemas import errors
-from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE
+from schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE, NAMESPACE_VARIABLE
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
@@ -43,24 +43,88 @@ identity_option = click.option(
 )
 """Whose certificate is shown."""
 
+namespace_option = click.option(
+    "--namespace",
+    envvar=NAMESPACE_VARIABLE,
+    show_envvar=True,
+    metavar="ROBOT",
+    help="Which robot, if several can be reached there.",
+)
+"""Which of several robots is meant."""
+
+robots_option = click.option(
+    "--robots",
+    metavar="GLOB",
+    help="Ask all robots whose names match, such as '*' or arm*,lift1; EP may be several, with commas.",
+)
+"""Which robots are asked together."""
+
 
 def talks(function: Callable[..., None]) -> Callable[..., None]:
     """A verb that talks to a running system: its first argument is a client."""
 
     @connect_option
     @identity_option
+    @namespace_option
     @functools.wraps(function)
-    def with_client(where: str | None, identity: str | None, **arguments: Any) -> None:
+    def with_client(where: str | None, identity: str | None, namespace: str | None, **arguments: Any) -> None:
         if (shared := click.get_current_context().obj) is not None:
             function(shared, **arguments)
             return
         from nodes.extern.client import connect  # not needed for what only prints help or completes a word
 
-        agent = f"cli/{os.environ.get('USER', 'user')}"
-        with connect(where, agent=agent, identity=identity) as client:
-            function(client, **arguments)
+        with connect(where, agent=_agent(), identity=identity, namespace=namespace) as client:
+            try:
+                function(client, **arguments)
+            except errors.NoAnswer as error:
+                if not (others := _robots_instead(where, identity, namespace)):
+                    raise
+                raise errors.NoAnswer(f"{error.text}; robots that are there: {', '.join(others)}") from None
 
     return with_client
+
+
+def answered_by_robots(show: Callable[..., None]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """A verb that, with `--robots`, several robots answer: `show(robots, **arguments)` is called then.
+
+    It stands above `talks`. Raises SystemExit with 3 when a robot did not answer, after the others did.
+    """
+
+    def decorate(function: Callable[..., None]) -> Callable[..., None]:
+        @robots_option
+        @functools.wraps(function)
+        def with_robots(robots: str | None, **arguments: Any) -> None:
+            if robots is None:
+                function(**arguments)
+                return
+            from nodes.extern.fleet.robots import robots as connect_robots
+
+            where, who = arguments.pop("where"), arguments.pop("identity")
+            arguments.pop("namespace")
+            said = click.get_current_context().get_parameter_source("namespace")
+            if said is click.core.ParameterSource.COMMANDLINE:
+                raise errors.BadRequest("give either --robots or --namespace")
+            with connect_robots(robots, where, identity_=who, agent=_agent()) as found:
+                show(found, **arguments)
+
+        return with_robots
+
+    return decorate
+
+
+def _robots_instead(where: str | None, identity: str | None, namespace: str | None) -> tuple[str, ...]:
+    """The robots that can be asked where the one that is meant has no node."""
+    from nodes.extern.fleet.robots import robots_there
+
+    try:
+        there = robots_there(where, identity)
+    except errors.SemmapError:
+        return ()
+    return () if (namespace or "") in there else tuple(filter(None, there))
+
+
+def _agent() -> str:
+    return f"cli/{os.environ.get('USER', 'user')}"
 
 
 def run_words(app: click.Command, words: list[str], client: Client | None = None, where: str = "") -> int:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from nodes import bus
-from nodes.extern.connection import endpoint, identity
+from nodes.extern.connection import endpoint, identity, namespace
 from nodes.supervisor import presence
 from schemas import commands
 from schemas.entities import ClassInfo, Entity
@@ -33,11 +33,12 @@ KINDS: Mapping[str, Callable[[str | None], Named]] = {"entities": _entities, "cl
 
 
 def _ask(where: str | None, verb: str, command: Any, kind: Any) -> Any:
-    where = where or endpoint()
+    where = where or endpoint(namespace(None))
     here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
         connect=(where if who is None else bus.over_tls(where),),
         mode="peer" if here and who is None else "client",
+        namespace=namespace(None, where),
         patience_s=0.0 if here else _MEET_S,
         identity=who,
     )

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+import time
 from bisect import bisect_right
 from itertools import islice
 
 from nodes.kb_node.semantic_map import SemanticMap
 from schemas.bridge import SnapshotQuery
 from schemas.commits import Snapshot
+
+_PATIENCE_S = 0.5
+"""For those who follow the map to ask for its first page after a start, and for the next one."""
 
 
 class Pages:
@@ -16,6 +21,13 @@ class Pages:
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
         self._names: list[str] = []
+        self._asked_s = time.monotonic()
+        """When a page was asked for that others follow, or when it was time to begin."""
+
+    @property
+    def may_follow(self) -> bool:
+        """Whether somebody is likely to ask for a page in a moment: then nothing else should delay it."""
+        return time.monotonic() - self._asked_s < _PATIENCE_S
 
     def snapshot(self, query: SnapshotQuery) -> Snapshot:
         """All entities, or the page that is asked for.
@@ -31,6 +43,7 @@ class Pages:
         there = filter(None, map(self._map.find, islice(self._names, start, None)))
         found = tuple(islice(there, query.limit))
         more = next(there, None) is not None
+        self._asked_s = time.monotonic()
         if not more:
-            self._names = []
+            self._names, self._asked_s = [], -math.inf
         return Snapshot(seq=self._map.seq, entities=found, more=more, digest=self._map.digest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from operator import itemgetter
@@ -22,7 +23,7 @@ _FEW = 5
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
 _BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
-_MASKS = tuple(sum(_BITS[p] for p in whole) for whole in _WHOLES)
+_CLASSES = frozenset((v.OWL_CLASS, v.RDFS_CLASS))
 _NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
@@ -41,16 +42,21 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
     Raises BadFile for a TBox.
     """
-    triples = _with_numbers(list(triples), classes.number_kinds)
-    types_said = [t for t in triples if t[1] == v.RDF_TYPE]
-    declared = {s for s, _, o in types_said if o in (v.OWL_CLASS, v.RDFS_CLASS)}
+    triples = list(triples)
+    said = _by_property(triples)
+    if _has_other_numbers(said, classes.number_kinds):
+        triples = _with_numbers(triples, classes.number_kinds)
+        said = _by_property(triples)
+    types_said = said.get(v.RDF_TYPE, [])
+    used = set(map(itemgetter(2), types_said))
+    declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
     known = declared.union(classes.names, _OF_STARS)
-    built_in = {o for o in {o for _, _, o in types_said} if is_built_in(o)}
-    types = [(s, o) for s, _, o in types_said if o not in built_in]
-    spatial = _with_subclasses(classes.spatial, triples)
-    if declared and not any(o in spatial for _, o in types):
+    spatial = _with_subclasses(classes.spatial, said.get(v.RDFS_SUB_CLASS_OF, []))
+    own = {o for o in used if not is_built_in(o)}
+    if declared and spatial.isdisjoint(own):
         raise errors.BadFile("it declares classes but no entities; to load a TBox use --tbox")
-    unknown = sorted((s, o) for s, o in types if o not in known)
+    strange = own - known
+    unknown = sorted((s, o) for s, _, o in types_said if o in strange) if strange else []
     users: dict[str, list[str]] = {}
     namesakes = set(classes.names.values())
     for s, c in unknown:
@@ -61,10 +67,12 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:
-        gone = {s for s, _ in unknown} - {s for s, o in types if o in known}
+        described = own & known
+        gone = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(gone, [t for t in triples if t not in doubtful])
-    notes = (*_unknown_properties(kept, classes), *_own_classes(declared, classes), *_halves(kept))
+        said = _by_property(kept)
+    notes = (*_unknown_properties(said, classes), *_own_classes(declared, classes), *_halves(said, kept))
     return SortedOut(kept, words, list(notes))
 
 
@@ -74,7 +82,7 @@ def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Te
     The document that brought the individuals declared them; without that it would have been refused.
     """
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and o.startswith("<")]
-    declared = {s for s, o in types if o in (v.OWL_CLASS, v.RDFS_CLASS)}.union(classes.names, _OF_STARS)
+    declared = {s for s, o in types if o in _CLASSES}.union(classes.names, _OF_STARS)
     return {o for _, o in types if o not in declared and not is_built_in(o)}
 
 
@@ -86,18 +94,15 @@ def strangers(
     What the reasoner holds counts, too, as far as it `stays`.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
+    said = _by_property(triples)
+    related = {o for p in relations & said.keys() for _, _, o in said[p]}
+    related.difference_update(map(itemgetter(0), said.get(v.RDF_TYPE, ())))
+    strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
     found: dict[Term, Triple] = {}
-    for triple in triples:
-        if triple[1] in relations:
+    for triple in triples if strange else ():
+        if triple[2] in strange and triple[1] in relations:
             found.setdefault(triple[2], triple)
-    for s, p, _ in triples:
-        if p == v.RDF_TYPE:
-            found.pop(s, None)
-    return {
-        term: triple
-        for term, triple in found.items()
-        if not any(map(stays, reasoner.asserted(term, v.RDF_TYPE, None)))
-    }
+    return found
 
 
 def of_strangers(found: Mapping[Term, Triple]) -> str:
@@ -107,12 +112,28 @@ def of_strangers(found: Mapping[Term, Triple]) -> str:
     return f"referenced but not described: {few}{more}"
 
 
-def _with_subclasses(roots: frozenset[Term], triples: list[Triple]) -> set[Term]:
-    """Classes, and those which the triples put below them."""
-    found, above = set(roots), [(t[0], t[2]) for t in triples if t[1] == v.RDFS_SUB_CLASS_OF]
-    while below := {s for s, o in above if o in found and s not in found}:
-        found |= below
+def _by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
+    found = defaultdict[Term, list[Triple]](list)
+    for triple in triples:
+        found[triple[1]].append(triple)
+    return dict(found)
+
+
+def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
+    """Classes, and those which triples of `rdfs:subClassOf` put below them."""
+    found, above = set(roots), [(s, o) for s, _, o in below]
+    while more := {s for s, o in above if o in found and s not in found}:
+        found |= more
     return found
+
+
+def _has_other_numbers(said: Mapping[Term, list[Triple]], kinds: Mapping[Term, Term]) -> bool:
+    """Whether a number is of another kind than its property asks for."""
+    return any(
+        not o.endswith(kinds[p]) and o.endswith(_NUMBERS)
+        for p in kinds.keys() & said.keys()
+        for _, _, o in said[p]
+    )
 
 
 def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Triple]:
@@ -121,27 +142,23 @@ def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Tri
     `0` and `0.5` in Turtle are an integer and a decimal, and many a map says double where its ontology wants
     a float; they mean the number all the same.
     """
-    if not any(t[2].endswith(_NUMBERS) and not t[2].endswith(kinds[t[1]]) for t in triples if t[1] in kinds):
-        return triples
     return [
         (s, p, v.literal(v.lexical(o), kinds[p])) if p in kinds and o.endswith(_NUMBERS) else (s, p, o)
         for s, p, o in triples
     ]
 
 
-def _unknown_properties(triples: list[Triple], classes: ClassTable) -> list[str]:
+def _unknown_properties(said: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:
     """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
     if not any(p.startswith(_TBOX) for p in classes.properties):
         return []  # the TBox is somebody else's, and these are the words of stars
-    used = {p for p in set(map(itemgetter(1), triples)) if p.startswith(_TBOX)} - classes.properties
-    unknown = used and used - {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS}
+    used = {p for p in said if p.startswith(_TBOX)} - classes.properties
+    declared = {s for s, _, o in said.get(v.RDF_TYPE, ()) if o in v.PROPERTY_KINDS} if used else set()
+    unknown = used - declared
     if not unknown:
         return []
-    users: dict[str, list[str]] = {}
-    for s, p, _ in triples:
-        if p in unknown:
-            users.setdefault(v.local_name(p), []).append(v.local_name(s))
-    known = {s for s, p, o in triples if p == v.RDF_TYPE and o in v.PROPERTY_KINDS} | classes.properties
+    users = {v.local_name(p): [v.local_name(s) for s, _, _ in said[p]] for p in said if p in unknown}
+    known = declared | classes.properties
     return [errors.unknown_properties(users, map(v.local_name, sorted(known)))]
 
 
@@ -157,16 +174,17 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
     ]
 
 
-def _halves(triples: list[Triple]) -> list[str]:
+def _halves(said: Mapping[Term, list[Triple]], triples: list[Triple]) -> list[str]:
     """A word on positions, orientations and sizes that lack a number: they are as good as none."""
-    said: dict[Term, int] = {}
+    having = {p: set(map(itemgetter(0), said.get(p, ()))) for p in _FLOATS}
+    if all(having[p] == having[whole[0]] for whole in _WHOLES for p in whole):
+        return []
+    numbers: dict[Term, int] = {}
     for s, p, _ in [t for t in triples if t[1] in _FLOATS]:
-        said[s] = said.get(s, 0) | _BITS[p]
-    halves = {bits for bits in set(said.values()) if any(0 < bits & whole < whole for whole in _MASKS)}
+        numbers[s] = numbers.get(s, 0) | _BITS[p]
     lacking = [
         f"{_called(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
-        for s, bits in said.items()
-        if bits in halves
+        for s, bits in numbers.items()
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
     ]

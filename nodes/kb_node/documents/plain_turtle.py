@@ -1,8 +1,9 @@
-"""Large Turtle and N-Triples as programs write them, read line by line in a third of Oxigraph's time.
+"""Large Turtle and N-Triples as programs write them, read in a fifth of Oxigraph's time.
 
-A line is taken apart at its spaces, and each distinct word is looked at once; one that is not plain is given
-to Oxigraph. So the outcome is Oxigraph's. A document that cannot be read so, with lists or texts of several
-lines for example, or with a fault, is not read here at all.
+A piece of the document that says one triple after the other, in full and without spaces in its texts, is
+taken apart at its spaces and read in columns. Any other is read line by line. Each distinct word is looked at
+once; one that is not plain is given to Oxigraph. So the outcome is Oxigraph's. A document that cannot be read
+so, with lists or texts of several lines for example, or with a fault, is not read here at all.
 """
 
 from __future__ import annotations
@@ -13,20 +14,23 @@ from typing import Final
 
 import pyoxigraph
 
+from nodes.kb_node.documents.plain_words import plain_terms
 from ontology import vocabulary as v
 from schemas.explanations import Term, Triple
 
-_PIECE: Final = 1 << 20
-"""Bytes."""
+_PIECE: Final = 1 << 17
+"""Bytes; what is made of so many stays in the processor's cache."""
 _REMEMBERED: Final = 200_000
 """Words; more are looked at again."""
 _WORD = (
     r'<[^\s<>"]*>|"(?:[^"\\\n\r]|\\.)*"(?:\^\^(?:<[^\s<>"]*>|[^\s<>"\',;]+)|@[A-Za-z0-9-]+)?|[^\s<>"\',;]+'
 )
-_WORDS = re.compile(rf"(?:#.*|{_WORD}|[;,]|\S)")
-_TAIL = re.compile(rf"({_WORD})\s*([.;,])\s*")
+_WORDS = re.compile(rf"(?:#.*|{_WORD}|[;,]|[^ \t])")
+_TAIL = re.compile(rf"({_WORD})[ \t]*([.;,])[ \t]*")
 """An object and what separates it from what follows."""
 _PREFIX = re.compile(r"@prefix\s+([A-Za-z0-9_-]*):\s*<([^\s<>]*)>\s*\.\s*")
+_DECLARED = re.compile(rb"(?:(?:@prefix .*|#.*|)\r?\n)+")
+"""The lines with which a document begins."""
 _HIERARCHY = r"[a-z]+://[A-Za-z0-9.-]+(?:/(?:[A-Za-z0-9_~-][A-Za-z0-9._~-]*)?)"
 """How an absolute IRI begins that is not normalised."""
 _IRI = re.compile(rf"<{_HIERARCHY}*(?:#[A-Za-z0-9._~/-]*)?>")
@@ -38,6 +42,8 @@ _OF_XSD: Final = f"<{v.XSD}"
 _STRING, _INTEGER, _DECIMAL = (v.iri(v.XSD + kind) for kind in ("string", "integer", "decimal"))
 _SUBJECT, _PREDICATE, _OBJECT, _SEPARATOR = range(4)
 _AFTER: Final = {".": _SUBJECT, ";": _PREDICATE, ",": _OBJECT}
+_ODD_SPACES: Final = tuple(c for c in map(chr, range(0x3001)) if c.isspace() and c not in " \t\r\n")
+"""Python splits a text at these, too; to Turtle they are none."""
 
 
 class _NotPlain(Exception):
@@ -72,7 +78,7 @@ def read(
 
 
 class _Reader:
-    """Reads one document; equal terms are one object."""
+    """Reads one document; equal terms are one object, but for a few."""
 
     def __init__(self, prefixes: dict[str, str], label_prefix: str) -> None:
         self._prefixes = prefixes
@@ -85,6 +91,8 @@ class _Reader:
         self._subjects = _Words(self._subject)
         self._predicates = _Words(self._predicate)
         self._tails = _Words(self._tail)
+        self._known: dict[str, Term] = {}
+        """What words stand for, of pieces that are read in columns."""
         self._terms: list[Term] = []
         """Subject, predicate, object, subject, ...; the triples made of them at last lie together."""
         self._expects = _SUBJECT
@@ -92,12 +100,47 @@ class _Reader:
 
     def read(self, content: bytes, progress: Callable[[int], None]) -> list[Triple]:
         for piece in _pieces(content):
-            self._read_lines(piece.decode().replace("\r\n", "\n").split("\n"))
+            text = piece.decode()
+            if not self._read_columns(text):
+                self._read_lines(text.replace("\r\n", "\n").split("\n"))
             progress(len(self._terms) // 3)
         if self._expects != _SUBJECT:
             raise _NotPlain
         each = iter(self._terms)
         return list(zip(each, each, each, strict=True))
+
+    def _read_columns(self, text: str) -> bool:
+        """A piece that is nothing but triples, each in full, of words without spaces; False for any other."""
+        words = text.split()
+        subjects, predicates, objects, ends = (words[i::4] for i in range(4))
+        if self._expects != _SUBJECT or len(words) % 4 or ends.count(".") != len(ends):
+            return False
+        if any(map(text.__contains__, _ODD_SPACES)):
+            return False
+        try:
+            known = self._knowing({*subjects, *objects})
+            said = list(map(known.__getitem__, subjects))
+            if any(term[0] == '"' for term in set(said)):
+                return False
+            terms: list[Term] = [""] * (3 * len(ends))
+            terms[::3] = said
+            terms[1::3] = map(self._predicates.__getitem__, predicates)
+            terms[2::3] = map(known.__getitem__, objects)
+        except _NotPlain:
+            return False
+        self._terms += terms
+        return True
+
+    def _knowing(self, words: set[str]) -> dict[str, Term]:
+        """What these words and others stand for. Raises _NotPlain for one that is no term."""
+        known = self._known
+        if len(known) > _REMEMBERED:
+            known = self._known = {word: known[word] for word in words & known.keys()}
+        new = words.difference(known)
+        known.update(plain_terms(new, self._plain, self._datatype))
+        for word in new.difference(known):
+            known[word] = self._term(word)
+        return known
 
     def _read_lines(self, lines: list[str]) -> None:
         """A line that is a triple, or its end, at once; any other word by word."""
@@ -110,10 +153,10 @@ class _Reader:
                     triple = subjects[s], predicates[p], tails[tail]
                     subject, predicate, _ = triple
                 elif expects == _PREDICATE:
-                    p, tail = line.split(None, 1)
+                    p, tail = line.lstrip(" \t").split(" ", 1)
                     _, predicate, _ = triple = subject, predicates[p], tails[tail]
                 elif expects == _OBJECT:
-                    tail = line.strip()
+                    tail = line.strip(" \t")
                     triple = subject, predicate, tails[tail]
                 else:
                     raise _NotPlain
@@ -192,12 +235,16 @@ class _Reader:
     def _plain_literal(self, word: str, text: str, kind: str | None) -> Term | None:
         if kind is None:
             return word
+        datatype = self._datatype(kind)
+        return None if datatype is None else f"{text}^^{datatype}"
+
+    def _datatype(self, kind: str) -> Term | None:
+        """That of literals whose text stays as it is."""
         if kind not in self._datatypes:
             datatype = self._plain_term(kind)
             is_plain = datatype is not None and datatype.startswith(_OF_XSD) and datatype != _STRING
             self._datatypes[kind] = datatype if is_plain else None
-        datatype = self._datatypes[kind]
-        return None if datatype is None else f"{text}^^{datatype}"
+        return self._datatypes[kind]
 
     def _as_oxigraph_reads(self, word: str) -> Term:
         """What any other word stands for. Raises _NotPlain for what is no term, or one without a name."""
@@ -216,8 +263,11 @@ class _Reader:
 
 
 def _pieces(content: bytes) -> Iterator[bytes]:
-    """The content, cut at ends of lines."""
-    at = 0
+    """The content, cut at ends of lines: first what it declares, then the rest."""
+    declared = _DECLARED.match(content)
+    at = 0 if declared is None else declared.end()
+    if at:
+        yield content[:at]
     while at < len(content):
         end = content.find(b"\n", at + _PIECE) + 1 or len(content)
         yield content[at:end]

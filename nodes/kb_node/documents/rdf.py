@@ -57,6 +57,10 @@ _LINE = re.compile(r"\bline \d")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
+_LONG_WORD = "buffer maximal size"
+"""What pyoxigraph says, as a MemoryError, of a term that does not fit into its buffer."""
+
+
 def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
     """The syntax that `content` begins like: Turtle (of which N-Triples is a part) when like no other."""
     if _XML.match(content):
@@ -100,6 +104,12 @@ def parse(
             line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
         raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
+    except MemoryError as error:
+        if _LONG_WORD not in str(error):
+            raise
+        raise errors.BadFile(
+            f"{name} is not valid {_SPOKEN[syntax]}: it has a word or a text of more than 16 MB"
+        ) from None
 
 
 def _triples(

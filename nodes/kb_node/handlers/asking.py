@@ -9,9 +9,10 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
+from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
+from nodes.kb_node.answers.understanding import Understanding
 from nodes.kb_node.reasoner import Held
 from nodes.kb_node.reasoner.entailment.explaining import nearby
 from nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -21,12 +22,13 @@ from nodes.kb_node.storage import history
 from nodes.kb_node.storage.journal import Journal
 from nodes.runtime.fair_pool import FairPool
 from schemas import errors
-from schemas.bridge import Entities, LoadOf, Recall, SnapshotQuery, StarQuery
+from schemas.bridge import CopyQuery, Entities, LoadOf, MapCopy, Recall, SnapshotQuery, StarQuery
 from schemas.calls import Handler, by_verb
 from schemas.commands import (
     Check,
     Classes,
     Could,
+    Diff,
     Explain,
     Export,
     Get,
@@ -37,11 +39,14 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Understand,
+    WasWhen,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star
 from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
+from schemas.happenings import Difference, Spells
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -69,6 +74,7 @@ class Asking:
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
+        self._understanding = Understanding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self._aside = FairPool(2, asker)
 
@@ -76,6 +82,7 @@ class Asking:
         """By verb."""
         return by_verb(
             SnapshotQuery.answered_by(self.on_snapshot),
+            CopyQuery.answered_by(self.on_copy),
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
             LoadOf.answered_by(self.on_load_of),
@@ -87,6 +94,9 @@ class Asking:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
+            Diff.answered_by(self.on_diff),
+            WasWhen.answered_by(self.on_when),
+            Understand.answered_by(self._understanding.understand),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -96,9 +106,32 @@ class Asking:
             Renew.answered_by(self.on_renew),
         )
 
+    @property
+    def is_being_fetched(self) -> bool:
+        """Whether somebody fetches the map page by page, or is about to as after a start."""
+        return self._pages.may_follow
+
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
         return self._pages.snapshot(query)
+
+    def on_copy(self, query: CopyQuery) -> MapCopy:
+        """The map whole, or which it is."""
+        map_id, begun_ns = self._journal.origin()
+        seq = self._map.seq
+        return MapCopy(
+            map_id=map_id,
+            begun_ns=begun_ns,
+            seq=seq,
+            digest=self._map.digest,
+            stamp_ns=self._stamp_of_last(seq),
+            triples=tuple(self._map.abox()) if query.content else (),
+            entities=tuple(self._map.entities()) if query.content else (),
+        )
+
+    def _stamp_of_last(self, seq: int) -> int:
+        begins = self._journal.beginning
+        return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
         """Commits of the history, whole."""
@@ -154,8 +187,17 @@ class Asking:
             return self._tried(questions.explain, asked)
         if not found.measured:
             return found.explanation
-        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
-        return self._aside.submit(found.dated, began)
+        look_up = partial(beginnings.looked_up, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, look_up)
+
+    def on_diff(self, query: Diff) -> Future[Difference]:
+        """What is otherwise than it was."""
+        return self._aside.submit(differences.difference, self._past, query, self._map.classes.limits)
+
+    def on_when(self, query: WasWhen) -> Future[Spells]:
+        """When one thing was on, in or at another."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.spells, self._journal, self._past, query, limits)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""

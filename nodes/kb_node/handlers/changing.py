@@ -11,7 +11,7 @@ from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import term_syntax
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from schemas import errors
 from schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
 from schemas.calls import Handler, by_verb
@@ -108,7 +108,7 @@ class Changing:
         def change() -> Commit:
             return undo.undo(self._map, self._journal, command, self._undoing)
 
-        return self.changed(change, command.dry_run)
+        return self.changed(change, command.dry_run, told=command.told)
 
     @contextmanager
     def _undoing(self, target: Commit) -> Iterator[None]:
@@ -145,7 +145,7 @@ class Changing:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit, told=told, at_once=at_once)
+            self._spread(commit, told=told and not commit.tbox, at_once=at_once)
         return commit
 
 

@@ -8,7 +8,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime
 from typing import Final
 
-from nodes.kb_node.storage import backing_up, compaction
+from nodes.kb_node.storage.backup import backing_up
+from nodes.kb_node.storage.compaction import compaction, leftovers
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from schemas import errors, wording
@@ -27,8 +28,8 @@ class Keeping:
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
         self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="keeping")
-        if journal.has_dregs:
-            self._beside.submit(journal.drop_compacted)
+        if leftovers.are_there(journal):
+            self._beside.submit(leftovers.delete, journal)
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -71,7 +72,7 @@ def _age_ns(text: str) -> int:
 
 def _told(journal: Journal, share: compaction.Share, command: Compact) -> str:
     first = share.last + 1
-    begins = f"commit {first} of {datetime.fromtimestamp(journal.stamp_of(first) / 1e9):%Y-%m-%d %H:%M:%S}"
+    begins = f"commit {first} of {datetime.fromtimestamp(journal.stamps.of(first) / 1e9):%Y-%m-%d %H:%M:%S}"
     if not share.commits:
         return f"no commit is older than {command.keep}: the history begins with {begins}"
     old = wording.counted(share.commits, "commit", "commits")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from nodes.kb_node.answers import trials
 from nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
@@ -81,7 +82,8 @@ class Loading:
                 )
             del triples
             parts = load_parts.in_parts(transaction) if load.parts else [transaction]
-            commits = load_parts.commit_each(parts, self._commit, tell if load.parts else lambda _: None)
+            commit = partial(self._commit, told=load.told)
+            commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
@@ -120,8 +122,8 @@ class Loading:
                 f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
             ) from None
 
-    def _commit(self, transaction: Transaction) -> Commit | None:
-        return self._changing.published_if_new(lambda: self._map.commit(transaction), at_once=True)
+    def _commit(self, transaction: Transaction, *, told: bool) -> Commit | None:
+        return self._changing.published_if_new(lambda: self._map.commit(transaction), told=told, at_once=True)
 
 
 def _described(commit: Commit) -> Iterator[str]:

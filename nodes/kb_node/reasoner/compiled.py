@@ -126,7 +126,9 @@ class CompiledEngine:
             if retraction is None:
                 alike = self._paths.insert(insert, lambda some: self._insert(some, added, touched), added)
             else:
-                removed, _ = retraction.delete(delete)
+                removed = self._paths.depart(delete)
+                left = set(delete).difference(removed) if removed else delete
+                removed += retraction.delete(tuple(left))[0]
                 touched.update([s for s, _, _ in removed])
                 self._insert(insert, added, touched)
         except Known as known:

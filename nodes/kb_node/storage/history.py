@@ -66,7 +66,7 @@ class Past:
         first_ns = since.first_ns if since is not None and since.commit is None else 0
         last_ns = until.last_ns if until is not None and until.commit is None else 0
         if first_ns or last_ns:
-            stamped = set(self._journal.stamped(first_ns, last_ns or 1 << 63))
+            stamped = set(self._journal.stamps.within(first_ns, last_ns or 1 << 63))
             seqs = [seq for seq in seqs if seq in stamped]
         return seqs
 
@@ -131,8 +131,17 @@ class Past:
             removed = commit.provenance
         return sighting(self.at_the_beginning()[name], removed)
 
+    @property
+    def last(self) -> int:
+        """The number of the last commit, 0 before the first."""
+        return self._journal.last
+
+    def knows(self, name: str) -> bool:
+        """Whether an entity was ever named so, as far as the history goes back."""
+        return name in self.at_the_beginning() or bool(self._journal.touching(name))
+
     def _require_known(self, name: str) -> None:
-        if name not in self.at_the_beginning() and not self._journal.touching(name):
+        if not self.knows(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""
             raise errors.UnknownName(
@@ -161,9 +170,9 @@ class Past:
     def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
-        if moment.first_ns > max(time.time_ns(), self._journal.latest_stamp() if moment.first_ns else 0):
+        if moment.first_ns > max(time.time_ns(), self._journal.stamps.latest() if moment.first_ns else 0):
             raise errors.Refused("that is in the future; ask about the present without --as-of")
-        seq = self._journal.seq_at(moment.last_ns) if moment.commit is None else moment.commit
+        seq = self._journal.stamps.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")
         if seq < self._compacted:
@@ -172,7 +181,7 @@ class Past:
                 " compacted: the history begins with the map as it was then"
             )
         if seq == 0:
-            begun = "" if last == 0 else _at(self._journal.stamp_of(1))
+            begun = "" if last == 0 else _at(self._journal.stamps.of(1))
             raise errors.Refused(f"there was no map then; it begins with commit 1{begun}")
         return seq
 

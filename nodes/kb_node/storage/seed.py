@@ -18,7 +18,7 @@ from nodes.kb_node.sparql.triples.kept import forget
 from nodes.kb_node.storage import closure_cache
 from nodes.kb_node.storage.existing_map import existing_map
 from nodes.kb_node.storage.journal import FILENAME, Journal
-from nodes.kb_node.storage.sqlite_file import InUse
+from nodes.kb_node.storage.journal.sqlite_file import InUse
 from ontology import vocabulary as v
 from schemas import errors, wording
 from schemas.commits import Transaction

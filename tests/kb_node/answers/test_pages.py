@@ -1,5 +1,6 @@
 import pytest
 
+from nodes.kb_node.answers import pages as pages_module
 from nodes.kb_node.answers.pages import Pages
 from schemas.bridge import SnapshotQuery
 from tests.kb_node.home import chair, close, new_map, transaction
@@ -48,3 +49,19 @@ def test_a_page_may_be_the_last_because_the_rest_has_gone(semantic_map):
     semantic_map.commit(transaction("gone", retract=chair("chair5")))
     page = pages.snapshot(SnapshotQuery(limit=4, after="chair4"))
     assert (names(page), page.more) == ((), False)
+
+
+def test_whoever_fetches_pages_is_expected_to_ask_for_the_next(semantic_map, monkeypatch):
+    clock = [100.0]
+    monkeypatch.setattr(pages_module.time, "monotonic", lambda: clock[0])
+    pages = Pages(semantic_map)
+    assert pages.may_follow  # after a start
+    clock[0] += 10.0
+    assert not pages.may_follow
+    pages.snapshot(SnapshotQuery(limit=2))
+    assert pages.may_follow
+    pages.snapshot(SnapshotQuery(limit=200, after="chair2"))
+    assert not pages.may_follow
+    pages.snapshot(SnapshotQuery(limit=2))
+    clock[0] += 10.0
+    assert not pages.may_follow  # it has given up

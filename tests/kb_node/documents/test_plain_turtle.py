@@ -1,11 +1,11 @@
-"""Whatever is read line by line is what Oxigraph reads; whatever it would refuse is not read."""
+"""Whatever is read in columns or line by line is what Oxigraph reads; what it would refuse is not read."""
 
 import pyoxigraph
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.documents import plain_turtle, rdf
+from nodes.kb_node.documents import plain_turtle, plain_words, rdf
 from ontology import vocabulary as v
 from schemas import errors
 
@@ -45,6 +45,8 @@ OBJECTS = st.sampled_from(
         *('"a cup, of; tea ."', '"# no comment"', '"it\'s"', '"a\tb"'),
     ]
 )
+TYPED = st.builds('"{}"^^xsd:float'.format, st.text(alphabet='01.-e"\\è\x1f', max_size=4))
+NAMED = st.builds("{}:{}".format, st.sampled_from(["", "dm", "x"]), st.text(alphabet="a1-_:.è", max_size=3))
 BREAKS = st.sampled_from([" ", "\n", "\n\t", "  ", " # said\n", "\r\n"])
 BAD = [
     "[]",
@@ -89,6 +91,87 @@ def statements(draw):
         plain = draw(st.booleans())
         text += "".join(word + (" " if plain else draw(BREAKS)) for word in words)[:-1] + "\n"
     return text
+
+
+@st.composite
+def triples_in_full(draw):
+    """Many lines of one triple each, most of them of words without spaces."""
+    lines = draw(st.lists(st.tuples(SUBJECTS, PREDICATES, st.one_of(OBJECTS, TYPED, NAMED)), max_size=12))
+    breaks = draw(st.sampled_from([" .\n", " .\n", " .\r\n", ".\n", " ;\n", "\u00a0.\n", "\x0b.\n"]))
+    return "".join(" ".join(words) + (breaks if i == 3 else " .\n") for i, words in enumerate(lines))
+
+
+@pytest.fixture
+def few_are_many(monkeypatch):
+    """As if each kind of words were of very many."""
+    monkeypatch.setattr(plain_words, "_FEWEST", 1)
+
+
+@settings(deadline=None, max_examples=500, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(triples_in_full())
+@example(':a :p "1"^^xsd:float .\n:b :p ""^^xsd:float .\n')
+@example(':a :p "^^xsd:float .\n:b :p "a"b"^^xsd:float .\n')
+@example(":a :p ::b .\n:a :p :-b .\n")
+def test_what_is_read_in_columns_is_what_oxigraph_reads(few_are_many, text):
+    content = (HEAD + text).encode()
+    read = quickly(content)
+    if read is not None:
+        assert read == slowly(content)
+
+
+def test_a_file_as_programs_write_it_is_read_in_columns(monkeypatch):
+    lines = "".join(
+        f':t{i} a dm:Chair .\n:t{i} dm:float_size_x "{i}.5"^^xsd:float .\n:t{i} :p <http://x/y#{i}> .\n'
+        for i in range(300)
+    )
+    content = (HEAD + "# made by a program\n\n" + lines).encode()
+    monkeypatch.setattr(
+        plain_turtle._Reader, "_read_words", _only_declarations(plain_turtle._Reader._read_words)
+    )
+    read = quickly(content)
+    assert read == slowly(content)
+    assert len(read) == 900
+
+
+def _only_declarations(read_words):
+    def checked(self, line):
+        assert not line or line[0] in "@#", line
+        read_words(self, line)
+
+    return checked
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [":a", ":b:c"],
+        [":a", ":"],
+        [":a", ":-b"],
+        [":a", ":b.c"],
+        [":a", ":caffè"],
+        ['"1"^^xsd:float', '"^^xsd:float'],
+        ['"1"^^xsd:float', '"a"b"^^xsd:float'],
+        ['"1"^^xsd:float', '"\\t"^^xsd:float'],
+        ['"1"^^xsd:float', '"è"^^xsd:float'],
+        ['"1"^^xsd:float', '"1^^xsd:float'],
+    ],
+)
+def test_a_kind_of_words_that_is_not_plain_throughout_is_left_out(few_are_many, words):
+    assert plain_words.plain_terms(words, {"": "http://x#"}, lambda kind: f"<{kind}>") == {}
+
+
+def test_many_words_of_a_kind_are_told_at_once(few_are_many):
+    found = plain_words.plain_terms(
+        [":a_1-b", ":2", "x:y", "<http://x>", '"1.5"^^xsd:float', '""^^xsd:float', '"x"@de'],
+        {"": "http://x#"},
+        lambda kind: "<http://f>" if kind == "xsd:float" else None,
+    )
+    assert found == {
+        ":a_1-b": "<http://x#a_1-b>",
+        ":2": "<http://x#2>",
+        '"1.5"^^xsd:float': '"1.5"^^<http://f>',
+        '""^^xsd:float': '""^^<http://f>',
+    }
 
 
 @settings(deadline=None, max_examples=300)

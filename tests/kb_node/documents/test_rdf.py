@@ -210,3 +210,14 @@ def test_imports_are_only_triples():
 def test_blank_nodes_of_two_files_do_not_meet():
     (a,), (b,) = (rdf.parse(b"_:x <urn:p> _:x .", "f", label_prefix=p) for p in ("a", "b"))
     assert a[0] == a[2] != b[0]
+
+
+@pytest.mark.parametrize(
+    ("syntax", "document"),
+    [("Turtle", b"%s"), ("Turtle", b'<x:a> <x:b> "%s" .'), ("JSON-LD", b'{"@id": "x:a", "x:b": "%s"}')],
+)
+def test_a_word_that_is_longer_than_the_parser_takes_is_a_fault_of_the_file(syntax, document):
+    with pytest.raises(
+        errors.BadFile, match=f"not valid {syntax}: it has a word or a text of more than 16 MB"
+    ):
+        rdf.parse(document % (b"a" * (17 << 20)), "big")

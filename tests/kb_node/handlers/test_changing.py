@@ -11,7 +11,7 @@ from schemas.bridge import MadeBy, TakeBack, Transactions
 from schemas.commits import NewEntity
 from schemas.health import WORKING
 from tests.kb_node.home import chair, transaction
-from tests.kb_node.storage.test_journal import BULKY, full_by_page_count
+from tests.kb_node.storage.journal.test_journal import BULKY, full_by_page_count
 
 CLASS = chair()[0][2].strip("<>")
 

@@ -57,8 +57,8 @@ def test_the_map_as_it_was_at_a_time(seen):
     past, snapshots = seen
     stamps = {c.seq: c.stamp_ns for c in past.history(History())}
     for seq in snapshots:
-        assert past._journal.seq_at(stamps[seq]) == seq
-        assert past._journal.seq_at(stamps[seq] - 1) == seq - 1
+        assert past._journal.stamps.seq_at(stamps[seq]) == seq
+        assert past._journal.stamps.seq_at(stamps[seq] - 1) == seq - 1
         for when in (stamps[seq], stamps[seq] / 1e9):
             assert past.entities(when) == snapshots[seq]
             assert [c.seq for c in past.history(History(since=when, until=when))] == [seq]
@@ -71,8 +71,8 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
     past, snapshots = seen
     second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
     stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
-    monkeypatch.setattr(past._journal, "stamp_of", lambda seq: second_ns + stamps[seq])
-    monkeypatch.setattr(past._journal, "_stamps_so_far", lambda: [second_ns + s for s in stamps.values()])
+    monkeypatch.setattr(past._journal.stamps, "of", lambda seq: second_ns + stamps[seq])
+    monkeypatch.setattr(past._journal.stamps, "_so_far", lambda: [second_ns + s for s in stamps.values()])
     for when, seqs in {
         "2026-03-01T12:30:04": [1],
         "2026-03-01T12:30:05": [2, 3],

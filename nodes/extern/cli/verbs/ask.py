@@ -11,12 +11,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli import output
-from nodes.extern.cli.calling import TIME, complain, print_json, print_lines, talks
+from nodes.extern.cli.angles import ANGLE
+from nodes.extern.cli.calling import (
+    TIME,
+    answered_by_robots,
+    complain,
+    print_json,
+    print_lines,
+    talks,
+)
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
 from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.formats import FORMATS
 from nodes.extern.cli.output.printable import say
+from nodes.extern.cli.verbs import robots as of_robots
 from nodes.extern.cli.verbs import sparql as sparql_answers
 from nodes.extern.files import write_atomically
 from schemas import commands, errors, keys, roles
@@ -55,6 +64,7 @@ _STATUS_S = 20.0
 @click.option("--to", metavar="THING", shell_complete=entity_names, help="See --nearest.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @_as_of
+@answered_by_robots(of_robots.entities)
 @talks
 def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
     """List the entities.
@@ -88,6 +98,7 @@ def _left_out(client: Client, words: Iterable[str]) -> Iterator[str]:
 @click.argument("name", shell_complete=entity_names)
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @_as_of
+@answered_by_robots(of_robots.entity)
 @talks
 def get(client: Client, name: str, format: str, as_of: str | None) -> None:
     """Show one entity, and where it is."""
@@ -166,7 +177,11 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
 @click.argument("other", required=False, shell_complete=entity_names)
 @click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
 @click.option(
-    "--from-pose", "viewpoint", nargs=4, type=float, metavar="X Y Z YAW", help="The same, from a pose."
+    "--from-pose",
+    "viewpoint",
+    type=(float, float, float, ANGLE),
+    metavar="X Y Z YAW",
+    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
 )
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @_as_of
@@ -180,7 +195,18 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
     if format == "json":
         print_json(found)
     else:
-        print_lines([relation.text for relation in found] or [f"{name} is on, in and near nothing"])
+        print_lines(list(lines.relations(found)) or [_beside_nothing(client, name)])
+
+
+def _beside_nothing(client: Client, name: str) -> str:
+    """What is said of a thing that is in no relation to any other."""
+    try:
+        is_place = client.get(name).place
+    except errors.UnknownName:  # a reference or a class
+        is_place = False
+    if is_place:
+        return f"{name} is a place; what is in it tells: semmap list --in {name}"
+    return f"{name} is on, in and near nothing"
 
 
 @click.command()
@@ -220,6 +246,7 @@ def properties(client: Client, format: str) -> None:
 
 @click.command()
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@answered_by_robots(of_robots.status)
 @talks
 def status(client: Client, format: str) -> None:
     """Show the state of the nodes, the map and the scene."""
@@ -257,6 +284,7 @@ def status(client: Client, format: str) -> None:
     help="Refuse results of more than N rows.",
 )
 @_as_of
+@answered_by_robots(of_robots.rows)
 @talks
 def sparql(client: Client, query: str, **options: Any) -> None:
     """Run a read-only SPARQL 1.1 query.
@@ -315,6 +343,12 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
                 f" {', '.join(followed)}"
             )
+    if not bus.meets(keys.published(), keyexpr):
+        print(
+            f"  note: semmap publishes nothing on '{keyexpr}', so this waits for somebody else to;"
+            f" all that it publishes is on '{keys.ROOT}/**'",
+            file=sys.stderr,
+        )
     for key, payload in bus.listen(client.session, keyexpr):
         say(f"{key}  {payload}")
 

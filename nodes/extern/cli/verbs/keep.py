@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,8 +9,7 @@ import click
 
 from nodes.extern.cli.calling import complain, print_json, talks
 from nodes.extern.cli.output.printable import say
-from nodes.runtime import extras
-from schemas import backups
+from nodes.extern.restoring import restore as restore_map
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
@@ -50,17 +48,7 @@ def restore(file: Path, data: Path, replace: bool) -> None:
 
     Then start it: semmap up --data DIR.
     """
-    extras.require("semmap restore", "kb")
-    from nodes.kb_node.storage.restoring import restore as restore_journal
-    from nodes.supervisor.privacy import UMASK, make_private
-    from nodes.supervisor.up import alone
-
-    next(backups.read(file))  # before a folder is made
-    os.umask(UMASK)
-    data = data.resolve()
-    with alone(data):
-        make_private(data)
-        say(restore_journal(file, data, replace=replace, tell=complain))
+    say(restore_map(file, data, replace=replace, tell=complain).text)
 
 
 @click.command()

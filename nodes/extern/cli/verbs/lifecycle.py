@@ -20,10 +20,11 @@ from nodes.extern.cli.output.printable import say
 from nodes.identity import SUPERVISOR, Identity
 from nodes.identity.register import Register
 from nodes.runtime import extras
+from nodes.supervisor.parts import nodes_of
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
-from schemas.endpoints import CONNECT_VARIABLE
+from schemas.endpoints import CONNECT_VARIABLE, NAMESPACE_VARIABLE, robot_name
 from schemas.keys import NODES, ROUTER
 
 _path = click.Path(path_type=Path)
@@ -81,6 +82,20 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
     @click.option(
+        "--only",
+        metavar="NODES",
+        default=None,
+        help="Run only these nodes here, such as kb,coordinator; the others run on other hosts.",
+    )
+    @click.option(
+        "--namespace",
+        envvar=NAMESPACE_VARIABLE,
+        show_envvar=True,
+        default="",
+        metavar="ROBOT",
+        help="Name of this robot: its keys begin with it, so that robots can share a network.",
+    )
+    @click.option(
         "--secure",
         type=_path,
         default=None,
@@ -130,7 +145,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     @functools.wraps(function)
     def with_settings(name: str | None = None, **options: Any) -> None:
         own = {} if name is None else {"name": name}
-        function(settings=_settings(**options), **own)
+        function(settings=_settings(single=name is not None, **options), **own)
 
     return with_settings
 
@@ -140,16 +155,12 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 def up(settings: Settings) -> None:
     """Start the system in the foreground; Ctrl-C stops it."""
     if settings.secure is not None:
-        if settings.connect:
-            raise errors.BadRequest(
-                "with --secure a system has its own router; --connect is for single nodes: semmap node NAME"
-            )
         for name in (SUPERVISOR, *settings.nodes):
             Identity.read(Path(settings.secure) / name).require_valid()
-    extras.require_nodes(settings.nodes)
+    extras.require_nodes(settings.nodes, named=bool(settings.only))
     from nodes.supervisor.up import up as run_up
 
-    if settings.truth == "perceived" and not settings.perception:
+    if settings.truth == "perceived" and not settings.perception and not settings.only:
         complain("no perception node started; add --perception or publish your own observations")
     run_up(settings, say=say)
 
@@ -182,7 +193,7 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     The damaged file is kept.
     """
     extras.require("semmap repair", "kb")
-    from nodes.kb_node.storage.repair import repair as repair_journal
+    from nodes.kb_node.storage.repair.repair import repair as repair_journal
 
     click.echo(repair_journal((data or default_data()).resolve(), complain, tbox=tbox))
 
@@ -214,11 +225,20 @@ def _settings(
     threshold: float, angle_threshold: float, listen: str, connect: tuple[str, ...],
     window: bool, models: Path | None, camera_hz: float | None, camera_size: tuple[int, int],
     camera_noise: bool, perception: bool, when_gone: str, no_sim: bool, no_record: bool,
-    record_keep: str | None,
-    secure: Path | None, zenoh_config: Path | None, insecure: bool,
+    record_keep: str | None, only: str | None, single: bool,
+    secure: Path | None, zenoh_config: Path | None, insecure: bool, namespace: str,
 ) -> Settings:  # fmt: skip
     """Settings with absolute paths to files that exist. Raises BadFile, BadRequest."""
     folder = (data or default_data()).resolve()
+    nodes: tuple[str, ...] = ()
+    if only is not None:
+        without = {"--no-sim": no_sim, "--no-record": no_record, "--perception": perception}
+        nodes = _part(only, single=single, without=without)
+        perception, no_sim, no_record = (
+            "perception_node" in nodes,
+            "sim_node" not in nodes,
+            "recorder" not in nodes,
+        )
     before = None if fresh else _settings_before(folder)
     if abox is not None and (folder / JOURNAL).exists() and not fresh:
         complain(f"--abox is ignored: there is a map in {folder}; --fresh starts a new one")
@@ -247,6 +267,8 @@ def _settings(
         "angle_threshold_deg": angle_threshold,
         "listen": listen if secure is None else bus.over_tls(listen),
         "connect": connect if secure is None else tuple(map(bus.over_tls, connect)),
+        "only": nodes,
+        "single": single,
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
@@ -259,6 +281,7 @@ def _settings(
         "record_keep": record_keep,
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
+        "namespace": robot_name(namespace),
         "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),
     }
     _require_protected(values, insecure=insecure)
@@ -267,6 +290,16 @@ def _settings(
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ...]:
+    """The nodes that `--only` names. Raises BadRequest where another option says which nodes run."""
+    if single:
+        raise errors.BadRequest("semmap node runs one node; --only is for semmap up")
+    for option, is_given in without.items():
+        if is_given:
+            raise errors.BadRequest(f"--only names the nodes to run; leave out {option}")
+    return nodes_of(only)
 
 
 def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
@@ -279,7 +312,7 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
             raise errors.BadRequest("give either --secure or --insecure")
         for endpoint in (listen, *values["connect"]):
             bus.require_tls(endpoint)
-        if values["connect"]:
+        if values["single"] and values["connect"]:
             return  # the router is elsewhere
         register = Register.read(Path(secure))
         host = bus.host_of(listen)
@@ -307,15 +340,20 @@ def _option_of(field: str) -> str:
 
 
 def _settings_before(data: Path) -> Settings | None:
-    """What the map in `data` was last run with, if there is such a map; what of it is lost is told."""
-    if not (data / JOURNAL).exists():
-        return None
+    """What was last run in `data`, if there is a map, or it was a part whose map is on another host.
+
+    What of it is lost is told.
+    """
+    has_map = (data / JOURNAL).exists()
     try:
         settings: Settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
     except OSError:
         return None
     except errors.BadRequest:
-        complain(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
+        if has_map:
+            complain(f"{data / SETTINGS} cannot be read; --truth and --world are reset to their defaults")
+        return None
+    if not has_map and (not settings.only or "kb_node" in settings.only):
         return None
     if not Path(settings.world).exists():
         complain(f"the world {settings.world} no longer exists; using the flat's")

@@ -8,7 +8,14 @@ from typing import Any
 
 import click
 
-from nodes.extern.cli.calling import complain, connect_option, identity_option, print_lines, run_words
+from nodes.extern.cli.calling import (
+    complain,
+    connect_option,
+    identity_option,
+    namespace_option,
+    print_lines,
+    run_words,
+)
 from nodes.extern.cli.output import lines
 from nodes.extern.cli.output.printable import say
 from nodes.extern.client import Client, connect
@@ -25,14 +32,15 @@ _BY_THEMSELVES = frozenset(
 @click.option("--keep-going", is_flag=True, help="Continue after a failed request.")
 @connect_option
 @identity_option
-def run(file: Path, keep_going: bool, where: str | None, identity: str | None) -> None:
+@namespace_option
+def run(file: Path, keep_going: bool, where: str | None, identity: str | None, namespace: str | None) -> None:
     """Execute a file of requests, one per line.
 
     A request is a command line, or a JSON message with its verb.
     """
     lines = _decode_lines(file)
     failed = 0
-    with connect(where, agent=f"run/{file.name}", identity=identity) as client:
+    with connect(where, agent=f"run/{file.name}", identity=identity, namespace=namespace) as client:
         for number, line in lines:
             say(f"{number}: {line}")
             status = _run_line(client, line.removeprefix("semmap "), f"line {number}: ")

@@ -10,10 +10,12 @@ from nodes.kb_node.reasoner.explain.proof import Proof
 from nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
 from nodes.kb_node.reasoner.fastpaths.shapes import Alike, Contradiction, Shapes, Written
-from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
 
 MANY = 32
 """Computed facts that are worth being taken together."""
+MANY_GO = 1000
+"""Triples that are deleted: of so many, those who go without concerning anybody are told apart first."""
 WorkOut = Callable[[Sequence[Triple]], None]
 """Inserts triples and draws all conclusions, by the rules."""
 Insert = Callable[[Triple, int], bool]
@@ -37,6 +39,10 @@ class PlainPaths:
         None, with nothing done, where it is not plain.
         """
         return None
+
+    def depart(self, triples: Sequence[Triple]) -> list[Triple]:
+        """Delete those of many triples of which it is plain whom it concerns; they are returned."""
+        return []
 
     def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
         """Insert triples: what is known is written down, `added`, and returned; all else is worked out.
@@ -69,6 +75,10 @@ class FastPaths(PlainPaths):
     def change(self, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:
         """See `PlainPaths`."""
         return exchange(self._abox, delete, insert) if insert else depart(self._abox, delete)
+
+    def depart(self, triples: Sequence[Triple]) -> list[Triple]:
+        """See `PlainPaths`."""
+        return depart_among(self._abox, triples) if len(triples) >= MANY_GO else []
 
     def insert(self, triples: Sequence[Triple], work_out: WorkOut, added: list[Triple]) -> list[Alike]:
         """See `PlainPaths`. Run by run as far as what follows is known, and the others together."""

@@ -30,13 +30,55 @@ def depart(abox: ABox, triples: Sequence[Triple]) -> set[Term] | None:
     edges = None if is_doubtful else _edges_of(abox, going, wanted)
     if edges is None or not _concern_nobody(abox, going, edges):
         return None
-    if abox.spellings:
-        literals = [node for node in {store.object[edge] for edge in edges} if abox.is_literal(node)]
-        last = [node for node in literals if all(store.subject[e] in going for e in store.into.all(node))]
-        for node in last:
-            abox.forget_spelling(node)
+    _forget_spellings(abox, going, edges)
     store.erase(going, edges)
     return subjects
+
+
+def depart_among(abox: ABox, triples: Sequence[Triple]) -> list[Triple]:
+    """Forget those individuals of which it is plain, among very many: the triples that went with them.
+
+    Plain is who is described by these triples alone, concerns nobody who stays, and is not joined to
+    somebody of whom it is not plain.
+    """
+    store, wanted = abox.store, set(triples)
+    going = {store.numbers.get(subject, NONE) for subject in {triple[0] for triple in triples}} - {NONE}
+    said: dict[int, list[Triple]] = {}
+    doubtful = [node for node in going if not _is_plain(abox, node, going, wanted, said)]
+    plain = going.difference(doubtful)
+    while doubtful:
+        node = doubtful.pop()
+        others = {store.object[edge] for edge in store.out.all(node)}
+        others.update(store.subject[edge] for edge in store.into.all(node))
+        others &= plain
+        plain -= others
+        doubtful += others
+    edges = store.out.gather(plain, len(store.predicate))
+    _forget_spellings(abox, plain, edges)
+    store.erase(plain, edges)
+    return [triple for node in plain for triple in said[node]]
+
+
+def _is_plain(
+    abox: ABox, node: int, going: Set[int], wanted: set[Triple], said: dict[int, list[Triple]]
+) -> bool:
+    """Whether nobody who stays is otherwise without a node, all that is asserted of which is `said`, too."""
+    store, schema, kinds = abox.store, abox.schema, abox.store.kind
+    if node in abox.equals or node in abox.rest_on_node:
+        return False
+    term = store.terms[node]
+    mine = said[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
+    for edge in store.out.all(node):
+        source, other = store.source[edge], store.object[edge]
+        if source == DERIVED or edge in abox.rest_on_edge:
+            return False
+        if other not in going and (kinds[other].base is not kinds[other] or other in abox.equals):
+            return False
+        if source == ASSERTED:
+            mine.append((term, schema.axioms[store.predicate[edge]].term, store.terms[other]))
+    if not wanted.issuperset(mine):
+        return False
+    return all(store.subject[edge] in going for edge in store.into.all(node))
 
 
 def _edges_of(abox: ABox, nodes: Set[int], wanted: set[Triple]) -> list[int] | None:
@@ -77,6 +119,16 @@ def _concern_nobody(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
         if source[edge] == DERIVED or (node not in nodes and kinds[node].base is not kinds[node]):
             return False
     return not abox.spellings or abox.equals.keys().isdisjoint(object_[edge] for edge in edges)
+
+
+def _forget_spellings(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> None:
+    """Of literals that only these nodes have, by these edges."""
+    if not abox.spellings:
+        return
+    store = abox.store
+    for literal in [node for node in {store.object[edge] for edge in edges} if abox.is_literal(node)]:
+        if all(store.subject[edge] in nodes for edge in store.into.all(literal)):
+            abox.forget_spelling(literal)
 
 
 def exchange(abox: ABox, delete: Sequence[Triple], insert: Sequence[Triple]) -> set[Term] | None:

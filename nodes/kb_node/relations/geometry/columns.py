@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import chain
 from typing import Final
 
 import numpy as np
 
-from nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
+from nodes.kb_node.relations.geometry.form_columns import Bools, Extents, Floats, FormColumns, Ints, flat
 from nodes.kb_node.relations.geometry.forms import Form, form_of
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.geometry.solids import UNMEASURED, Solid, shape_of
@@ -24,13 +23,13 @@ class Columns:
 
     def __init__(self, solids: Sequence[Solid]) -> None:
         self.solids: Final = solids
-        forms, row = _in_columns([solid.form for solid in solids])
-        self.forms: Final = forms
+        forms, row = _once([solid.form for solid in solids])
+        self.forms: Final = FormColumns(forms)
         self.form: Final = row
         """(N,) rows of `forms`."""
-        self.position: Final[Floats] = _flat([solid.position for solid in solids], 3)
+        self.position: Final[Floats] = flat([solid.position for solid in solids], 3)
         """(N, 3)"""
-        self.bounds: Final[Floats] = _flat([solid.bounds for solid in solids], 4)
+        self.bounds: Final[Floats] = flat([solid.bounds for solid in solids], 4)
         """(N, 4) least x and y, greatest x and y."""
         self.bottom: Final[Floats] = np.array([solid.bottom for solid in solids])
         self.top: Final[Floats] = np.array([solid.top for solid in solids])
@@ -60,21 +59,17 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
             forms.append(form_of(model, size or UNMEASURED, pose.orientation_wxyz))
             are_places.append(entity.place)
             are_measured.append(size is not None)
-    columns, row = _in_columns(forms)
-    x, y, z = _flat(positions, 3).T
-    bounds = np.stack([x, y, x, y], axis=1) + columns.bounds[row]
-    bottom = z + np.where(columns.has_shape, columns.bottom, columns.lowest_corner)[row]
-    top = z + columns.top[row]
+    each, row = _once(forms)
+    reach = Extents(each)
+    x, y, z = flat(positions, 3).T
+    bounds = np.stack([x, y, x, y], axis=1) + reach.bounds[row]
+    bottom = z + reach.bottoms()[row]
+    top = z + reach.top[row]
     extents = zip(map(tuple, bounds.tolist()), bottom.tolist(), top.tolist(), strict=True)
     return list(map(Solid, names, positions, forms, are_places, are_measured, extents))
 
 
-def _in_columns(forms: Sequence[Form]) -> tuple[FormColumns, Ints]:
-    """Each form once, as columns, and the rows in which they are."""
+def _once(forms: Sequence[Form]) -> tuple[list[Form], Ints]:
+    """Each form once, and the rows in which they are."""
     rows = {form: row for row, form in enumerate(dict.fromkeys(forms))}
-    return FormColumns(list(rows)), np.fromiter(map(rows.__getitem__, forms), np.int64, len(forms))
-
-
-def _flat(rows: Sequence[tuple[float, ...]], width: int) -> Floats:
-    """(N, width), faster than np.array has it."""
-    return np.fromiter(chain.from_iterable(rows), np.float64, width * len(rows)).reshape(-1, width)
+    return list(rows), np.fromiter(map(rows.__getitem__, forms), np.int64, len(forms))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import ClassVar, Final
 
 import numpy as np
@@ -67,16 +68,15 @@ class Hollows:
     SHAPES: ClassVar = ((), (), (2,), (2,), (2,))
 
 
-class FormColumns:
-    """Forms as arrays, a row each, in the order given; lengths in metres along the map's axes."""
+class Extents:
+    """How far forms reach, as arrays, a row each, in the order given; lengths in metres."""
 
     def __init__(self, forms: Sequence[Form]) -> None:
-        self.size: Final[Floats] = np.array([form.size for form in forms]).reshape(-1, 3)
+        self.forms: Final = forms
+        self.size: Final[Floats] = flat([form.size for form in forms], 3)
         """(F, 3)"""
-        self.rotation: Final[Floats] = np.array([form.rotation for form in forms]).reshape(-1, 3, 3)
+        self.rotation: Final[Floats] = _rotations(forms)
         """(F, 3, 3) map from body."""
-        self.is_level: Final[Bools] = np.array([form.is_level for form in forms], dtype=bool)
-        self.has_shape: Final[Bools] = np.array([form.model is not None for form in forms], dtype=bool)
         (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(self.rotation, 0, -1)
         x, y, z = self.size.T
         mid_x, mid_y = c * z / 2, f * z / 2
@@ -89,6 +89,39 @@ class FormColumns:
         self.top: Final[Floats] = np.maximum(0.0, i * z) + (np.abs(g) * x + np.abs(h) * y) / 2
         base = np.min([g * (sx * x / 2) + h * (sy * y / 2) for sx in (-1, 1) for sy in (-1, 1)], axis=0)
         self.lowest_corner: Final[Floats] = np.minimum(base + i * 0.0, base + i * z)
+
+    def bottoms(self) -> Floats:
+        """(F,) where the lowest point of each is: of its parts, or without any of its box."""
+        found = self.lowest_corner.copy()
+        for shape, of in self._shapes():
+            if shape.parts:
+                stretch, up = self.size[of] / np.array(shape.size_m), self.rotation[of, 2]
+                heights = [_lows(alike, stretch, up).min(axis=1) for alike in _alike(shape.parts)]
+                found[of] = np.minimum.reduce(heights)
+        return found
+
+    def _shapes(self) -> Iterator[tuple[ModelShape, Ints]]:
+        """The shapes that forms have, and the rows of those that have each."""
+        groups: dict[str, list[int]] = {}
+        for row, form in enumerate(self.forms):
+            if form.model is not None:
+                groups.setdefault(form.model, []).append(row)
+        for model, group in groups.items():
+            own, rows = own_shape(model) or _UNIT, np.array(group)
+            turned = are_turned(own, self.size[rows])
+            for shape, of in ((own, rows[~turned]), (quarter_turned(own), rows[turned])):
+                if len(of):
+                    yield shape, of
+
+
+class FormColumns(Extents):
+    """Forms as arrays, a row each, in the order given; lengths in metres along the map's axes."""
+
+    def __init__(self, forms: Sequence[Form]) -> None:
+        super().__init__(forms)
+        self.is_level: Final[Bools] = np.array([form.is_level for form in forms], dtype=bool)
+        (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(self.rotation, 0, -1)
+        x, y, z = self.size.T
         self.volume: Final[Floats] = x * y * z
         self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0)
         """Whether its z axis is that of the map, but for rounding."""
@@ -104,21 +137,13 @@ class FormColumns:
         """(F, 4) bounds that what it stands on does not reach beyond."""
         self.footing: Final[Ints] = np.full(len(forms), -1)
         """(F,) the row of the one part that it stands on; -1 where there are several."""
-        self.parts, self.hollows = self._shaped(forms)
+        self.parts, self.hollows = self._shaped()
 
-    def _shaped(self, forms: Sequence[Form]) -> tuple[Parts, Hollows]:
-        groups: dict[str, list[int]] = {}
-        for row, form in enumerate(forms):
-            if form.model is not None:
-                groups.setdefault(form.model, []).append(row)
-        parts = _Rows(len(forms), Parts.SHAPES)
-        hollows = _Rows(len(forms), Hollows.SHAPES)
-        for model, group in groups.items():
-            own, rows = own_shape(model) or _UNIT, np.array(group)
-            turned = are_turned(own, self.size[rows])
-            for shape, of in ((own, rows[~turned]), (quarter_turned(own), rows[turned])):
-                if len(of):
-                    self._add(shape, of, parts, hollows)
+    def _shaped(self) -> tuple[Parts, Hollows]:
+        parts = _Rows(len(self.forms), Parts.SHAPES)
+        hollows = _Rows(len(self.forms), Hollows.SHAPES)
+        for shape, of in self._shapes():
+            self._add(shape, of, parts, hollows)
         return (
             Parts(parts.first, parts.count, *parts.columns()),
             Hollows(hollows.first, hollows.count, *hollows.columns()),
@@ -143,6 +168,19 @@ class FormColumns:
         self.base[of] = np.concatenate([least - beyond, greatest + beyond], axis=1)
         stands_on_one = is_lowest.sum(axis=1) == 1
         self.footing[of] = np.where(stands_on_one, parts.first[of] + is_lowest.argmax(axis=1), -1)
+
+
+def flat(rows: Sequence[tuple[float, ...]], width: int) -> Floats:
+    """(N, width), faster than np.array has it."""
+    return np.fromiter(chain.from_iterable(rows), np.float64, width * len(rows)).reshape(-1, width)
+
+
+def _rotations(forms: Sequence[Form]) -> Floats:
+    """(F, 3, 3); most stand alike, so that each way to be turned is converted once."""
+    ways = {form.rotation: form.rotation for form in forms}
+    rows = {rotation: row for row, rotation in enumerate(ways)}
+    table = np.array(list(ways), dtype=np.float64).reshape(-1, 3, 3)
+    return table[np.fromiter((rows[form.rotation] for form in forms), np.int64, len(forms))]
 
 
 class _Rows:
@@ -227,6 +265,29 @@ def _parts(alike: Sequence[ConvexPart], stretch: Floats, rotation: Floats) -> li
         has_top &= np.abs(upright[:, :, 2]) > _STEEP_M
         top = np.where(has_top[:, :, None], centre[:, :, :2], np.nan)
     return [low, high, lowest, top, u, v, no_disc + is_disc]
+
+
+def _lows(alike: Sequence[ConvexPart], stretch: Floats, up: Floats) -> Floats:
+    """(N, P) how high the box around each of P parts begins: what `_parts` has, to the last bit.
+
+    `up` is (N, 3), the last row of each rotation.
+    """
+    g, h, i = up.T[:, :, None, None]
+
+    def risen(vectors: Sequence[Sequence[Corner]]) -> Floats:
+        x, y, z = np.moveaxis(stretch[:, None, None, :] * np.array(vectors).reshape(len(alike), -1, 3), -1, 0)
+        found: Floats = g * x + h * y + i * z
+        return found
+
+    centre = risen([[part.centre] for part in alike])[:, :, 0]
+    reach, squares = np.zeros_like(centre), np.zeros_like(centre)
+    for vectors in np.moveaxis(risen([part.straight for part in alike]), 2, 0):
+        reach += np.abs(vectors)
+    for vectors in np.moveaxis(risen([part.round for part in alike]), 2, 0):
+        squares += vectors * vectors
+    low: Floats = centre - (reach + np.sqrt(squares))
+    points = risen([part.points for part in alike])
+    return low + points.min(axis=2) if points.shape[2] else low
 
 
 def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, Bools, Bools]:

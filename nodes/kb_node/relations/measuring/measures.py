@@ -226,8 +226,8 @@ def gap(one: Solid, other: Solid) -> float:
 
 
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
-    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances."""
-    if one is other or one.is_place or other.is_place:
+    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances; None without a size."""
+    if one is other or not (one.has_parts and other.has_parts):
         return None
     limit = near_limit(one, other, limits)
     between = gap(one, other)

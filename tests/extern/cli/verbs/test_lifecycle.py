@@ -3,6 +3,7 @@
 import click
 import pytest
 from click.testing import CliRunner
+from msgspec import structs
 
 from nodes.extern.cli.app import execute
 from nodes.extern.cli.verbs.lifecycle import _settings_before, settings_options
@@ -55,12 +56,26 @@ def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
     assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")
 
 
-def test_a_secure_system_has_its_own_router(tmp_path, capsys):
-    folder = tmp_path / "keys"
-    assert execute(["keys", "init", str(folder)]) == 0
-    words = ["up", "--data", str(tmp_path / "d"), "--secure", str(folder), "--connect", "tls/127.0.0.1:7999"]
-    capsys.readouterr()
-    assert execute(words) == 2
-    assert (
-        "with --secure a system has its own router; --connect is for single nodes" in capsys.readouterr().err
-    )
+def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
+    (data / JOURNAL).unlink()
+    settings = codec.decode((data / SETTINGS).read_bytes(), Settings)
+    (data / SETTINGS).write_bytes(codec.encode_json(structs.replace(settings, only=("sim_node",))))
+    assert _settings_before(data).world == str(EMPTY_WORLD)
+    (data / SETTINGS).write_bytes(codec.encode_json(structs.replace(settings, only=("kb_node",))))
+    assert _settings_before(data) is None
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["up", "--only", "brain"], "there is no node 'brain'; --only takes any of kb, coordinator, sim,"),
+        (["up", "--only", ","], "--only takes the names of nodes: "),
+        (["up", "--only", "sim", "--no-sim"], "--only names the nodes to run; leave out --no-sim"),
+        (["up", "--only", "sim", "--perception"], "leave out --perception"),
+        (["node", "sim_node", "--only", "sim"], "semmap node runs one node; --only is for semmap up"),
+    ],
+)
+def test_what_only_cannot_mean_is_refused(tmp_path, capsys, words, said):
+    assert execute([*words, "--data", str(tmp_path / "d")]) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "d").exists()

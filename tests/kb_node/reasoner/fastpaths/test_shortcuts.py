@@ -1,9 +1,15 @@
+import random
+
 import pytest
 
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
-from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, exchange
+from nodes.kb_node.reasoner.fastpaths import paths
+from nodes.kb_node.reasoner.fastpaths.shortcuts import depart, depart_among, exchange
+from nodes.kb_node.reasoner.terms import TYPE
+from tests.kb_node.reasoner.fastpaths.test_many_edges import THEMES
 from tests.kb_node.reasoner.graphs import EVERYTHING, triple, triples
 from tests.kb_node.reasoner.test_reasoner import BASE, asserted_in, check_same
+from tests.kb_node.reasoner.worlds import World
 
 STAR = ':a a :C ; :free :a1 ; :free :old . :a1 :fundata "1.5"^^xsd:float ; :key2 "a" .'
 REST = ':old a :B ; :fundata "2.5"^^xsd:float .'
@@ -93,3 +99,64 @@ def test_what_is_no_number_is_refused_beside_another_value(text):
             reasoner.apply(insert=insert)
         assert not reasoner.mentioned({facts[0][0]})
     reasoner.apply(insert=facts[1:])
+
+
+def state(reasoner):
+    said = list(reasoner.asserted())
+    individuals = {term for s, p, o in said for term in (s, o) if p != TYPE and term[0] == "<"}
+    types = {individual: reasoner.types(individual) for individual in individuals}
+    return set(said), set(reasoner.inferred()), types, len(reasoner)
+
+
+def follow(monkeypatch, seed, theme):
+    """One world from which many go at once, and one from which they go by the rules; how many departed."""
+    world, random_ = World(seed, theme), random.Random(seed)
+    try:
+        pair = Reasoner(world.asserted), Reasoner(world.asserted)
+    except Inconsistent:
+        return 0
+    departed = []
+
+    def depart_and_tell(*of):
+        gone = depart_among(*of)
+        departed.extend(gone)
+        return gone
+
+    monkeypatch.setattr(paths, "depart", lambda *_: None)
+    monkeypatch.setattr(paths, "depart_among", depart_and_tell)
+    for _ in range(10):
+        insert = [world._fact() for _ in range(random_.randint(1, 12))]
+        if is_refused(pair[0], insert) or is_refused(pair[1], insert):
+            continue
+        said = sorted(set(pair[0].asserted()).difference(world.asserted))
+        subjects = sorted({t[0] for t in said})
+        going = set(random_.sample(subjects, random_.randint(0, len(subjects))))
+        delete = [t for t in said if t[0] in going or random_.random() < 0.1]
+        for reasoner, many in zip(pair, (1, 10**9), strict=True):
+            monkeypatch.setattr(paths, "MANY_GO", many)
+            reasoner.apply(delete=delete)
+        assert state(pair[0]) == state(pair[1]), delete
+    return len(departed)
+
+
+def is_refused(reasoner, insert):
+    try:
+        reasoner.apply(insert=insert)
+    except Inconsistent:
+        return True
+    return False
+
+
+@pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
+def test_many_who_go_leave_what_they_would_leave_by_the_rules(monkeypatch, theme):
+    assert sum(follow(monkeypatch, seed, theme) for seed in range(20)) > 10
+
+
+def test_of_many_those_go_who_concern_nobody(reasoner):
+    others = triples(":x a :C . :y a :C ; :free :x . :z a :C . :i6 :free :z . :w a :C ; :p :i6 .")
+    reasoner.apply(insert=others)
+    gone = [t for t in [*triples(STAR), *others] if t[0] != triple(":i6 a :C")[0]]
+    departed = depart_among(reasoner._engine._abox, gone)
+    assert set(departed) == {*triples(STAR), *triples(":x a :C . :y a :C ; :free :x .")}
+    left = [*asserted_in(BASE), *triples(REST), *(t for t in others if t not in departed)]
+    assert state(reasoner)[:3] == state(Reasoner(left))[:3]

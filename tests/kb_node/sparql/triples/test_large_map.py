@@ -14,7 +14,7 @@ from nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage import seed
 from nodes.kb_node.storage.journal import Journal
-from nodes.kb_node.storage.sqlite_file import NotWritten
+from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Sparql, Watch

@@ -1,0 +1,125 @@
+"""`python -m benchmarks.language [--ablations]`, or with `--evaluate DIR --predictions FILE`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from benchmarks.language import baseline, trials
+from benchmarks.language.scoring import Scores, scores
+from benchmarks.table import Row, as_json, lines
+from nodes.language.interpretation import shipped
+from nodes.training.language import corpus
+from nodes.training.language.corpus import Example
+
+_REACH = {  # by ten folds, and with one of the folders left out
+    "folds": (0.97, 0.93, 0.94, 0.91, 0.91, 0.96, 0.76),
+    "groups": (0.88, 0.80, 0.82, 0.74, 0.76, 0.94, 0.52),
+}
+_WHAT = (
+    "frames, micro F1",
+    "arguments in right frames, span F1",
+    "arguments in right frames, head F1",
+    "arguments end to end, span F1",
+    "arguments end to end, head F1",
+    "grounding, F1",
+    "whole command",
+)
+
+
+def _rows(title: str, found: Scores, reach: tuple[float, ...] | None = None) -> list[Row]:
+    values = (
+        found.frames,
+        found.spans_in_right_frames,
+        found.heads_in_right_frames,
+        found.spans,
+        found.heads,
+        found.groundings,
+        found.whole,
+    )
+    bounds = reach or (None,) * len(values)
+    return [
+        Row(f"{title}: {what}", value, "", bound, more=True)
+        for what, value, bound in zip(_WHAT, values, bounds, strict=True)
+    ]
+
+
+def rows(examples: list[Example], ablations: bool) -> list[Row]:
+    """All figures; whatever is read was not learnt from."""
+    found = _rows("ten folds", scores(trials.trial(trials.folds(examples))), _REACH["folds"])
+    found += _rows("a folder left out", scores(trials.trial(trials.groups(examples))), _REACH["groups"])
+    found += _rows("baseline", scores(baseline.pairs(trials.folds(examples))))
+    _, ms = trials.read(examples, shipped())
+    found.append(Row("a sentence, p50", ms, "ms", 5, 2))
+    if ablations:
+        found += _ablations(examples)
+    return found
+
+
+def _ablations(examples: list[Example]) -> Iterable[Row]:
+    def without_places(example: Example) -> Example:
+        return replace(example, things=tuple(replace(thing, at=None) for thing in example.things))
+
+    for name, splits in (("ten folds", trials.folds), ("a folder left out", trials.groups)):
+        for title, options in (
+            ("without patterns of ours", {"with_made": False}),
+            ("without the corpus", {"with_corpus": False}),
+            ("without where things are", {"changed": without_places}),
+        ):
+            whole = scores(trials.trial(splits(examples), **options)).whole  # type: ignore[arg-type]
+            yield Row(f"{name}, {title}: whole command", whole, "", more=True)
+
+
+def _evaluate(folder: Path, predictions: Path) -> Scores:
+    """Read every command of a folder with what ships, and write what was understood."""
+    pairs, _ = trials.read(corpus.read(folder), shipped())
+    said = [
+        {
+            "id": example.name,
+            "frames": [
+                {
+                    "frame": frame.name,
+                    "lexical_unit": list(frame.verb),
+                    "arguments": [
+                        {"role": a.role, "span": list(a.span), "head": a.head, "entity": a.entity}
+                        for a in frame.arguments
+                    ],
+                }
+                for frame in understood.frames
+            ],
+            "groundings": [{"token": g.token, "entity": g.entity} for g in understood.groundings],
+        }
+        for example, understood in pairs
+    ]
+    predictions.write_text(json.dumps(said, indent=1))
+    return scores(pairs)
+
+
+def main() -> None:
+    """Print the table, or evaluate what ships on any folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    data = Path(os.environ.get("SEMMAP_DATA", "../shared/data")) / "huric"
+    parser.add_argument("--data", type=Path, default=data, help="the corpus: a folder of .hrc files")
+    parser.add_argument("--ablations", action="store_true", help="also what each part earns")
+    parser.add_argument("--evaluate", type=Path, metavar="DIR", help="read these .hrc files with what ships")
+    parser.add_argument("--predictions", type=Path, metavar="FILE", help="where to write what was understood")
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    given: Any = parser.parse_args()
+    if (given.evaluate is None) != (given.predictions is None):
+        parser.error("--evaluate DIR and --predictions FILE belong together")
+    if given.evaluate is not None:
+        found = _rows(str(given.evaluate), _evaluate(given.evaluate, given.predictions))
+    else:
+        found = rows(corpus.read(given.data), given.ablations)
+    print(lines(found))
+    if given.json:
+        given.json.write_text(json.dumps([as_json(row) for row in found], indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,75 @@
+"""Learning from a part of the corpus and reading the rest."""
+
+from __future__ import annotations
+
+import random
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from statistics import median
+
+from nodes.language import lexicon
+from nodes.language.grounding import Scene, Thing, scene
+from nodes.language.interpretation import Interpreter
+from nodes.training.language import made
+from nodes.training.language.__main__ import TIMES_MADE
+from nodes.training.language.corpus import Example
+from nodes.training.language.household import household
+from nodes.training.language.learning import learn
+from schemas.language import Understood
+
+Pairs = list[tuple[Example, Understood]]
+Split = tuple[list[Example], list[Example]]  # to learn from, to be read
+
+
+def folds(examples: Sequence[Example], number: int = 10, seed: int = 1) -> Iterator[Split]:
+    """Every example is read once by what learnt from the other nine tenths."""
+    shuffled = random.Random(seed).sample(list(examples), len(examples))
+    for k in range(number):
+        yield [e for i, e in enumerate(shuffled) if i % number != k], shuffled[k::number]
+
+
+def groups(examples: Sequence[Example]) -> Iterator[Split]:
+    """Each folder is read by what learnt from the others."""
+    for group in sorted({example.group for example in examples}):
+        yield [e for e in examples if e.group != group], [e for e in examples if e.group == group]
+
+
+def trial(
+    splits: Iterator[Split],
+    *,
+    with_made: bool = True,
+    with_corpus: bool = True,
+    changed: Callable[[Example], Example] = lambda example: example,
+) -> Pairs:
+    """What is understood of all that is read. changed: what is done to every example, also while learning."""
+    known = household()
+    own = [changed(e) for e in made.examples(TIMES_MADE, known)] if with_made else []
+    pairs: Pairs = []
+    with tempfile.TemporaryDirectory() as folder:
+        frames, fillers = Path(folder) / "frames", Path(folder) / "roles"
+        for learnt_from, kept in splits:
+            learn([*(map(changed, learnt_from) if with_corpus else ()), *own], known, frames, fillers)
+            interpreter = Interpreter(str(frames), str(fillers))
+            pairs += [(e, interpreter.read(e.words, scene_of(changed(e)))) for e in kept]
+    return pairs
+
+
+def read(examples: Sequence[Example], interpreter: Interpreter) -> tuple[Pairs, float]:
+    """What is understood, from words and map alone, and milliseconds a sentence, p50, the map being known."""
+    pairs: Pairs = []
+    times = []
+    for example in examples:
+        there = scene_of(example)
+        began = time.perf_counter()
+        understood = interpreter.read(example.words, there)
+        times.append((time.perf_counter() - began) * 1e3)
+        pairs.append((example, understood))
+    return pairs, median(times)
+
+
+def scene_of(example: Example, seed: int = 0) -> Scene:
+    """The map of an example, its entities in no order: that of their names tells which are spoken of."""
+    things: list[Thing] = random.Random(f"{seed} {example.name}").sample(example.things, len(example.things))
+    return scene(things, household(), lexicon.load())

@@ -1,0 +1,47 @@
+"""The verbs that take words as people say them: `understand`."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from nodes.extern.cli.calling import complain, print_json, print_lines, talks
+from nodes.extern.cli.output import lu4r
+from schemas import errors
+
+if TYPE_CHECKING:
+    from nodes.extern.client import Client
+
+
+@click.command()
+@click.argument("text")
+@click.option(
+    "--format",
+    "format",
+    type=click.Choice(["text", "json", "lu4r"]),
+    default="text",
+    show_default=True,
+    help="lu4r: as the LU4R interpreter writes frames.",
+)
+@talks
+def understand(client: Client, text: str, format: str) -> None:
+    """Show what a command in words asks for, with the entities that it speaks of.
+
+    For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
+    exit status is 1 if no frame is understood.
+    """
+    found = client.understand(text)
+    if format == "json":
+        print_json(found)
+    elif format == "lu4r":
+        print_json(lu4r.document(found))
+    else:
+        print_lines([frame.text for frame in found.frames])
+    if found.unknown:
+        complain(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
+    if not found.frames:
+        if not found.unknown:
+            complain(f"no command is understood in '{text}'; try: take the cup from the table")
+        sys.exit(errors.Refused.exit_status)

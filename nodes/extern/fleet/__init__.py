@@ -1,0 +1,1 @@
+"""More than one robot: asked together, and mirrored into one SPARQL server."""

@@ -1,0 +1,57 @@
+"""Where robots' maps are in the frame that the fleet shares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from schemas import errors
+from schemas.endpoints import robot_name
+from schemas.entities import Pose, Quaternion
+
+_EXAMPLE = "robot1=12.5,3,0,1.57"
+
+
+class Frame(Struct, frozen=True):
+    """`fleet_from_map`: where the origin of a robot's map frame is in the fleet's frame [m], and how turned.
+
+    Both have z up, so that there is but a yaw [rad].
+    """
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+
+    def pose(self, pose: Pose) -> Pose:
+        """A pose in the map frame, in the fleet's."""
+        x, y, z = pose.position_m
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        position = (self.x + cos * x - sin * y, self.y + sin * x + cos * y, self.z + z)
+        return Pose(position_m=position, orientation_wxyz=self._turned(pose.orientation_wxyz))
+
+    def _turned(self, q: Quaternion) -> Quaternion:
+        w, x, y, z = q
+        c, s = math.cos(self.yaw / 2), math.sin(self.yaw / 2)
+        return (c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
+
+
+def read(words: Iterable[str]) -> dict[str, Frame]:
+    """Frames by robot, of words like `robot1=X,Y,Z,YAW`. Raises BadRequest."""
+    return dict(map(_read, words))
+
+
+def _read(word: str) -> tuple[str, Frame]:
+    robot, _, numbers = word.partition("=")
+    try:
+        x, y, z, yaw = map(float, numbers.split(","))
+    except ValueError:
+        raise errors.BadRequest(
+            f"'{word}' is not a robot's frame; give its origin in the fleet's frame [m] and its yaw [rad],"
+            f" as in {_EXAMPLE}"
+        ) from None
+    if not robot or not all(map(math.isfinite, (x, y, z, yaw))):
+        raise errors.BadRequest(f"'{word}' is not a robot's frame; example: {_EXAMPLE}")
+    return robot_name(robot), Frame(x, y, z, yaw)

@@ -1,0 +1,60 @@
+"""What a command in words means in the map as it is: answers `understand`."""
+
+from __future__ import annotations
+
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.language import lexicon
+from nodes.language.grounding import Scene, Thing, scene
+from nodes.language.interpretation import shipped
+from nodes.language.vocabulary import Vocabulary, vocabulary
+from nodes.language.words import split
+from schemas import errors
+from schemas.commands import Understand
+from schemas.entities import Entity
+from schemas.language import Understood
+
+_MOST_WORDS = 200  # of a command: a minute of speech
+
+
+class Understanding:
+    """Reads commands in the light of the map; owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap) -> None:
+        self._map = semantic_map
+        self._lexicon = lexicon.load()
+        self._classes: ClassTable | None = None
+        self._vocabulary: Vocabulary | None = None
+        self._scene: tuple[int, Scene] | None = None
+
+    def understand(self, query: Understand) -> Understood:
+        """The frames of a command. Raises BadRequest for no words or too many."""
+        words = split(query.text)
+        if not words:
+            raise errors.BadRequest("there are no words in the text")
+        if len(words) > _MOST_WORDS:
+            raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
+        return shipped().read(words, self._there())
+
+    def _there(self) -> Scene:
+        """What there is to be spoken of, after the last commit."""
+        if self._classes is not self._map.classes:
+            self._classes, self._scene = self._map.classes, None
+            self._vocabulary = _named(self._map.classes, self._lexicon)
+        assert self._vocabulary is not None
+        if self._scene is None or self._scene[0] != self._map.seq:
+            things = map(_thing, self._map.entities())
+            self._scene = (self._map.seq, scene(things, self._vocabulary, self._lexicon))
+        return self._scene[1]
+
+
+def _named(classes: ClassTable, known: lexicon.Lexicon) -> Vocabulary:
+    rows = classes.rows
+    labels = [(row.name, text) for row in rows for text in (*row.labels.values(), *row.also, row.name)]
+    return vocabulary(labels, ((row.name, above) for row in rows for above in row.parents), known)
+
+
+def _thing(entity: Entity) -> Thing:
+    references = filter(None, (entity.preferred_reference, *entity.alternative_references, entity.name))
+    at = None if entity.pose is None else entity.pose.position_m
+    return Thing(entity.name, entity.class_, tuple(references), at)

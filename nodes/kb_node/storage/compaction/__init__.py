@@ -1,0 +1,1 @@
+"""Compaction: a snapshot takes the place of the oldest part of the history."""

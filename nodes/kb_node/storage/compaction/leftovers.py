@@ -1,0 +1,48 @@
+"""What a snapshot has taken the place of is deleted bit by bit, so that commits can come between."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nodes.kb_node.storage.journal import Journal
+
+_ROWS: Final = 2000
+"""At a time: to delete them takes some tens of milliseconds."""
+_WHAT: Final = "the deletion of compacted commits"
+
+
+def are_there(journal: Journal) -> bool:
+    """Is something still there that was compacted?"""
+    with journal.file.reading() as db:
+        (first,) = db.execute("SELECT min(seq) FROM commits").fetchone()
+    return first is not None and first < journal.first
+
+
+def delete(journal: Journal) -> None:
+    """Delete them. What an end in the middle leaves is not looked at, and goes with the next call.
+
+    Raises NotWritten.
+    """
+    until = journal.beginning.seq
+    while _commits_deleted(journal, until):
+        pass
+    _delete_touches(journal, until)
+    journal.file.shrink()
+
+
+def _commits_deleted(journal: Journal, until: int) -> int:
+    statement = "DELETE FROM commits WHERE seq <= ? AND seq < (SELECT min(seq) FROM commits) + ?"
+    with journal.file.writing(_WHAT) as db:
+        return db.execute(statement, (until, _ROWS)).rowcount
+
+
+def _delete_touches(journal: Journal, until: int) -> None:
+    name: str | None = ""
+    while name is not None:
+        with journal.file.writing(_WHAT) as db:
+            query = "SELECT name FROM touches WHERE name > ? ORDER BY name LIMIT 1 OFFSET ?"
+            upto = (db.execute(query, (name, _ROWS)).fetchone() or (None,))[0]
+            after = "name > ?" if name else "name >= ?"
+            statement = f"DELETE FROM touches WHERE seq <= ? AND {after} AND (? IS NULL OR name <= ?)"
+            db.execute(statement, (until, name, upto, upto))
+            name = upto

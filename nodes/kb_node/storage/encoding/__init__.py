@@ -1,0 +1,1 @@
+"""How commits and checkpoints are laid out and compressed on disk."""

@@ -1,0 +1,115 @@
+"""The reasoner's columns as they stand in a checkpoint: texts and numbers in frames that are compressed."""
+
+from __future__ import annotations
+
+import sys
+from array import array
+from collections.abc import Callable, Iterable, Iterator
+from typing import Final
+
+from msgspec import Struct, msgpack
+
+from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
+from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+
+_TERMS: Final = 100_000
+_NUMBERS: Final = 1 << 20
+"""In a frame."""
+
+
+class _Head(Struct, frozen=True, array_like=True):
+    """What is not long."""
+
+    schema: bytes
+    size: int
+    classes: list[str]
+    properties: list[str]
+    kinds: list[KindSaid]
+    reasons: list[tuple[int, list[Claimed]]]
+
+
+class StoredColumns(Struct, frozen=True, array_like=True):
+    """Columns in frames."""
+
+    head: bytes
+    terms: list[bytes]
+    source: bytes
+    numbers: list[list[bytes]]
+    """Frame by frame: those of nodes, of edges, and the links of edges that leave and that enter."""
+
+
+_heads = msgpack.Decoder(_Head)
+_terms = msgpack.Decoder(list[str])
+
+
+def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:
+    """Begin to compress columns; the function that is returned waits for the outcome."""
+    head = _Head(
+        columns.schema, columns.size, columns.classes, columns.properties, columns.kinds, columns.reasons
+    )
+    dense_head, source = beside.dense(msgpack.encode(head)), beside.dense(columns.source)
+    terms = [
+        beside.dense(msgpack.encode(columns.terms[start : start + _TERMS]))
+        for start in range(0, len(columns.terms), _TERMS)
+    ]
+    numbers = [[beside.dense(frame) for frame in _frames(column)] for column in _columns(columns)]
+    return lambda: StoredColumns(
+        dense_head.result(),
+        [frame.result() for frame in terms],
+        source.result(),
+        [[frame.result() for frame in column] for column in numbers],
+    )
+
+
+def restore(stored: StoredColumns, progress: Callable[[], None]) -> Columns:
+    """The columns. `progress` is called between frames."""
+    (head,) = map(_heads.decode, unpacked([stored.head]))
+    (source,) = unpacked([stored.source])
+    terms: list[str] = []
+    for frame in unpacked(stored.terms):
+        progress()
+        terms += _terms.decode(frame)
+    columns: list[array[int]] = []
+    for frames in stored.numbers:
+        column = array("i")
+        for frame in unpacked(frames):
+            progress()
+            column.frombytes(frame)
+        columns.append(_in_order(column))
+    kind, places, subject, predicate, object_, *links = columns
+    return Columns(
+        schema=head.schema,
+        size=head.size,
+        classes=head.classes,
+        properties=head.properties,
+        kinds=head.kinds,
+        reasons=head.reasons,
+        terms=terms,
+        kind=kind,
+        places=places,
+        subject=subject,
+        predicate=predicate,
+        object=object_,
+        source=source,
+        out=tuple(links[:4]),
+        into=tuple(links[4:]),
+    )
+
+
+def _columns(columns: Columns) -> Iterable[array[int]]:
+    yield from (columns.kind, columns.places, columns.subject, columns.predicate, columns.object)
+    yield from columns.out
+    yield from columns.into
+
+
+def _frames(column: array[int]) -> Iterator[bytes]:
+    for start in range(0, len(column), _NUMBERS):
+        yield _in_order(column[start : start + _NUMBERS]).tobytes()
+
+
+def _in_order(numbers: array[int]) -> array[int]:
+    """32 bits each, the lowest first; a column that is given is not needed any more."""
+    assert numbers.itemsize == 4
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    return numbers

@@ -1,0 +1,41 @@
+"""The checkpoints in a journal: the whole map after some commit, for a start to go on from."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from nodes.kb_node.storage.encoding import checkpoint_encoding
+from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from nodes.kb_node.storage.journal import index_check
+from nodes.kb_node.storage.journal.digests import chained, is_sound
+from nodes.kb_node.storage.journal.sqlite_file import JournalFile
+
+log = logging.getLogger(__name__)
+
+
+def keep(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Callable[[], None]) -> None:
+    """Write `checkpoint` down, in a journal that begins after commit `begins`; of the older ones one stays.
+
+    Raises NotWritten, with nothing changed, when the disk does not take it.
+    """
+    body = checkpoint_encoding.encode(checkpoint, progress)
+    row = (checkpoint.seq, body, chained(b"", body))
+    with file.writing(f"the checkpoint after commit {checkpoint.seq}") as db:
+        db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
+        db.execute(
+            "DELETE FROM checkpoints WHERE seq NOT IN (SELECT seq FROM checkpoints ORDER BY seq DESC LIMIT 2)"
+        )
+        index_check.write(db, begins, checkpoint.seq)
+
+
+def newest(file: JournalFile, *, begins: int, progress: Callable[[], None]) -> Checkpoint | None:
+    """The newest that is sound, in a journal that begins after commit `begins`; None if there is none."""
+    with file.reading() as db:
+        for seq, body, digest in db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
+            if is_sound(b"", body, digest):
+                found = checkpoint_encoding.decode(body, progress)
+                if found.seq == seq >= begins:
+                    return found
+            log.warning("%s: the checkpoint after commit %d is damaged and not used", file.path, seq)
+    return None

@@ -1,0 +1,54 @@
+"""Commits as they stand in the file, read a page at a time and proved by their digests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from nodes.kb_node.storage.journal.digests import is_sound
+from nodes.kb_node.storage.journal.sqlite_file import JournalFile, mend
+from schemas import errors
+
+PAGE: Final = 256
+
+
+class Damaged(errors.Refused):
+    """A commit is not as it was written. `last_good` is the number of the one before."""
+
+    def __init__(self, path: Path, seq: int) -> None:
+        super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {mend(path)}")
+        self.last_good = seq - 1
+
+
+class Row(NamedTuple):
+    """A commit as it stands in the file."""
+
+    seq: int
+    id: str
+    body: bytes
+    digest: bytes
+
+
+def sound(file: JournalFile, *, after: int, before: bytes, size: int = PAGE) -> Iterator[Row]:
+    """The commits later than `after`, which has the digest `before`. Raises Damaged at the first damaged."""
+    seq = after
+    while rows := page(file, seq, size):
+        for row in rows:
+            seq += 1
+            if row.seq != seq or not is_sound(before, row.body, row.digest):
+                raise Damaged(file.path, seq)
+            before = row.digest
+            yield row
+
+
+def page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
+    """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
+    query = "SELECT seq, command_id, body, digest FROM commits WHERE seq > ? ORDER BY seq LIMIT ?"
+    try:
+        with file.reading() as db:
+            return list(map(Row._make, db.execute(query, (after, size))))
+    except errors.Refused:
+        if size == 1:
+            raise Damaged(file.path, after + 1) from None
+        return page(file, after, 1)

@@ -1,0 +1,1 @@
+"""Repair: what of a damaged journal is sound, and a journal made of that."""

@@ -1,0 +1,106 @@
+"""What of a damaged journal is as it was written: each commit is proved by its own digest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+
+from nodes.kb_node.documents import rdf
+from nodes.kb_node.storage.encoding import dense
+from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
+from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.journal.digests import chained
+from nodes.kb_node.storage.journal.rows import Row
+from schemas import errors
+from schemas.commits import Commit
+from schemas.explanations import Triple
+
+
+def commits(journal: Journal) -> Iterator[tuple[int, Commit | None, bytes | None]]:
+    """The number of each commit, the commit, and the TBox if it replaced that; None for a damaged one.
+
+    A commit whose TBox is damaged counts as damaged, too.
+    """
+    before, row = journal.digest(journal.beginning.seq), row_of(journal, journal.first)
+    for seq in range(journal.first, _likely_last(journal) + 1):
+        following = row_of(journal, seq + 1)
+        commit = None if row is None else _proved(seq, row, before, following)
+        tbox = None
+        if commit is not None and commit.tbox:
+            tbox = tbox_of(journal, seq)
+            commit = commit if tbox is not None else None
+        yield seq, commit, tbox
+        before, row = b"" if row is None else row.digest, following
+
+
+def row_of(journal: Journal, seq: int) -> Row | None:
+    """A commit as it stands in the file, sound or not; None where it cannot be read."""
+    query = "SELECT seq, command_id, body, digest FROM commits WHERE seq = ?"
+    try:
+        with journal.file.reading() as db:
+            found = db.execute(query, (seq,)).fetchone()
+    except errors.Refused:
+        return None
+    is_one = found is not None and isinstance(found[2], bytes) and isinstance(found[3], bytes)
+    return Row._make(found) if is_one else None
+
+
+def _likely_last(journal: Journal) -> int:
+    """The number of the last commit that anything in the file tells of, damaged or not."""
+    found = [journal.beginning.seq]
+    for table in ("commits", "touches", "checkpoints", "tboxes"):
+        with suppress(errors.Refused), journal.file.reading() as db:
+            (seq,) = db.execute(f"SELECT max(seq) FROM {table}").fetchone()
+            found.append(seq if isinstance(seq, int) else 0)
+    while row_of(journal, max(found) + 1) is not None:
+        found.append(max(found) + 1)
+    return max(found)
+
+
+def tbox_of(journal: Journal, seq: int) -> bytes | None:
+    """The TBox that commit `seq` let hold; None if it did not, or that is damaged."""
+    with suppress(errors.Refused):
+        if seq in journal.tbox_changes(after=seq - 1):
+            return journal.tbox(seq)
+    return None
+
+
+def after(journal: Journal, seq: int, checkpoint: Checkpoint) -> frozenset[Triple] | None:
+    """The ABox after commit `seq`, from the map after a later one; None if a commit between is damaged."""
+    try:
+        triples = {*checkpoint.said(), *_tbox(journal, checkpoint.seq)}
+        for number in range(checkpoint.seq, seq, -1):
+            row = row_of(journal, number)
+            commit = None if row is None else _proved(number, row, b"", row_of(journal, number + 1))
+            if commit is None:
+                return None
+            triples.difference_update(commit.inserted)
+            triples.update(commit.retracted)
+        return frozenset(triples.difference(_tbox(journal, seq)))
+    except errors.Refused:
+        return None
+
+
+def _tbox(journal: Journal, seq: int) -> list[Triple]:
+    return rdf.parse(journal.tbox(seq), "the TBox")
+
+
+def _proved(seq: int, row: Row, before: bytes, following: Row | None) -> Commit | None:
+    """The commit, if its digest says that it is as it was written; or that of the next one does.
+
+    `before` is the digest of the commit before, if there is one.
+    """
+    try:
+        commit: Commit = dense.decode(row.body, Commit)
+        own = bytes.fromhex(commit.digest)
+    except (errors.BadRequest, ValueError):
+        return None
+    digests = {chained(digest, row.body) for digest in (own, before)}
+    if commit.seq != seq or not (row.digest in digests or (following and _follows(following, digests))):
+        return None
+    return commit
+
+
+def _follows(row: Row, digests: set[bytes]) -> bool:
+    """Was a commit written after one with one of these digests?"""
+    return any(chained(digest, row.body) == row.digest for digest in digests)

@@ -1,0 +1,1 @@
+"""Understanding what people say about a map: words, phrases, frames, entities."""

@@ -1,0 +1,1 @@
+"""Learning to understand commands: the corpus, examples of our own, and what is learnt from both."""

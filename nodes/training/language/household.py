@@ -1,0 +1,34 @@
+"""What things are called in the household TBox."""
+
+from __future__ import annotations
+
+import functools
+from importlib import resources
+
+import rdflib
+from rdflib.namespace import OWL, RDF, RDFS
+
+from nodes.language import lexicon
+from nodes.language.vocabulary import Vocabulary, vocabulary
+
+
+@functools.cache
+def household(language: str = "english") -> Vocabulary:
+    """The classes of `household.ttl`, by their labels in all of its languages."""
+    graph = rdflib.Graph().parse(str(resources.files("ontology") / "household.ttl"))
+    classes = sorted(c for c in graph.subjects(RDF.type, OWL.Class) if isinstance(c, rdflib.URIRef))
+    labels = [
+        (_local(c), str(label)) for c in classes for label in sorted(graph.objects(c, RDFS.label), key=str)
+    ]
+    named = [(_local(c), _local(c)) for c in classes]
+    above = [
+        (_local(c), _local(superclass))
+        for c in classes
+        for superclass in graph.objects(c, RDFS.subClassOf)
+        if isinstance(superclass, rdflib.URIRef)
+    ]
+    return vocabulary([*labels, *named], above, lexicon.load(language))
+
+
+def _local(term: object) -> str:
+    return str(term).rsplit("#", 1)[-1]

@@ -1,0 +1,57 @@
+"""Fitting the two taggers of `nodes.language` to examples: linear-chain conditional random fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
+
+import pycrfsuite
+
+from nodes.language import grounding, lexicon, predicates, roles, slots
+from nodes.language.sentence import Sentence, sentence
+from nodes.language.vocabulary import Vocabulary
+from nodes.training.language.corpus import Example, Filled
+
+_PARAMETERS: Final = {"c1": 0.05, "c2": 0.05, "max_iterations": 80, "feature.possible_transitions": True}
+
+
+def learn(
+    examples: Iterable[Example], known: Vocabulary, frames: Path, fillers: Path, language: str = "english"
+) -> None:
+    """Write what tells frames and what tells roles; the same files for the same examples."""
+    words = lexicon.load(language)
+    of_frames, of_roles = pycrfsuite.Trainer(verbose=False), pycrfsuite.Trainer(verbose=False)
+    for example in examples:
+        s = sentence(example.words, grounding.scene(example.things, known, words), words)
+        of_frames.append(predicates.features(s), _frame_labels(example))
+        verbs = [_verb(s, frame) for frame in example.frames]
+        for frame, verb in zip(example.frames, verbs, strict=True):
+            others = [other for other in verbs if other != verb]
+            of_roles.append(roles.features(s, verb, frame.name, others), _role_labels(len(s.words), frame))
+    for trainer, path in ((of_frames, frames), (of_roles, fillers)):
+        trainer.set_params(_PARAMETERS)
+        trainer.train(str(path))
+
+
+def _verb(s: Sentence, frame: Filled) -> int:
+    """The word that roles are seen from, as in `interpretation`."""
+    first, last = frame.verb[0] - 1, frame.verb[-1] - 1
+    return last if s.words[first].text == "there" else first
+
+
+def _frame_labels(example: Example) -> list[str]:
+    labels = ["O"] * len(example.words)
+    for frame in example.frames:
+        for token in frame.verb:
+            labels[token - 1] = frame.name
+    return labels
+
+
+def _role_labels(length: int, frame: Filled) -> Sequence[str]:
+    labels = ["O"] * length
+    for role in frame.arguments:
+        slot = slots.slot(frame.name, role.name)
+        labels[role.first - 1] = f"B-{slot}"
+        labels[role.first : role.last] = [f"I-{slot}"] * (role.last - role.first)
+    return labels

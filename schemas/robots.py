@@ -1,0 +1,29 @@
+"""What several robots answer to one question."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+from msgspec import Struct
+
+from schemas import errors
+
+R = TypeVar("R")
+
+
+class Answer(Struct, Generic[R], frozen=True, kw_only=True):
+    """A robot's reply, true of its map after commit `commit`; or the `error` that came instead of it."""
+
+    robot: str
+    """Its name; empty for a system that has none."""
+    commit: int | None = None
+    reply: R | None = None
+    error: errors.ErrorMessage | None = None
+
+    @property
+    def value(self) -> R:
+        """The reply. Raises the error that came instead."""
+        if self.error is not None:
+            raise errors.from_message(self.error)
+        assert self.reply is not None
+        return self.reply

@@ -1,0 +1,15 @@
+"""Several robots: asked together, or mirrored into one SPARQL server and asked there.
+
+with semmap.fleet.robots("arm*") as robots:
+    for answer in robots.list("Cup"):
+        print(answer.robot, answer.commit, answer.value)
+"""
+
+from nodes.extern.fleet.asking import CopiedRobot, FleetAnswer, sparql
+from nodes.extern.fleet.frames import Frame
+from nodes.extern.fleet.mirror import Mirror
+from nodes.extern.fleet.mirroring import mirror
+from nodes.extern.fleet.robots import Robots, robots
+from schemas.robots import Answer
+
+__all__ = ["Answer", "CopiedRobot", "FleetAnswer", "Frame", "Mirror", "Robots", "mirror", "robots", "sparql"]

@@ -1,0 +1,47 @@
+"""Commands in words, from the command line and the client."""
+
+import json
+
+import pytest
+
+from schemas import errors
+from tests.conftest import running
+from tests.extern.cli.verbs.test_ask import said
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(tmp_path_factory.mktemp("words"), "--abox", "none", "--no-sim", "--no-record") as system:
+        with system.client() as client:
+            client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(4, 4, 3))
+            client.add("Bottle", "bottle1", at=(1, 1, 0), ref="lemonade")
+        yield system
+
+
+def test_a_command_is_understood_in_the_light_of_the_map(system, monkeypatch):
+    text, status = said(system, monkeypatch, "understand", "Bring the lemonade to the kitchen, please!")
+    assert (text, status) == ("Bringing(Theme=bottle1, Goal=kitchen1)\n", 0)
+    with system.client() as client:
+        client.update("bottle1", ref="wine")
+        assert client.understand("bring the wine to the kitchen").frames[0].arguments[0].entity == "bottle1"
+        assert client.understand("bring the beer").frames[0].text == 'Bringing(Theme="the beer")'
+        client.update("bottle1", ref="lemonade")
+
+
+def test_other_forms(system, monkeypatch):
+    text, _ = said(system, monkeypatch, "understand", "grab the lemonade", "--format", "lu4r")
+    frame = json.loads(text)["frames"][0]
+    assert (frame["cfr"], frame["groundedCfr"]) == ('TAKING(theme:"the lemonade")', "TAKING(theme:bottle1)")
+    text, _ = said(system, monkeypatch, "understand", "grab the lemonade", "--format", "json")
+    assert json.loads(text)["frames"][0]["arguments"][0]["span"] == [2, 3]
+
+
+def test_what_is_no_command_says_so(system, monkeypatch, capsys):
+    text, status = said(system, monkeypatch, "understand", "frobnicate the lemonade")
+    assert (text, status) == ("", 1)
+    assert "unknown verb: frobnicate" in capsys.readouterr().err
+    text, status = said(system, monkeypatch, "understand", "🤖")
+    assert (text, status) == ("", 2)
+    assert "there are no words" in capsys.readouterr().err
+    with system.client() as client, pytest.raises(errors.BadRequest, match="at most 200 words"):
+        client.understand("go " * 300)

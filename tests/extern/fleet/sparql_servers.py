@@ -1,0 +1,84 @@
+"""Real SPARQL servers for tests: Oxigraph's own, and Virtuoso where it is installed."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyoxigraph
+
+from nodes.extern.fleet import facts as f
+from nodes.extern.testing import free_endpoint
+
+Graph = frozenset[tuple[str, str, str]]
+
+
+class Oxigraph:
+    """`oxigraph serve` on a folder and a port; it can be killed and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.port = int(free_endpoint().rpartition(":")[2])
+        self.update_url = f"http://127.0.0.1:{self.port}/update"
+        self.query_url = f"http://127.0.0.1:{self.port}/query"
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Returns when it answers."""
+        binary = Path(sys.executable).with_name("oxigraph")
+        bind = f"127.0.0.1:{self.port}"
+        self.process = subprocess.Popen(
+            [binary, "serve", "--location", self.folder, "--bind", bind],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        deadline_s = time.monotonic() + 30
+        while True:
+            with contextlib.suppress(OSError):
+                urllib.request.urlopen(f"{self.query_url}?query=ASK%7B%7D", timeout=5).close()
+                return
+            assert time.monotonic() < deadline_s, "oxigraph did not start"
+            assert self.process.poll() is None, "oxigraph ended"
+            time.sleep(0.02)
+
+    def kill(self) -> None:
+        """As by kill -9."""
+        assert self.process is not None
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def graph(self, robot: str) -> Graph:
+        """What is in a robot's graph, in the spelling of Oxigraph."""
+        url = f"{self.query_url.removesuffix('query')}store?graph={f.graph(robot)[1:-1]}"
+        request = urllib.request.Request(url, headers={"Accept": "application/n-triples"})
+        try:
+            with urllib.request.urlopen(request, timeout=30) as reply:
+                return spelled(reply.read())
+        except urllib.error.HTTPError as error:
+            if error.code == 404:
+                return frozenset()
+            raise
+
+
+@contextlib.contextmanager
+def oxigraph(folder: Path) -> Iterator[Oxigraph]:
+    """A server that answers; killed at the end."""
+    server = Oxigraph(folder)
+    server.start()
+    try:
+        yield server
+    finally:
+        server.kill()
+
+
+def spelled(ntriples: bytes) -> Graph:
+    """A document as Oxigraph spells it: it keeps values of numbers, not how they were written."""
+    store = pyoxigraph.Store()
+    store.load(ntriples, format=pyoxigraph.RdfFormat.N_TRIPLES)
+    return frozenset((str(q.subject), str(q.predicate), str(q.object)) for q in store)

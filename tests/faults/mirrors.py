@@ -1,0 +1,82 @@
+"""A mirror of the robot's map, or the SPARQL server that it writes to, is killed while commits stream in."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+from nodes.extern.fleet import asking
+from schemas import errors
+from tests.extern.fleet.sparql_servers import Oxigraph, oxigraph, spelled
+from tests.faults.ground import Ground, wait_for
+from tests.faults.table import SMALL, Fault
+
+_ROBOT = "robot1"
+_KILLS = 3
+
+
+def _kill_again_and_again(ground: Ground, *, server_too: bool) -> None:
+    """In the end the graph is the robot's export, at the same commit, and it was copied but once."""
+    told: list[str] = []
+    with tempfile.TemporaryDirectory() as folder, oxigraph(Path(folder)) as server:
+        for _ in range(_KILLS):
+            with _mirror(ground, server, told):
+                time.sleep(random.uniform(1.0, 2.0))
+                if server_too:
+                    server.kill()
+                    time.sleep(random.uniform(0.0, 0.5))
+                    server.start()
+                    time.sleep(random.uniform(0.5, 1.0))
+        assert ground.reckon() == (0, 0)
+        with _mirror(ground, server, told):
+            _require_same(ground, server)
+    ground.load_again()
+    assert sum("copied at commit" in line for line in told) <= 1, told
+
+
+@contextlib.contextmanager
+def _mirror(ground: Ground, server: Oxigraph, told: list[str]) -> Iterator[None]:
+    """`semmap fleet mirror`, which ends by kill -9."""
+    command = [Path(sys.executable).with_name("semmap"), "fleet", "mirror", "--connect", ground.endpoint]
+    where = ["--sparql-update", server.update_url]
+    with tempfile.TemporaryFile("w+") as said:
+        with subprocess.Popen([*command, *where], stdout=said, stderr=said) as process:
+            try:
+                yield
+            finally:
+                process.send_signal(signal.SIGKILL)
+        said.seek(0)
+        told += said.read().splitlines()
+
+
+def _require_same(ground: Ground, server: Oxigraph) -> None:
+    with ground.client() as client:
+        document = client.export("ntriples")
+
+        def is_there() -> bool:
+            with contextlib.suppress(errors.NoAnswer):
+                answer = asking.sparql("ASK {}", server.query_url, _ROBOT, reachable=False)
+                return answer.robots[0].commit == document.seq
+            return False
+
+        wait_for(is_there, "the mirror is where the robot is")
+        assert client.status().commit == document.seq
+        there, expected = server.graph(_ROBOT), spelled(document.content)
+        assert there == expected, (sorted(there - expected)[:3], sorted(expected - there)[:3])
+
+
+MIRRORS: tuple[Fault, ...] = tuple(
+    Fault(name, strike, often=2, words=(*SMALL, "--namespace", _ROBOT))
+    for name, strike in (
+        ("fleet mirror killed, 3 times", partial(_kill_again_and_again, server_too=False)),
+        ("fleet mirror and SPARQL server killed, 3 times", partial(_kill_again_and_again, server_too=True)),
+    )
+)

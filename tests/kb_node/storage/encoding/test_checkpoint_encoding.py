@@ -1,0 +1,51 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nodes.kb_node.storage.encoding import checkpoint_encoding, dense
+from nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint, decode, encode
+from schemas import codec
+from tests.recorder.messages import entity
+
+TERMS = st.sampled_from(["<urn:a>", "<urn:b>", '"a text"@en', '"é\\n"', "_:b1"])
+TRIPLES = st.lists(st.tuples(TERMS, TERMS, TERMS), max_size=20).map(tuple)
+
+
+@given(TRIPLES)
+def test_what_is_encoded_is_decoded(triples):
+    checkpoint = Checkpoint(seq=7, triples=triples, entities=(entity("cup1", "Cup"),), read_by=b"1")
+    assert decode(encode(checkpoint)) == checkpoint
+
+
+def test_frames_follow_one_another(monkeypatch):
+    monkeypatch.setattr(checkpoint_encoding, "_TRIPLES", 2)
+    monkeypatch.setattr(checkpoint_encoding, "_ENTITIES", 2)
+    told = []
+    checkpoint = Checkpoint(
+        seq=7,
+        triples=tuple(("<urn:s>", f"<urn:p{i % 3}>", f"<urn:o{i}>") for i in range(7)),
+        entities=tuple(entity(f"cup{i}", "Cup") for i in range(5)),
+    )
+    body = encode(checkpoint, lambda: told.append("write"))
+    assert decode(body, lambda: told.append("read")) == checkpoint
+    assert told.count("write") == told.count("read") == 4 + 3
+
+
+def test_equal_terms_are_one_object():
+    triples = tuple((f"<urn:{s}>", "<urn:p>", "<urn:o>") for s in "ab")
+    a, b = decode(encode(Checkpoint(seq=1, triples=triples))).triples
+    assert a[1] is b[1]
+    assert a[2] is b[2]
+
+
+def test_entities_share_what_they_have_in_common():
+    cups = (entity("a", "Cup"), entity("b", "Cup"))
+    a, b = decode(encode(Checkpoint(seq=1, entities=cups))).entities
+    assert (a, b) == cups
+    assert a.types is b.types
+    assert a.provenance is b.provenance
+
+
+def test_what_an_older_version_wrote_is_read():
+    checkpoint = Checkpoint(seq=7, triples=(("<urn:a>", "<urn:b>", '"c"'),), entities=(entity("a", "Cup"),))
+    assert decode(codec.encode(checkpoint)) == checkpoint
+    assert decode(dense.encode(checkpoint, dense_from=1)) == checkpoint

@@ -1,0 +1,48 @@
+import zlib
+
+import pytest
+
+from nodes.kb_node.storage.encoding import commit_encoding, dense
+from ontology import vocabulary as v
+from schemas import codec
+from schemas.commits import Commit, Departed
+from tests.kb_node.home import chair, transaction
+
+LONG = "x" * (64 << 20)
+
+
+def commit(*triples, **fields):
+    return Commit(seq=7, stamp_ns=1, id="x", source="file", inserted=triples, **fields)
+
+
+def test_a_body_that_was_begun_is_the_whole(semantic_map):
+    changed = semantic_map.commit(transaction("a", chair())).changed
+    triples = [(v.entity_iri(f"c{i}"), v.RDF_TYPE, v.dm("Chair")) for i in range(2000)]
+    begun = commit_encoding.early(commit(*triples), "")
+    whole = commit(*triples, changed=changed * 300, removed=(Departed(name="b", types=("Chair",)),))
+    body = begun.finish(whole).result()
+    assert zlib.decompress(body) == codec.encode(whole)
+    assert dense.decode(body, Commit) == whole
+    assert len(body) < len(codec.encode(whole)) / 10
+
+
+def test_one_without_effects(semantic_map):
+    whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
+    assert zlib.decompress(commit_encoding.early(whole, "").finish(whole).result()) == codec.encode(whole)
+
+
+@pytest.mark.parametrize(("label", "name"), [(LONG, "b"), ("x", LONG)], ids=["triples", "effects"])
+def test_one_of_very_long_texts(label, name):
+    triples = [(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(1000)]
+    whole = commit(
+        *triples,
+        (v.entity_iri("d"), v.RDFS_LABEL, v.literal(label)),
+        removed=(Departed(name=name, types=()),),
+    )
+    body = commit_encoding.early(whole, "").finish(whole).result()
+    is_the_whole = dense.decode(body, Commit) == whole  # too long to be shown
+    assert is_the_whole
+
+
+def test_a_small_commit_is_written_at_once():
+    assert commit_encoding.early(commit(*chair()), "") is None

@@ -1,0 +1,115 @@
+import shutil
+import sqlite3
+import threading
+
+import pytest
+
+from nodes.kb_node.storage.journal.sqlite_file import InUse, JournalFile, NotWritten
+from schemas import errors
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "journal.sqlite"
+    with sqlite3.connect(path) as db:
+        db.execute("CREATE TABLE numbers (number INTEGER PRIMARY KEY)")
+    db.close()
+    opened = JournalFile(path)
+    yield opened
+    opened.close()
+
+
+def write(file, *several):
+    with file.writing("numbers") as db:
+        for number in several:
+            db.execute("INSERT INTO numbers VALUES (?)", (number,))
+
+
+def write_together(file, *several):
+    with file.writing("all of them"):
+        for number in several:
+            write(file, number)
+
+
+def numbers(file):
+    with file.reading() as db:
+        return [number for (number,) in db.execute("SELECT number FROM numbers ORDER BY number")]
+
+
+def test_a_transaction_is_synced_to_the_disk(file):
+    with file.reading() as db:
+        assert db.execute("PRAGMA synchronous").fetchone() == (2,)
+        assert db.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def log_of(folder):
+    return folder / "journal.sqlite-wal"
+
+
+def test_the_log_never_grows(file, tmp_path):
+    before = log_of(tmp_path).stat().st_size
+    for number in range(1500):
+        write(file, number)
+    assert log_of(tmp_path).stat().st_size == before
+    assert numbers(file) == list(range(1500))
+
+
+def test_what_was_written_is_there_after_a_kill(file, tmp_path):
+    write(file, 1)
+    left = tmp_path / "left"
+    left.mkdir()
+    for path in (tmp_path / "journal.sqlite", log_of(tmp_path)):
+        shutil.copy(path, left)
+    again = JournalFile(left / "journal.sqlite")
+    write(again, 2)
+    assert numbers(again) == [1, 2]
+    again.close()
+    assert not log_of(left).exists()
+
+
+@pytest.mark.parametrize("kind", [write, write_together])
+def test_a_transaction_is_all_or_nothing(file, kind):
+    kind(file, 1, 2)
+    with pytest.raises(NotWritten, match=r"numbers could not be written to .*journal\.sqlite: UNIQUE"):
+        kind(file, 3, 3)
+    assert numbers(file) == [1, 2]
+
+
+def fail_after(file, number):
+    with file.writing("a number"):
+        write(file, number)
+        raise ZeroDivisionError
+
+
+def test_so_it_is_whatever_goes_wrong_within(file):
+    with pytest.raises(ZeroDivisionError):
+        fail_after(file, 1)
+    assert numbers(file) == []
+
+
+def test_a_thread_waits_until_another_has_written(file):
+    seen = []
+    reader = threading.Thread(target=lambda: seen.append(numbers(file)))
+    with file.writing("both"):
+        write(file, 1)
+        reader.start()
+        reader.join(timeout=0.1)
+        write(file, 2)
+    reader.join()
+    assert seen == [[1, 2]]
+
+
+def test_a_second_process_is_refused(file, tmp_path):
+    with pytest.raises(InUse, match="another knowledge base is using"):
+        JournalFile(tmp_path / "journal.sqlite")
+
+
+def test_a_folder_is_no_file(tmp_path):
+    with pytest.raises(errors.Refused, match="cannot be read: unable to open"):
+        JournalFile(tmp_path)
+
+
+def test_one_that_is_closed_is_our_own_fault(file):
+    file.close()
+    with pytest.raises(sqlite3.ProgrammingError):
+        numbers(file)

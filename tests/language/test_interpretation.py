@@ -1,0 +1,81 @@
+"""Commands, read with what ships."""
+
+import random
+
+import pytest
+
+from nodes.language.interpretation import shipped
+from tests.language.household import THINGS, there
+
+
+def read(text, things=THINGS):
+    return shipped().understand(text, there(things))
+
+
+def frames(text, things=THINGS):
+    return [frame.text for frame in read(text, things).frames]
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("take the bottle from the kitchen table", ["Taking(Theme=bottle1, Source=table1)"]),
+        ("Could you bring the novel to the sofa?", ["Bringing(Agent=robot1, Theme=book1, Goal=couch1)"]),
+        (
+            "go to the kitchen and open the fridge",
+            ["Motion(Goal=kitchen1)", "Closure(Containing_object=fridge1)"],
+        ),
+        (
+            "find the novel and bring it to me",
+            ["Locating(Sought_entity=book1)", 'Bringing(Theme=book1, Beneficiary="to me")'],
+        ),
+        ("follow me slowly", ['Cotheme(Cotheme="me", Manner="slowly")']),
+        ("this is the kitchen", ['Being_in_category(Item="this", Category=kitchen1)']),
+        ("don't open the fridge", ["not Closure(Containing_object=fridge1)"]),
+        ("turn left by 90 degrees", ['Change_direction(Direction="left", Angle="by 90 degrees")']),
+    ],
+)
+def test_a_command_is_frames_with_entities(text, understood):
+    assert frames(text) == understood
+
+
+def test_where_things_are_tells_taking_from_bringing():
+    near = [t for t in THINGS if t.name != "table2"]
+    assert frames("take the bottle on the table", near)[0].startswith("Taking")
+    far = [t for t in THINGS if t.name != "table1"]
+    assert frames("take the bottle on the table", far) == ["Bringing(Theme=bottle1, Goal=table2)"]
+
+
+def test_words_count_from_one_and_heads_are_inside():
+    understood = read("take the bottle from the kitchen table")
+    theme, source = understood.frames[0].arguments
+    assert (understood.words[theme.head - 1], theme.span) == ("bottle", (2, 3))
+    assert (understood.words[source.head - 1], source.text) == ("table", "from the kitchen table")
+    assert {(g.token, g.entity) for g in understood.groundings} == {
+        (3, "bottle1"),
+        (6, "table1"),
+        (7, "table1"),
+    }
+
+
+def test_unknown_verbs_are_said_to_be_unknown():
+    understood = read("frobnicate the bottle")
+    assert (understood.frames, understood.unknown) == ((), ("frobnicate",))
+
+
+def test_what_may_be_several_is_none_of_them():
+    bottles = (*THINGS, *(type(THINGS[4])(f"bottle{n}", "Bottle", ("bottle",), None) for n in (2, 3)))
+    theme = read("grab the bottle", bottles).frames[0].arguments[0]
+    assert (theme.entity, theme.candidates) == (None, ("bottle1", "bottle2", "bottle3"))
+
+
+def test_the_order_of_the_map_does_not_matter():
+    text = "take the bottle near the novel on the table to the sofa"
+    expected = read(text)
+    for seed in range(5):
+        assert read(text, random.Random(seed).sample(THINGS, len(THINGS))) == expected
+
+
+@pytest.mark.parametrize("text", ["", "please", "the the the", "of on to", "9 9 9", "and and", "you"])
+def test_what_is_no_command_is_no_frame(text):
+    assert read(text).frames == ()

@@ -1,0 +1,67 @@
+"""The router of a robot with a name: its rules are about whole keys, with the namespace."""
+
+from __future__ import annotations
+
+import contextlib
+
+import pytest
+from msgspec import structs
+
+from nodes import bus
+from nodes.identity import Identity
+from nodes.identity.register import Register
+from nodes.router.access import access_control
+from schemas import errors, keys
+from schemas.commands import Status
+from schemas.replies import Done
+from tests.conftest import free_endpoint
+from tests.router.conftest import opened, router_network
+
+
+def test_with_a_namespace_the_rules_are_about_whole_keys(folder):
+    members = Register.read(folder).admitted
+    for namespace in ("robot1", "*"):
+        rules = access_control(members, namespace)["rules"]
+        there = {key for rule in rules for key in rule["key_exprs"]}
+        assert {key.partition("/")[0] for key in there} == {namespace, "*"}
+        asked = {key for rule in rules for key in rule["key_exprs"] if rule["messages"] == ["query"]}
+        assert f"{namespace}/semmap/as/viewer/cmd/*" in asked
+
+
+@pytest.fixture(scope="module")
+def robot1(folder):
+    """Where the router of robot1 listens, with a coordinator that answers everybody."""
+    endpoint = bus.over_tls(free_endpoint())
+    network = structs.replace(
+        router_network(folder, endpoint),
+        access=access_control(Register.read(folder).admitted, "robot1"),
+        namespace="robot1",
+    )
+    with bus.open_session(network), contextlib.ExitStack() as stack:
+        node = opened(stack, endpoint, Identity.read(folder / "coordinator"), namespace="robot1")
+        bus.serve(node, keys.commands_as(), lambda request: request.reply(Done(text=request.who)))
+        token = bus.appear(node, "coordinator")
+        yield endpoint
+        token.undeclare()
+
+
+def asked(folder, endpoint, name, namespace):
+    with contextlib.ExitStack() as stack:
+        session = opened(stack, endpoint, Identity.read(folder / name), namespace=namespace)
+        return bus.ask(session, keys.commands_as(name), "status", Status(), Done, patience_s=1.0).text
+
+
+def test_everybody_asks_under_their_own_name_in_it(folder, robot1):
+    assert asked(folder, robot1, "viewer", "robot1") == "viewer"
+
+
+@pytest.mark.parametrize("namespace", ["", "robot2", "robot1/semmap"])
+def test_nobody_asks_in_another(folder, robot1, namespace):
+    with pytest.raises(errors.NoAnswer):
+        asked(folder, robot1, "viewer", namespace)
+
+
+def test_whoever_asks_which_robots_there_are_is_told(folder, robot1):
+    with contextlib.ExitStack() as stack:
+        session = opened(stack, robot1, Identity.read(folder / "viewer"))
+        assert bus.robots(session) == {"robot1": frozenset({"coordinator"})}

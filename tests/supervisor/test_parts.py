@@ -1,0 +1,24 @@
+"""The names that users give to nodes."""
+
+import pytest
+
+from nodes.supervisor.parts import nodes_of
+from schemas import errors
+
+
+@pytest.mark.parametrize(
+    ("text", "nodes"),
+    [
+        ("kb,coordinator", ("kb_node", "coordinator")),
+        (" sim , perception_node", ("sim_node", "perception_node")),
+        ("recorder,recorder,router", ("recorder", "router")),
+    ],
+)
+def test_nodes_by_their_short_and_long_names(text, nodes):
+    assert nodes_of(text) == nodes
+
+
+@pytest.mark.parametrize("text", ["", " , ", "kb;sim", "KB", "supervisor"])
+def test_what_is_no_list_of_nodes_is_refused_with_what_is_possible(text):
+    with pytest.raises(errors.BadRequest, match=r"kb.*coordinator.*sim.*perception.*recorder.*router"):
+        nodes_of(text)
