@@ -115,10 +115,10 @@ class Update(Command[Changed], frozen=True, tag="update"):
     """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
-    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
-    that would make an object a place, or a place an object, is refused without `force`. With `carry`, what
-    stands on the entity or is inside it moves with it as one rigid body, in the same commit; not what `leave`
-    names, and what stands on that.
+    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
+    property replace its values. A class that would make an object a place, or a place an object, is refused
+    without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
+    in the same commit; not what `leave` names, and what stands on that.
     """
 
     name: Word

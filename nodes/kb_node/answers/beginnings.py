@@ -7,8 +7,9 @@ thing that they are about.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from itertools import groupby
+from typing import NamedTuple
 
 from msgspec import Struct
 
@@ -53,11 +54,25 @@ class Moves(Struct, frozen=True):
     removed: tuple[_Left, ...] = ()
 
 
-def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> dict[Fact, str]:
-    """Since when each fact has held without a break, in words, as far as the journal goes back."""
+class Beginnings(NamedTuple):
+    """Since when facts have held without a break, as far as the journal goes back."""
+
+    since: Mapping[Fact, int]
+    """By commit; 0 is before the first one that the journal has."""
+    first: int = 1
+
+    def spoken(self, facts: Collection[Fact]) -> str | None:
+        """Since when all of these have held at once: "since commit 7". None where one is not known."""
+        if not facts or not self.since.keys() >= set(facts):
+            return None
+        latest = max(self.since[fact] for fact in facts)
+        return f"since commit {latest}" if latest else f"since before commit {self.first}"
+
+
+def looked_up(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> Beginnings:
+    """Since when each fact has held without a break."""
     found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
-    before = f"since before commit {journal.first}"
-    return {fact: f"since commit {seq}" if seq else before for fact, seq in found.items()}
+    return Beginnings(found, journal.first)
 
 
 def beginnings(

@@ -187,8 +187,8 @@ class Asking:
             return self._tried(questions.explain, asked)
         if not found.measured:
             return found.explanation
-        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
-        return self._aside.submit(found.dated, began)
+        look_up = partial(beginnings.looked_up, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, look_up)
 
     def on_diff(self, query: Diff) -> Future[Difference]:
         """What is otherwise than it was."""

@@ -7,10 +7,13 @@ from collections.abc import Iterable, Sequence
 from schemas import wording
 from schemas.explanations import Explanation
 from schemas.happenings import Difference
+from schemas.relations import Relation
 from schemas.replies import Changed, Inferred
 
 _MOST = 20
-"""Lines of what would follow, or would no longer."""
+"""Lines of what would follow, or would no longer; names of what a thing bears."""
+_BEARS = {"isOn": "supports", "isInside": "holds"}
+"""By relation, what the other thing does."""
 
 
 def changed(reply: Changed) -> Iterable[str]:
@@ -45,6 +48,20 @@ def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
 def inferred(reply: Inferred) -> Iterable[str]:
     """What follows, one line a triple."""
     return reply.text or ("nothing follows beyond what is asserted",)
+
+
+def relations(found: Sequence[Relation]) -> Iterable[str]:
+    """A sentence each; of several things that are on one, or inside it, one sentence without measurements."""
+    borne: dict[tuple[str, str], list[str]] = {}
+    for relation in found:
+        if relation.holds and relation.relation in _BEARS:
+            borne.setdefault((relation.relation, relation.object), []).append(relation.subject)
+    for relation in found:
+        names = borne.get((relation.relation, relation.object), ())
+        if len(names) < 2 or not relation.holds:
+            yield relation.text
+        elif relation.subject == names[0]:
+            yield f"{relation.object} {_BEARS[relation.relation]} {wording.few(names, _MOST)}"
 
 
 def explanation(e: Explanation) -> Iterable[str]:
