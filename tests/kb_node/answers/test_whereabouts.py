@@ -5,6 +5,7 @@ import pytest
 from nodes.kb_node.answers import beginnings, questions, whereabouts
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
@@ -18,8 +19,11 @@ from tests.kb_node import home
 
 
 def new_flat(folder, further=b""):
-    triples = rdf.parse(HOUSEHOLD_TTL.read_bytes() + further, "household.ttl", label_prefix="h")
-    made = home.new_map(folder, triples)
+    if further:
+        triples = rdf.parse(HOUSEHOLD_TTL.read_bytes() + further, "household.ttl", label_prefix="h")
+        made = home.new_map(folder, triples)
+    else:
+        made = SemanticMap(home.new_household_journal(folder))
     made.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
     made.believe_places()
     return made
