@@ -13,6 +13,7 @@ from schemas.commands import (
     Classes,
     Compact,
     Could,
+    Diff,
     Explain,
     Export,
     Get,
@@ -24,6 +25,7 @@ from schemas.commands import (
     Renew,
     Sparql,
     Understand,
+    WasWhen,
     Watch,
 )
 from schemas.commits import Commit, Effects, Snapshot, Star, Transaction
@@ -250,7 +252,7 @@ BRIDGE: dict[str, type[Call]] = {
             History,
             LastSeen,
             Relations,
-            Understand,
+            *(Understand, Diff, WasWhen),
         ),
         *(Sparql, Watch, Renew),
         *(Backup, Compact),

@@ -7,9 +7,10 @@ from typing import Literal
 
 from msgspec import Struct, field
 
-from schemas.entities import Entity, Pose, Stated, Value, distance_m
+from schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
 
 _STILL_M = 5e-4
+_SLIGHT_RAD = 0.0175
 Kind = Literal[
     "added", "removed", "pose", "size", "class", "reference", "alternatives", "conflict", "property"
 ]
@@ -84,7 +85,8 @@ def _pose(change: Change) -> str:
         return moved or f"moved by less than a millimetre, at {_position(now)}"
     turned = f"turned from {_degrees(was)} to {_degrees(now)}"
     if _degrees(was) == _degrees(now):
-        turned = "tilted" if not moved else ""
+        is_slight = angle_rad(was, now) < _SLIGHT_RAD
+        turned = "" if moved else "turned by less than a degree" if is_slight else "tilted"
     return " and ".join(filter(None, (moved, turned)))
 
 

@@ -31,6 +31,7 @@ from schemas.entities import (
     composed,
 )
 from schemas.explanations import Explanation
+from schemas.happenings import Difference, KeptRelation, Spells
 from schemas.language import Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
@@ -114,10 +115,10 @@ class Update(Command[Changed], frozen=True, tag="update"):
     """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
 
     `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
-    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. A class
-    that would make an object a place, or a place an object, is refused without `force`. With `carry`, what
-    stands on the entity or is inside it moves with it as one rigid body, in the same commit; not what `leave`
-    names, and what stands on that.
+    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
+    property replace its values. A class that would make an object a place, or a place an object, is refused
+    without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
+    in the same commit; not what `leave` names, and what stands on that.
     """
 
     name: Word
@@ -304,6 +305,21 @@ class Could(Command[Possible], frozen=True, tag="could"):
     name: Word
     predicate: Word
     value: str
+
+
+class Diff(Command[Difference], frozen=True, tag="diff"):
+    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+
+    since: When
+    until: When | None = None
+
+
+class WasWhen(Command[Spells], frozen=True, tag="when"):
+    """When a thing was on, inside, in or attached to another, as measured after each commit."""
+
+    name: Word
+    relation: KeptRelation
+    other: Word
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):

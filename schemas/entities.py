@@ -193,7 +193,8 @@ class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.
     `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
-    states, or None; replies fill in what its body measures, or what its model does.
+    states, or None; replies fill in what its body measures, or what its model does. Where there is no model
+    either, it is None: the size is not known, and a box stands in for it in the scene.
     `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
     `reference_provenance` what it is called. `properties` are the data and object properties asserted of it.
     """

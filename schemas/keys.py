@@ -67,6 +67,12 @@ HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 TOPICS = (ACK, COMMIT, UNTOLD, ENTITY, QUERY, POSES, CAMERA, OBSERVATIONS, CLOUD, HEALTH)
 
 
+def published() -> tuple[str, ...]:
+    """Key expressions of all that is published, or put as a command, in whatever namespace."""
+    commands = (CMD, f"{CMD}/*", f"{commands_as()}/*")
+    return tuple(f"**/{key}" for key in (*(topic.key for topic in TOPICS), *commands))
+
+
 def entity_key(class_name: str, name: str) -> str:
     """Where the state of one entity is published under one of its classes."""
     return f"{ROOT}/jena/entity/{_chunk(class_name)}/{_chunk(name)}"

@@ -23,13 +23,13 @@ class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `gap_m` is the distance that counts for the relation [m], `share` the part of the base, volume or
     footprint that it is about (0 to 1), or of the lines of sight; of left, right, in front and behind `gap_m`
     is how far apart the centres are in that direction. `text` says both in one sentence. `holds` is
-    False only where a pair was asked for, and of what a viewer cannot see.
+    False only where a pair was asked for, of what a viewer cannot see, and of what is on nothing.
     """
 
     relation: RelationName
     subject: str
     object: str
-    """Of `isVisibleFrom` a pose it is ""."""
+    """Of `isVisibleFrom` a pose, and where nothing bears the subject, it is ""."""
     and_object: str | None = None
     """Of `isBetween` the second of the two."""
     holds: bool = True
@@ -43,12 +43,14 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     `whereabouts`: what it is inside, on and in, as measured. `denied`: what somebody said of that and is not
     so, as things stand. `withheld`: what is measured, or was said, and would contradict the map, with the
-    reason, a sentence each; it is not among `whereabouts`.
+    reason, a sentence each; it is not among `whereabouts`. `on_nothing`: how high it is above what is below
+    it, where nothing bears it, not even the floor; or that its size is not known.
     """
 
     whereabouts: tuple[Relation, ...] = ()
     denied: tuple[Relation, ...] = ()
     withheld: tuple[str, ...] = ()
+    on_nothing: str = ""
 
     @classmethod
     def of(
@@ -57,10 +59,11 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
         whereabouts: tuple[Relation, ...] = (),
         denied: tuple[Relation, ...] = (),
         withheld: tuple[str, ...] = (),
+        on_nothing: str = "",
     ) -> Described:
         """An entity with these relations."""
         fields = {name: getattr(entity, name) for name in Entity.__struct_fields__}
-        return cls(**fields, whereabouts=whereabouts, denied=denied, withheld=withheld)
+        return cls(**fields, whereabouts=whereabouts, denied=denied, withheld=withheld, on_nothing=on_nothing)
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

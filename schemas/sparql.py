@@ -16,20 +16,22 @@ class SparqlResult(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """What a query gave on the map as it was after commit `seq`.
 
     `select`: a row a solution, in the query's order. `ask`: `verdict`. `graph` (CONSTRUCT, DESCRIBE): a row
-    a triple, sorted, each once.
+    a triple, sorted, each once. `notes`: where there is nothing, each term of the query that the map does
+    not know, a sentence each.
     """
 
     kind: Literal["select", "ask", "graph"]
     variables: tuple[str, ...] = ()
     rows: tuple[Row, ...] = ()
     verdict: bool = False
+    notes: tuple[str, ...] = ()
     seq: int
 
 
 class Watching(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A standing query is watched: its rows after commit `seq`, and the news from then on.
 
-    It ends `lease_s` after it was last renewed.
+    It ends `lease_s` after it was last renewed. `notes` are those of a `SparqlResult`.
     """
 
     watch: str
@@ -37,6 +39,7 @@ class Watching(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     rows: tuple[Row, ...]
     seq: int
     lease_s: float
+    notes: tuple[str, ...] = ()
 
 
 class RowsChanged(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

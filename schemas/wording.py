@@ -32,6 +32,14 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
+def duration(seconds: float) -> str:
+    """A length of time as a person says it: `12 s`, `5 min`, `3.5 h`, `12 days`."""
+    for unit, length_s, most in (("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, 172_800.0)):
+        if seconds < most:
+            return f"{seconds / length_s:.{0 if unit != 'h' else 1}f} {unit}"
+    return f"{seconds / 86_400:.0f} days"
+
+
 def few(names: Collection[str], most: int = 10) -> str:
     """`cup1, plate1 and spoon1`; of more than `most` the first, and the number of the others."""
     shown = list(names) if len(names) <= most else [*list(names)[: most - 1], f"{len(names) - most + 1} more"]

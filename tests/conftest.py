@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import functools
 import io
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -20,7 +24,10 @@ from hypothesis import HealthCheck, settings
 from nodes.extern.cli.app import execute
 from nodes.extern.client import Client, connect
 from nodes.extern.testing import free_endpoint
+from nodes.kb_node.storage.journal import FILENAME
+from nodes.kb_node.storage.seed import seed
 from nodes.runtime.loop import Node
+from ontology import FLAT_TTL, HOUSEHOLD_TTL
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -120,9 +127,15 @@ class System:
 
 @contextlib.contextmanager
 def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iterator[System]:
-    """`semmap up` with these words, ready; stopped at the end."""
+    """`semmap up` with these words, ready; stopped at the end.
+
+    A map of the TBox and ABox that come with semmap is not begun anew by each: most of a start is that.
+    """
     endpoint = endpoint or free_endpoint()
-    command = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *map(str, words)]
+    said = [*map(str, words)]
+    if (abox := _begins_with(data, said)) is not None:
+        shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
+    command = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *said]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     system = System(data, endpoint, process)
     try:
@@ -133,6 +146,24 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
             system.stop()
         assert process.stdout is not None
         process.stdout.close()
+
+
+def _begins_with(data: Path, words: list[str]) -> str | None:
+    """The ABox that the map in `data` would begin with, if it is one of those that `_begun` has."""
+    if (data / FILENAME).exists() or not {"--tbox", "--import", "--world", "--fresh"}.isdisjoint(words):
+        return None
+    if "--abox" not in words:
+        return "flat"
+    return "none" if words[words.index("--abox") + 1] == "none" else None
+
+
+@functools.cache
+def _begun(abox: str) -> Path:
+    """A data folder as the first `semmap up` makes it; kept as long as this process lives."""
+    folder = Path(tempfile.mkdtemp(prefix="semmap-begun-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    seed(folder, HOUSEHOLD_TTL, FLAT_TTL if abox == "flat" else None)
+    return folder
 
 
 def _await_ready(system: System) -> None:

@@ -17,7 +17,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from benchmarks.kb import disk, engine, in_turn, scale, table, university, wire
+from benchmarks.relations import kept
 from benchmarks.table import Row, lines
+from nodes.kb_node.documents import rdf
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
 UNIVERSITY = "university"
@@ -47,6 +49,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
     parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, *FURTHER))}")
     parser.add_argument("--before", type=Path, metavar="DIR", help=f"another version's root, for {IN_TURN}")
+    parser.add_argument(
+        "--no-relations",
+        action="store_true",
+        help=f"for {IN_TURN} over Zenoh: with a TBox that does not declare what is computed of places",
+    )
     parser.add_argument("--ontology", type=Path, help=f"one over DUL, such as SOMA-HOME.owl, for {VARIANTS}")
     parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
     parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
@@ -140,7 +147,11 @@ def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
     size, count = words.entities, words.repeat
     core = in_turn.core(words.before, size, count)
     with tempfile.TemporaryDirectory(dir=words.folder) as folder:
-        wired = in_turn.wire(words.before, Path(folder), size, count)
+        tbox = None
+        if words.no_relations:
+            tbox = Path(folder, "no_relations.nt")
+            tbox.write_bytes(rdf.serialise(frozenset(kept.without_relations(kept.household())), "ntriples"))
+        wired = in_turn.wire(words.before, Path(folder), size, count, tbox)
     rows = table.of_core_in_turn(core, size) + table.of_wire_in_turn(wired, size)
     sizes = UNIVERSITY_TRIPLES[:1] if words.quick else UNIVERSITY_TRIPLES
     universities = {
@@ -150,7 +161,8 @@ def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
     rows += [table.of_university_in_turn(pair, triples) for triples, pair in universities.items()]
     report[IN_TURN] = {
         "core": {what: pair._asdict() for what, pair in core.items()},
-        "wire": {what: pair._asdict() for what, pair in wired.items()},
+        "wire": {what: pair._asdict() for what, pair in wired.took.items()},
+        "wire_cpu": {what: pair._asdict() for what, pair in wired.cpu.items()},
         "university": {triples: pair._asdict() for triples, pair in universities.items()},
     }
     return rows

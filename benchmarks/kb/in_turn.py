@@ -9,13 +9,14 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from statistics import median
+from statistics import mean, median
 from typing import Any, NamedTuple
 
 from benchmarks.kb import university
 
 CORE = ("add", "move", "refuse", "remove")
 WIRE = ("add", "move", "reference", "remove")
+SUSTAINED = "sustained"
 _HERE = Path(__file__).parents[2]
 _ROUNDS = 6
 
@@ -60,18 +61,35 @@ def core(before: Path, size: int, count: int) -> dict[str, Pair]:
     return {what: _pair([(old[what], new[what]) for old, new in rounds]) for what in CORE}
 
 
-def wire(before: Path, folder: Path, size: int, count: int) -> dict[str, Pair]:
-    """Two whole systems at once, one client each: medians of all times [ms], and sustained moves a second."""
+class Wired(NamedTuple):
+    """Of commands by their names: how long one takes, and what the processors spend on it [ms]."""
+
+    took: dict[str, Pair]
+    """Medians [ms]; of `sustained` the moves a second."""
+    cpu: dict[str, Pair]
+    """Means, in all processes together, the client's too [ms]: a busy machine disturbs it less."""
+
+
+def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = None) -> Wired:
+    """Two whole systems at once, one client each; with `tbox` this version's has that one."""
     words = [["wire", str(folder / side), str(size)] for side in ("before", "now")]
+    words[1] += [] if tbox is None else [str(tbox)]
     took: dict[str, tuple[list[float], list[float]]] = {what: ([], []) for what in WIRE}
+    cpu: dict[str, list[tuple[float, float]]] = {what: [] for what in (*WIRE, SUSTAINED)}
     with _sides(before, *words) as sides:
         for i in range(_ROUNDS + 1):
             for what in WIRE:
                 old, new = sides.ask(what, count // _ROUNDS if i else 20)
-                took[what][0].extend(old if i else [])
-                took[what][1].extend(new if i else [])
-        rates = [sides.ask("sustained", 2 * count) for _ in range(3)]
-    return {**{what: Pair(*map(median, both)) for what, both in took.items()}, "sustained": _pair(rates)}
+                if i:
+                    took[what][0].extend(old["found"])
+                    took[what][1].extend(new["found"])
+                    cpu[what].append((old["cpu_ms"], new["cpu_ms"]))
+        rounds = [sides.ask(SUSTAINED, 2 * count) for _ in range(3)]
+    cpu[SUSTAINED] = [(old["cpu_ms"], new["cpu_ms"]) for old, new in rounds]
+    rates = _pair([(old["found"], new["found"]) for old, new in rounds])
+    pairs = {what: Pair(*map(median, both)) for what, both in took.items()}
+    spent = {what: Pair(*map(mean, zip(*rows, strict=True))) for what, rows in cpu.items()}
+    return Wired({**pairs, SUSTAINED: rates}, spent)
 
 
 def of_university(before: Path, triples: int, turns: int) -> Pair:

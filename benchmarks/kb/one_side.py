@@ -1,7 +1,7 @@
 """One version's side of a comparison: it does what stdin says, and prints how long that took, in JSON.
 
     PYTHONPATH=<its root> python -P <this file> core 10000
-    PYTHONPATH=<its root> python -P <this file> wire FOLDER 10000
+    PYTHONPATH=<its root> python -P <this file> wire FOLDER 10000 [TBOX]
     PYTHONPATH=<its root> python -P <this file> university 120000 <benchmarks/kb/university.py>
 
 It uses only what both versions have.
@@ -14,9 +14,11 @@ import json
 import random
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
+
+import psutil  # type: ignore[import-untyped]
 
 from benchmarks.kb import disk, engine, made, wire
 from nodes.extern.client import Client
@@ -50,19 +52,33 @@ def core(size: int) -> Iterator[Callable[[str, int], Any]]:
     yield round_
 
 
-def system(folder: Path, size: int) -> Iterator[Callable[[str, int], Any]]:
-    """A whole system of so many entities, with one client: each time in ms, or moves a second."""
+def system(folder: Path, size: int, tbox: Path | None) -> Iterator[Callable[[str, int], Any]]:
+    """A whole system of so many entities, with one client: each time in ms, or moves a second.
+
+    With the time, in ms a command, that the processors spent on that in all processes, this one's too.
+    """
+    if tbox is not None:
+        disk.HOUSEHOLD_TTL = tbox
     disk.prepare(folder, size)
     random_, live = random.Random(), list[str]()
     with own_system(folder, *_UP) as client:
+        processes = [psutil.Process(), *(psutil.Process(node.pid) for node in client.status().nodes)]
 
         def do(word: str, count: int) -> Any:
+            before_s = _cpu_s(processes)
             if word == "sustained":
                 names = [f"e{i % size}" for i in range(count)]
-                return wire._sustained(client, names, random_)
-            return [_timed(client, word, random_, size, live) for _ in range(count)]
+                found: Any = wire._sustained(client, names, random_)
+            else:
+                found = [_timed(client, word, random_, size, live) for _ in range(count)]
+            return {"found": found, "cpu_ms": (_cpu_s(processes) - before_s) * 1e3 / count}
 
         yield do
+
+
+def _cpu_s(processes: Sequence[psutil.Process]) -> float:
+    times = [process.cpu_times() for process in processes]
+    return sum(t.user + t.system for t in times)
 
 
 def _timed(client: Client, word: str, random_: random.Random, size: int, live: list[str]) -> float:
@@ -102,7 +118,7 @@ def main() -> None:
         case "core":
             side = core(int(words[0]))
         case "wire":
-            side = system(Path(words[0]), int(words[1]))
+            side = system(Path(words[0]), int(words[1]), Path(words[2]) if len(words) > 2 else None)
         case _:
             side = university(int(words[0]), Path(words[1]))
     do = next(side)

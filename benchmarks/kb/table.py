@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from benchmarks.kb.disk import Disk
 from benchmarks.kb.engine import Engine
-from benchmarks.kb.in_turn import Pair
+from benchmarks.kb.in_turn import SUSTAINED, Pair, Wired
 from benchmarks.kb.made import Figures
 from benchmarks.kb.scale import Scale
 from benchmarks.kb.university import University
@@ -61,11 +61,11 @@ def of_core_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
     ]
 
 
-def of_wire_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
+def of_wire_in_turn(wired: Wired, size: int) -> list[Row]:
     """Over Zenoh, against the version before."""
     rows: list[Row] = []
-    for what, pair in pairs.items():
-        if what == "sustained":
+    for what, pair in wired.took.items():
+        if what == SUSTAINED:
             said = f"sustained moves, {size}, {pair.before:.0f}/s before, {pair.now:.0f} now"
             rows.append(Row(said, pair.ratio, "times", 1.0, None, more=True))
             continue
@@ -73,6 +73,9 @@ def of_wire_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
         said = f"over Zenoh: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
         rows.append(Row(said, pair.ratio, "times", reach, aim))
         rows.append(Row(f"over Zenoh: {what}, {size}, p50", pair.now, "ms", None, 1.0))
+    for what, pair in wired.cpu.items():
+        said = f"CPU time: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
+        rows.append(Row(said, pair.ratio, "times"))
     return rows
 
 

@@ -44,7 +44,10 @@ def measure(size: int, moves: int) -> Kept:
     """Load so many entities, start anew, and move cups from table to table over Zenoh, in turn."""
     with tempfile.TemporaryDirectory() as folder:
         kept, without = Path(folder, "with"), Path(folder, "without")
-        load, load_without = _load(kept, size, _tbox()), _load(without, size, _without(_tbox()))
+        load, load_without = (
+            _load(kept, size, household()),
+            _load(without, size, without_relations(household())),
+        )
         memory = _memory_kb(kept) / size
         with running(kept, "--no-sim") as (one, _), running(without, "--no-sim") as (other, _):
             times: tuple[list[float], list[float]] = [], []
@@ -56,11 +59,12 @@ def measure(size: int, moves: int) -> Kept:
     return Kept(load, load_without, memory, *map(statistics.median, times))
 
 
-def _tbox() -> list[Triple]:
+def household() -> list[Triple]:
+    """The household TBox."""
     return rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name, label_prefix="t")
 
 
-def _without(tbox: list[Triple]) -> list[Triple]:
+def without_relations(tbox: list[Triple]) -> list[Triple]:
     """One that does not declare the properties, so that they are not computed."""
     return [triple for triple in tbox if triple[0] not in COMPUTED or triple[1] != v.RDF_TYPE]
 

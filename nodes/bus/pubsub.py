@@ -100,6 +100,15 @@ def includes(key_exprs: Iterable[str], key_expr: str) -> bool:
     return any(zenoh.KeyExpr(one).includes(wanted) for one in key_exprs)
 
 
+def meets(key_exprs: Iterable[str], key_expr: str) -> bool:
+    """Is any key of `key_expr` in one of `key_exprs`? So it is for what is no key expression."""
+    try:
+        wanted = zenoh.KeyExpr(key_expr)
+    except zenoh.ZError:
+        return True
+    return any(zenoh.KeyExpr(one).intersects(wanted) for one in key_exprs)
+
+
 def listen(session: zenoh.Session, key_expr: str) -> Iterator[tuple[str, str]]:
     """Key and content, as JSON, of what is published from now on. Raises BadRequest for no key expression."""
     try:

@@ -74,8 +74,11 @@ class Network(Struct, frozen=True):
         """The prefix under which this process asks for commands: its own, where it has a name."""
         return keys.CMD if self.identity is None else keys.commands_as(self.identity.name)
 
-    def as_config(self) -> zenoh.Config:
-        """Scouting and shared memory off; a node goes on trying to connect, a client gives up."""
+    def values(self) -> dict[str, Any]:
+        """What Zenoh's configuration is to say, by path.
+
+        Scouting and shared memory are off; a node goes on trying to connect, a client gives up.
+        """
         node = bool(self.listen) or self.patience_s == FOREVER_S
         first_ms, last_ms = (100, 500) if self.identity is None else (50, 200)  # a router begins anew, too
         retry = {"period_init_ms": first_ms, "period_max_ms": last_ms, "period_increase_factor": 2}
@@ -99,6 +102,22 @@ class Network(Struct, frozen=True):
             values |= _tls(self.identity, listens=bool(self.listen))
         if self.access is not None:
             values["access_control"] = self.access
+        return values
+
+    def as_file(self) -> str:
+        """The same as a configuration file of Zenoh's, for a program that is not one of ours."""
+        document: dict[str, Any] = {}
+        for path, value in {**self.values(), _LARGEST: pieces.PLANE}.items():
+            *above, last = path.split("/")
+            inner = document
+            for name in above:
+                inner = inner.setdefault(name, {})
+            inner[last] = value
+        return json.dumps(document, indent=2)
+
+    def as_config(self) -> zenoh.Config:
+        """The configuration of a session. Raises BadFile for one of one's own that cannot be read."""
+        values = self.values()
         config = zenoh.Config() if self.own_config is None else own_config.read(self.own_config)
         if self.own_config is None or config.get_json(_LARGEST) == zenoh.Config().get_json(_LARGEST):
             values[_LARGEST] = pieces.PLANE

@@ -100,15 +100,24 @@ class Answers:
         state, body = self._keeping.body_state(entity), self._keeping.scene.bodies.get(entity.name)
         if entity.size_m is not None or state.status == "none":
             return structs.replace(entity, body=state)
+        if not entity.model:  # its body is a box, whose size says nothing of the entity's
+            known = "" if body is None else _stands_in(body.size_m)
+            detail = "; ".join(filter(None, (state.detail, known)))
+            return structs.replace(entity, body=structs.replace(state, detail=detail))
         sized = with_size(entity) if body is None else structs.replace(entity, size_m=_rounded(body.size_m))
         return structs.replace(sized, body=structs.replace(state, own_size=sized.size_m is not None))
 
 
 def with_size(entity: E) -> E:
-    """The entity with the size of its model, if the map states none and it is no place."""
-    if entity.size_m is not None or entity.place:
+    """The entity with the size of its model, if it has one, the map states none and it is no place."""
+    if entity.size_m is not None or entity.place or not entity.model:
         return entity
     return structs.replace(entity, size_m=own_size_m(entity.model))
+
+
+def _stands_in(size_m: Size) -> str:
+    sides = " x ".join(f"{side:g}" for side in _rounded(size_m))
+    return f"a box of {sides} m stands in for it, because neither the map nor a model says how large it is"
 
 
 def _rounded(size_m: Size) -> Size:

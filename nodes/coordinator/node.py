@@ -86,6 +86,8 @@ class Coordinator:
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
             c.Understand.answered_by(relay),
+            c.Diff.answered_by(relay),
+            c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
@@ -186,6 +188,8 @@ class Coordinator:
         return future
 
     def _answer_waiting(self) -> None:
+        if not self._waiting:
+            return
         still = []
         undecided = {"pending"}
         if self._health.may_be_there("sim_node"):

@@ -129,6 +129,7 @@ class AsyncStandingQuery:
         self.variables = standing.variables
         self.rows = standing.rows
         self.seq = standing.seq
+        self.notes = standing.notes
 
     def changes(self, *, timeout: float | None = None) -> AsyncIterator[RowsChanged]:
         """The news, in order, until it is closed. Raises Refused, NoAnswer; see `StandingQuery.changes`."""

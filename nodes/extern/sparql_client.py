@@ -45,6 +45,7 @@ class StandingQuery:
         self.variables = self._seen.variables
         self.rows = self._seen.rows
         self.seq = self._seen.seq
+        self.notes = self._seen.notes
 
     def changes(self, *, timeout: float | None = None) -> Iterator[RowsChanged]:
         """The news, in order, until it is closed.

@@ -303,7 +303,7 @@ class Beliefs:
 
     def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
         lost = [*step.gone, *step.denied, *retracted]
-        for triple in (*lost, *step.undenied):
+        for triple in (*lost, *step.undenied) if self.withheld else ():
             self._admit(triple)
         try:
             self._believe(gone=step.gone, come=step.come, aside=step.denied, back=step.undenied)
@@ -331,6 +331,8 @@ class Beliefs:
         for triples, is_computed, holds in (
             (gone, True, False), (come, True, True), (aside, False, False), (back, False, True),
         ):  # fmt: skip
+            if not triples:
+                continue
             net = self._net[is_computed]
             if not net or net.keys().isdisjoint(triples):
                 net.update(dict.fromkeys(triples, holds))

@@ -36,10 +36,12 @@ def held(
 ) -> set[Triple]:
     """Those of some triples that are asserted already. `progress` is called now and then."""
     groups = tuple(groups)
-    if is_much(groups, reasoner):
-        named = set(chain(*groups))
-        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
     known = reasoner.mentioned(subjects(*groups))
+    if not known:
+        return set()
+    named = {t for triples in groups for t in triples if t[0] in known}
+    if is_much((named,), reasoner):
+        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
     found: set[Triple] = set()
     many: set[Term] = set()
     for subject in steadily(known, progress):
@@ -47,7 +49,6 @@ def held(
         found.update(said)
         if len(said) == _FEW:
             many.add(subject)
-    named = {t for triples in groups for t in triples if t[0] in known} if known else set[Triple]()
     return {t for t in named if t in found or (t[0] in many and any(reasoner.asserted(*t)))}
 
 

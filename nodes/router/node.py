@@ -18,6 +18,7 @@ from nodes import bus
 from nodes.identity.register import LiveRegister, Register
 from nodes.router.access import access_control
 from nodes.router.config import RouterConfig
+from nodes.router.silent_links import give_up_after
 from nodes.runtime.loop import Node
 from schemas import keys
 from schemas.errors import enumerated
@@ -25,6 +26,8 @@ from schemas.wording import counted
 
 _LOOK_S = 0.5
 _TELL_S = 60.0
+_SILENT_S = 2.5
+"""Seconds: longer than a link's lease."""
 _SOON = timedelta(days=30)
 
 
@@ -53,6 +56,7 @@ class Router:
     def __init__(self, config: RouterConfig) -> None:
         """Raises BadFile for a folder without keys."""
         self._network = config.network
+        self._namespace = config.namespace
         self._live = None if config.keys is None else LiveRegister(config.keys)
         self._node: Node | None = None
         self._stopped = False
@@ -72,15 +76,16 @@ class Router:
         """Admit those of `register`, or everybody, until there is another one."""
         network = self._network
         if register is not None:
-            access = access_control(register.admitted, network.namespace)
+            access = access_control(register.admitted, self._namespace)
             network = structs.replace(network, access=access)
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)
-            admitted = "" if register is None else in_words(register, datetime.now(UTC))
+            admitted = "admits everybody" if register is None else in_words(register, datetime.now(UTC))
 
             def look() -> None:
                 if self._stopped or (self._live is not None and self._live.now is not register):
                     node.stop()
+                give_up_after(_SILENT_S)
                 met = bus.linked_routers(session)
                 said = "; ".join(filter(None, (told_of_links(met, network.connect), admitted)))
                 if met or not network.connect:

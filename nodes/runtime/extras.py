@@ -44,12 +44,15 @@ def require(what: str, *extras: str) -> None:
         raise errors.BadRequest(f"{what} needs more than is installed: {_install(lacking)}")
 
 
-def require_nodes(nodes: Iterable[str]) -> None:
-    """The same for `semmap up` with these nodes; says how to do without them, too, where that is possible."""
+def require_nodes(nodes: Iterable[str], *, named: bool = False) -> None:
+    """The same for `semmap up` with these nodes; says how to do without them, too, where that is possible.
+
+    It is not where they were `named`.
+    """
     if not (lacking := missing(["kb", *(OF_NODE[node] for node in nodes)])):
         return
     said = f"semmap up needs more than is installed: {_install(lacking)}"
-    if all(extra in _OPTIONS for extra in lacking):
+    if not named and all(extra in _OPTIONS for extra in lacking):
         said += f", or go without: semmap up {' '.join(_OPTIONS[extra] for extra in lacking)}"
     raise errors.BadRequest(said)
 

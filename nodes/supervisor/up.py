@@ -233,7 +233,17 @@ class _Foreground:
                 if {node.pid for node in status.nodes if node.state == "ready"} >= {*self._pids.values()}:
                     break
                 time.sleep(0.05)
+            self._tell_of_truth(status.truth)
             self._tell_of_models(session)
+
+    def _tell_of_truth(self, truth: str) -> None:
+        """Say where perception looks at what the map itself has placed, as the coordinator elsewhere says."""
+        sees_the_simulator = {"sim_node", "perception_node"} <= {*self._settings.only}
+        if sees_the_simulator and self._settings.camera_hz and truth != "perceived":
+            self._say(
+                f"{'perception':<{_COLUMN}} with --truth {truth}, as the coordinator runs, the simulator's"
+                " cameras only show what the map already says; start it with --truth perceived"
+            )
 
     def _tell_of_models(self, session: bus.Session) -> None:
         """Say which of the files in `--models` are nobody's model."""

@@ -6,6 +6,8 @@ import queue
 import threading
 import time
 
+import pytest
+
 from nodes import bus
 from schemas import codec, keys
 from schemas.commits import Commit
@@ -49,3 +51,20 @@ def test_what_is_not_ours_is_not_followed(pair):
     server.put(keys.COMMIT.key, b"\xc1 nonsense")
     server.put(keys.COMMIT.key, codec.encode(commit(1)))
     assert arrived.get(timeout=5).seq == 1
+
+
+@pytest.mark.parametrize(
+    ("key_expr", "is_met"),
+    [
+        ("semmap/**", True),
+        ("robot1/semmap/jena/commit", True),
+        ("semmap/jena/entity/Cup/*", True),
+        ("semmap/cmd/add", True),
+        ("semmap/as/bob/cmd/add", True),
+        ("no//expression", True),
+        ("nosuch/key", False),
+        ("semmap/jena/commits", False),
+    ],
+)
+def test_whether_anything_is_published_there(key_expr, is_met):
+    assert bus.meets(keys.published(), key_expr) is is_met

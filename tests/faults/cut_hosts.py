@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import count
+from pathlib import Path
 
 from nodes.identity import authority
 from tests.faults import hosts, on_a_host
@@ -22,8 +23,12 @@ from tests.faults.hosts import HOWS, Host, How, Link, Network
 from tests.faults.table import Row
 
 _PORT = 7447
+_EXAMPLES = Path(__file__).parents[2] / "examples"
+_ZENOHD = "zenohd"
+"""In place of nodes: a host on which a router runs that is not semmap's."""
 _PARTS = {"lab": "kb,coordinator", "robot": "sim,perception", "desk": "recorder"}
 _SMALL_PARTS = {"lab": "kb,coordinator", "robot": "sim"}
+_SITE_PARTS = {"lab": "kb,coordinator", "site": _ZENOHD, "robot": "sim,recorder"}
 _WHOLE_S = 5.0
 
 
@@ -52,6 +57,8 @@ class Cuts:
 CUTS = (
     Cuts("links between hosts cut", 15.0),
     Cuts("links between hosts cut, with certificates", 15.0, ("--secure",)),
+    Cuts("links of a site with a router of Zenoh's own cut", 15.0, ("--site",)),
+    Cuts("links of a site with a router of Zenoh's own cut, with certificates", 15.0, ("--site", "--secure")),
 )
 
 
@@ -61,9 +68,10 @@ def main() -> None:
     parser.add_argument("seconds", type=float, help="how long each link is cut")
     parser.add_argument("--secure", action="store_true", help="with certificates")
     parser.add_argument("--small", action="store_true", help="two hosts, without perception and recorder")
+    parser.add_argument("--site", action="store_true", help="a router of Zenoh's on the host in the middle")
     parser.add_argument("--how", choices=HOWS, nargs="+", default=HOWS)
     said = parser.parse_args()
-    parts = _SMALL_PARTS if said.small else _PARTS
+    parts = _SMALL_PARTS if said.small else _SITE_PARTS if said.site else _PARTS
     with Network() as network, spread_out(network, parts, secure=said.secure) as system:
         for link in system.links:
             for how in said.how:
@@ -78,8 +86,8 @@ def spread_out(network: Network, parts: dict[str, str], *, secure: bool) -> Iter
         system.start()
         yield system
     finally:
-        for host in system.hosts:
-            host.do(on_a_host.end)
+        for ended in [host.begin(on_a_host.end) for host in system.hosts]:
+            ended.result()
 
 
 class SpreadOut:
@@ -93,7 +101,6 @@ class SpreadOut:
         self.here = f"{self._scheme}/127.0.0.1:{_PORT}"
         """Where each host has its router."""
         self._loads = count(1)
-        self._there: set[str] = set()
         self._pids: dict[str, dict[str, int]] = {}
 
     def start(self) -> None:
@@ -103,6 +110,9 @@ class SpreadOut:
             self._hand_out_keys(tuple(upstream.values()))
         started = []
         for host in reversed(self.hosts):
+            if self._parts[host.name] == _ZENOHD:
+                host.do(on_a_host.route, self._configured(host, upstream[host.name]))
+                continue
             words = ["--only", self._parts[host.name], "--abox", "none", "--world", "empty"]
             words += ["--camera-hz", "0"]
             if host.name in upstream:
@@ -128,6 +138,14 @@ class SpreadOut:
                 if file.name != "ca.key":
                     (copy / file.name).write_bytes(file.read_bytes())
             host.do(on_a_host.identify, str(copy / "load"))
+
+    def _configured(self, host: Host, upstream: str) -> str:
+        """The file of a router that is not semmap's, as the manual says that one gets it."""
+        if self._scheme == "tcp":
+            return (_EXAMPLES / "zenohd" / "site.json5").read_text().replace("10.0.0.1", upstream)
+        words = ["keys", "zenohd", "--dir", host.folder / "keys", "--connect", f"tls/{upstream}:{_PORT}"]
+        semmap = Path(sys.executable).with_name("semmap")
+        return subprocess.run([semmap, *words], check=True, capture_output=True, text=True).stdout
 
     def pids(self) -> dict[str, dict[str, int]]:
         """The processes of the nodes, by host."""
@@ -165,8 +183,7 @@ class SpreadOut:
             yield f"refused: {refused[0]}"
         acknowledged = [name for one in ended for name in one.acknowledged]
         there, last = self.hosts[0].do(on_a_host.cups, self.here)
-        new, self._there = there - self._there, there
-        nobodys = len(new) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
+        nobodys = len(there) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
         row.lost = len(set(acknowledged) - there)
         row.doubled = len(acknowledged) - len(set(acknowledged)) + max(0, nobodys)
         for host in self.hosts:
@@ -174,6 +191,7 @@ class SpreadOut:
                 if seqs != list(range(seqs[0], last + 1)):
                     yield f"on {host.name} commits were missed, or heard of twice"
         self.hosts[0].do(on_a_host.recorded, self.here, last)
+        self.hosts[0].do(on_a_host.clear, self.here)
 
 
 def _data(host: Host) -> str:

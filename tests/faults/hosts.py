@@ -49,7 +49,12 @@ class Host:
         self.folder.mkdir()
         spawn = multiprocessing.get_context("spawn")
         self._process = ProcessPoolExecutor(1, spawn, _become_host, (name, str(self.folder)))
-        self.pid = self.do(os.getpid)
+        self._pid = self.begin(os.getpid)
+
+    @property
+    def pid(self) -> int:
+        """Of its process, as soon as that runs."""
+        return self._pid.result()
 
     def do(self, function: Callable[..., R], *arguments: Any) -> R:
         """What `function` returns, or raises, on this host."""

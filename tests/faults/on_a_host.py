@@ -9,6 +9,8 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
+import zenoh
+
 from nodes.extern.client import connect
 from schemas import errors
 from schemas.endpoints import IDENTITY_VARIABLE
@@ -44,6 +46,11 @@ def identify(identity: str) -> None:
 def up(data: str, endpoint: str, words: tuple[str, ...]) -> None:
     """Start a part of a system; ready when this returns."""
     _stack.enter_context(running(Path(data), *words, endpoint=endpoint))
+
+
+def route(configuration: str) -> None:
+    """Run a router that is not semmap's from its configuration file, as zenohd would."""
+    _stack.enter_context(zenoh.open(zenoh.Config.from_json5(configuration)))
 
 
 def load(endpoint: str, number: int) -> None:
@@ -126,6 +133,13 @@ def cups(endpoint: str) -> tuple[set[str], int]:
 
     found: tuple[set[str], int] = wait_for(agreed, "map and scene agree")
     return found
+
+
+def clear(endpoint: str) -> None:
+    """Let the map be empty: what is measured next is not how long many bodies take."""
+    with connect(endpoint) as client:
+        client.clear()
+        wait_for(lambda: client.status().bodies == 0, "the bodies are gone")
 
 
 def recorded(endpoint: str, until: int) -> None:

@@ -2,8 +2,7 @@ import pytest
 
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import FLAT_TTL
 from schemas.commits import Transaction
 from tests.kb_node import home, stating
 
@@ -27,10 +26,7 @@ def stateful_map(tmp_path):
 @pytest.fixture
 def flat(tmp_path):
     """The flat that comes with semmap, as a map."""
-    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
-    made = SemanticMap(
-        Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
-    )
+    made = SemanticMap(home.new_household_journal(tmp_path))
     abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
     made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
     yield made

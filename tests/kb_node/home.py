@@ -1,14 +1,17 @@
 """A small TBox of a home, and maps over it."""
 
+import functools
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from ontology import stars
+from nodes.kb_node.storage.journal import FILENAME, Journal
+from ontology import HOUSEHOLD_TTL, stars
 from ontology import vocabulary as v
 from schemas.commits import Transaction
 from schemas.entities import Pose
+from schemas.explanations import Triple
 
 PREFIXES = f"""
 @prefix : <{v.ABOX}> .
@@ -50,7 +53,29 @@ TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 
 def new_map(folder: Path, tbox=TBOX) -> SemanticMap:
     """An empty map with a new journal in `folder`."""
-    return SemanticMap(Journal.create(folder / "journal.sqlite", rdf.serialise(tbox, "ntriples")))
+    return SemanticMap(Journal.create(folder / FILENAME, rdf.serialise(tbox, "ntriples")))
+
+
+@functools.cache
+def household() -> frozenset[Triple]:
+    """The TBox that comes with semmap."""
+    return frozenset(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t"))
+
+
+@functools.cache
+def _household_closure() -> tuple[str, bytes]:
+    """Name and content of the file that keeps its closure."""
+    with TemporaryDirectory() as name:
+        close(new_map(folder := Path(name), household()))
+        (closure,) = folder.glob("*.closure")
+        return closure.name, closure.read_bytes()
+
+
+def new_household_journal(folder: Path) -> Journal:
+    """A new journal in `folder` with the TBox that comes with semmap, as one whose closure was kept."""
+    name, closure = _household_closure()
+    (folder / name).write_bytes(closure)
+    return Journal.create(folder / FILENAME, rdf.serialise(household(), "ntriples"))
 
 
 def reopened(semantic_map: SemanticMap) -> SemanticMap:

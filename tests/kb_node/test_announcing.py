@@ -9,14 +9,13 @@ from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers.whereabouts import Now
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.kb_node.storage.journal import Journal
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import FLAT_TTL
 from ontology import vocabulary as v
 from schemas import keys
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
+from tests.kb_node import home
 
-TBOX = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
 WAIT_S = 20.0
 
@@ -56,7 +55,7 @@ class Told:
 
 @pytest.fixture
 def told(tmp_path):
-    journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(TBOX), "ntriples"))
+    journal = home.new_household_journal(tmp_path)
     with bus.open_session(bus.Network(mode="peer", listen=(), connect=())) as session:
         yield Told(session, journal)
     journal.close()

@@ -21,15 +21,15 @@ from schemas.commands import Explain, Get, Relations, Watch
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
 from schemas.relations import Where
+from tests.kb_node import home
 
-TBOX = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
 ON = v.dm("isOn")
 
 
 @pytest.fixture
 def flat(tmp_path):
-    journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(TBOX), "ntriples"))
+    journal = home.new_household_journal(tmp_path)
     made = SemanticMap(journal)
     made.commit(Transaction(id="flat", source="file", insert=FLAT))
     yield made
@@ -211,7 +211,7 @@ def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
     )
     assert tried is not None
     assert seen == [frozenset(tbox)]
-    assert flat.tbox == frozenset(TBOX)
+    assert flat.tbox == home.household()
 
 
 def test_what_is_said_to_be_in_itself_is_noted(flat):
@@ -267,6 +267,6 @@ def test_a_standing_question_follows_what_is_withheld(choosy):
     standing = StandingPlaces(semantic_map, news.append)
     standing.watch(Watch(id="w", on="counter1"))
     milk = v.iri(semantic_map.entity("milk1").iri)
-    semantic_map.replace_tbox(Transaction(id="plain", source="operator"), TBOX)
+    semantic_map.replace_tbox(Transaction(id="plain", source="operator"), home.household())
     standing.follow(semantic_map.seq, ())
     assert [told.rows.appeared for told in news] == [((milk,),)]

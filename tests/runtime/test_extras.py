@@ -170,3 +170,10 @@ def test_the_library_and_the_help_of_every_verb_need_no_extra():
     said = subprocess.run([sys.executable, "-c", WITHOUT_EXTRAS], capture_output=True, text=True)
     assert said.returncode == 0, said.stderr
     assert said.stdout.splitlines()[-1].startswith("all of")
+
+
+def test_what_was_named_cannot_be_done_without(without):
+    without("mujoco")
+    with pytest.raises(errors.BadRequest) as caught:
+        extras.require_nodes(("sim_node",), named=True)
+    assert caught.value.text == "semmap up needs more than is installed: pip install 'semmap[sim]'"

@@ -22,6 +22,8 @@ def entity(**fields):
 
 HERE, THERE = Pose(position_m=(8.0, 2.3, 0.76)), Pose(position_m=(9.0, 2.3, 0.76))
 TURNED = Pose(position_m=(8.0, 2.3, 0.76), orientation_wxyz=orientation_from_yaw(1.5708))
+SLIGHTLY_TURNED = Pose(position_m=HERE.position_m, orientation_wxyz=orientation_from_yaw(0.005))
+LEANING = Pose(position_m=HERE.position_m, orientation_wxyz=(0.98, 0.199, 0.0, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -29,6 +31,8 @@ TURNED = Pose(position_m=(8.0, 2.3, 0.76), orientation_wxyz=orientation_from_yaw
     [
         ({"pose": HERE}, {"pose": THERE}, "moved from (8, 2.3, 0.76) to (9, 2.3, 0.76)"),
         ({"pose": HERE}, {"pose": TURNED}, "turned from 0° to 90°"),
+        ({"pose": HERE}, {"pose": SLIGHTLY_TURNED}, "turned by less than a degree"),
+        ({"pose": HERE}, {"pose": LEANING}, "tilted"),
         (
             {"pose": TURNED},
             {"pose": THERE},

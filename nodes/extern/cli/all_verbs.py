@@ -18,7 +18,7 @@ _MODULES = {
         *("classes", "properties", "status", "sparql", "watch"),
     ),
     "words": ("understand",),
-    "past": ("undo", "history", "last-seen"),
+    "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
     "scene": ("move", "pause", "step", "reset", "picture", "replay"),

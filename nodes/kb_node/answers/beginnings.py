@@ -7,8 +7,9 @@ thing that they are about.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from itertools import groupby
+from typing import NamedTuple
 
 from msgspec import Struct
 
@@ -53,24 +54,50 @@ class Moves(Struct, frozen=True):
     removed: tuple[_Left, ...] = ()
 
 
-def spoken(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> dict[Fact, str]:
-    """Since when each fact has held without a break, in words, as far as the journal goes back."""
+class Beginnings(NamedTuple):
+    """Since when facts have held without a break, as far as the journal goes back."""
+
+    since: Mapping[Fact, int]
+    """By commit; 0 is before the first one that the journal has."""
+    first: int = 1
+
+    def spoken(self, facts: Collection[Fact]) -> str | None:
+        """Since when all of these have held at once: "since commit 7". None where one is not known."""
+        if not facts or not self.since.keys() >= set(facts):
+            return None
+        latest = max(self.since[fact] for fact in facts)
+        return f"since commit {latest}" if latest else f"since before commit {self.first}"
+
+
+def looked_up(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> Beginnings:
+    """Since when each fact has held without a break."""
     found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
-    before = f"since before commit {journal.first}"
-    return {fact: f"since commit {seq}" if seq else before for fact, seq in found.items()}
+    return Beginnings(found, journal.first)
 
 
 def beginnings(
     history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
 ) -> dict[Fact, int]:
-    """The commit since which each fact has held without a break, measured with these thresholds.
+    """The commit since which each fact has held without a break; what does not hold at the end is left out.
 
-    `history` are the commits in order, `first` the entities before them. What held before the first of
-    them is given as 0; what does not hold at the end is not among them.
+    Commits and thresholds are as for `spells`.
+    """
+    found = spells(history, first, facts, limits)
+    return {fact: spans[-1][0] for fact, spans in found.items() if spans and spans[-1][1] is None}
+
+
+def spells(
+    history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+) -> dict[Fact, list[tuple[int, int | None]]]:
+    """From which commit until before which each fact held, in order; None for what holds at the end.
+
+    `history` are the commits in order, `first` the entities before them; what held before the first of
+    them begins with 0. All is measured with the thresholds given.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
     spots = [_Spot(name, frozenset(about), limits, there) for name, about in by_name]
+    found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
         before = {name: there.get(name) for name in _names(moves)}
@@ -82,11 +109,13 @@ def beginnings(
             if spot.follow(shifted, there):
                 holding = spot.holding()
                 for fact in spot.facts:
-                    if fact not in holding:
-                        since.pop(fact, None)
-                    else:
+                    if fact in holding:
                         since.setdefault(fact, moves.seq)
-    return since
+                    elif fact in since:
+                        found[fact].append((since.pop(fact), moves.seq))
+    for fact, seq in since.items():
+        found[fact].append((seq, None))
+    return found
 
 
 def _names(moves: Moves) -> list[str]:

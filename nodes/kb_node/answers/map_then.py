@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 from nodes.kb_node.beliefs import UNCHANGED, Beliefs, Believed
 from nodes.kb_node.documents import rdf
-from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.protocol import Surrounded
 from nodes.kb_node.sparql.service import SparqlService
+from nodes.kb_node.storage import closure_cache
 from nodes.kb_node.storage.compaction.compaction import asserted_after
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
@@ -37,7 +37,7 @@ def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapTh
     if not inferred:
         return MapThen(seq, tuple(asserted))
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
-    reasoner = tbox_validation.compiled(tbox)
+    reasoner = closure_cache.reasoner(tbox, journal.path.parent, of_the_past=True)
     limits = ClassTable(reasoner).limits
     beliefs = Beliefs(reasoner, limits)
     beliefs.change((), asserted - tbox, lenient=True)

@@ -75,7 +75,7 @@ class StandingPlaces:
         if command.class_ is not None:
             class_name = v.local_name(asked_terms.class_(self._map, command.class_))
         those = resolved(where, tuple(self._map.entities()))
-        require_possible(self._map.places.space(), those)
+        require_possible(self._map.places.space(), those, where.within)
         if not self._standing:
             self._known = {entity.name: entity for entity in self._map.entities()}
             self._left_out = self._map.beliefs.left_out

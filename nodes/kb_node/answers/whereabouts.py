@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Final, NamedTuple
 
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, questions
+from nodes.kb_node.answers.beginnings import Beginnings
 from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.facts.rules import COMPUTED
 from nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.selection import only_meant, selected
+from nodes.kb_node.relations.support import on_nothing
 from nodes.kb_node.relations.telling import explained, relations, whereabouts
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
@@ -39,12 +41,15 @@ class Explained(NamedTuple):
     before: str = ""
     measured: tuple[tuple[Fact, str], ...] = ()
 
-    def dated(self, began: Callable[[Collection[Fact]], Mapping[Fact, str]]) -> Explanation:
-        """With words for since when each measured fact holds, by `began`."""
+    def dated(self, look_up: Callable[[Collection[Fact]], Beginnings]) -> Explanation:
+        """With words for since when each measured fact holds and, of several, since when all do."""
         if not self.measured:
             return self.explanation
-        since = began([fact for fact, _ in self.measured])
-        told = (f"{text} ({since[fact]})" if fact in since else text for fact, text in self.measured)
+        facts = [fact for fact, _ in self.measured]
+        began = look_up(facts)
+        told = [f"{text} ({since})" if (since := began.spoken([f])) else text for f, text in self.measured]
+        if len(facts) > 1 and (since := began.spoken(facts)) is not None:
+            told[-1] += f". So it is {since}"
         return structs.replace(self.explanation, text=self.before + "; ".join(told))
 
 
@@ -68,7 +73,10 @@ class Now:
     def entity(self, query: Get) -> Described:
         """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
         entity = self._map.entity(query.name)
-        return self._with_where(entity) if query.where else Described.of(entity)
+        if not query.where:
+            return Described.of(entity)
+        found = self._with_where(entity)
+        return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
     def described(self, name: str) -> Described | None:
         """The entity of that name with where it is, if it is there."""
@@ -92,7 +100,8 @@ class Now:
         """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
         left_out = self._map.beliefs.left_out
-        found = relations(self._map.places.space(), named)
+        is_fixed = self._map.entity(named.name).fixed
+        found = relations(self._map.places.space(), named, is_fixed=is_fixed)
         return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
 
     def measured(self, query: Explain) -> Explanation | None:
@@ -211,7 +220,8 @@ class Then:
         if not query.where:
             return Described.of(entity)
         space = self._space(self._past.entities(query.as_of, None, ()))
-        return Described.of(entity, tuple(whereabouts(space, entity.name)))
+        there = tuple(whereabouts(space, entity.name))
+        return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """See `Now.relations`."""
@@ -219,7 +229,8 @@ class Then:
         everyone = self._past.entities(query.as_of, None, ())
         there = {entity.name: entity for entity in everyone}
         named = _named(query, there.get, lambda: everyone)
-        return tuple(relations(self._space(everyone), named))
+        is_fixed = named.name in there and there[named.name].fixed
+        return tuple(relations(self._space(everyone), named, is_fixed=is_fixed))
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
@@ -227,6 +238,13 @@ class Then:
 
 def _fact(relation: Relation) -> Fact:
     return (relation.subject, relation.relation, relation.object)
+
+
+def _on_nothing(space: Space, entity: Entity) -> str:
+    """How high it hovers, or "" for what something bears, or need bear nothing."""
+    solid = None if entity.fixed else space.solids.get(entity.name)
+    found = None if solid is None else on_nothing(space, solid)
+    return "" if found is None else found.text
 
 
 def _as_left_out(relation: Relation) -> Relation:

@@ -137,20 +137,32 @@ class Draft:
                 raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
 
     def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
-        """Properties lose values and get others."""
+        """Properties lose values, and then get others, which may be the same where all were taken back.
+
+        Raises BadRequest for a value that is both given and taken back, and for several of a functional one.
+        """
         iri = v.iri(entity.iri)
+        wanted = list(self._typed(edit.set, entity.name))
+        left: dict[Term, list[Term]] = {}
         for prop, terms in self._typed(edit.unset, entity.name):
-            known = said.get(prop.iri, ())
-            gone = [k for k in known if not terms or any(same(k, term) for term in terms)]
-            self._go((iri, prop.iri, term) for term in gone)
-        for prop, terms in self._typed(edit.set, entity.name):
-            if prop.functional and len(terms) > 1:
+            for term in terms:
+                if any(prop.iri == other.iri and any(same(term, o) for o in new) for other, new in wanted):
+                    raise errors.BadRequest(
+                        f"{prop.name} {spoken(term)} is both set and unset; give one of the two"
+                    )
+            known = left.get(prop.iri, list(said.get(prop.iri, ())))
+            left[prop.iri] = [k for k in known if terms and not any(same(k, term) for term in terms)]
+        for prop, terms in wanted:
+            given = [term for other, new in wanted if other.iri == prop.iri for term in new]
+            if prop.functional and not all(same(given[0], term) for term in given):
                 raise errors.BadRequest(f"{prop.name} has one value at most; give one")
-            known = said.get(prop.iri, ())
+            known = left.get(prop.iri, list(said.get(prop.iri, ())))
             new = [term for term in terms if not any(same(k, term) for k in known)]
-            if prop.functional and new:
-                self._go((iri, prop.iri, term) for term in known)
-            self._come((iri, prop.iri, term) for term in new)
+            left[prop.iri] = [*([] if prop.functional and new else known), *new]
+        for property_, now in left.items():
+            before = said.get(property_, ())
+            self._go((iri, property_, term) for term in before if term not in now)
+            self._come((iri, property_, term) for term in now if term not in before)
 
     def _typed(self, statements: Sequence[Statement], name: str) -> Iterator[tuple[Property, list[Term]]]:
         """The properties and values that are meant. Raises BadRequest, UnknownName."""

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node.answers import answers, beginnings, map_then, questions, whereabouts
+from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.answers.understanding import Understanding
@@ -28,6 +28,7 @@ from schemas.commands import (
     Check,
     Classes,
     Could,
+    Diff,
     Explain,
     Export,
     Get,
@@ -39,11 +40,13 @@ from schemas.commands import (
     Renew,
     Sparql,
     Understand,
+    WasWhen,
     Watch,
 )
 from schemas.commits import Commit, Snapshot, Star
 from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
+from schemas.happenings import Difference, Spells
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -91,6 +94,8 @@ class Asking:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
+            Diff.answered_by(self.on_diff),
+            WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
@@ -182,8 +187,17 @@ class Asking:
             return self._tried(questions.explain, asked)
         if not found.measured:
             return found.explanation
-        began = partial(beginnings.spoken, self._journal, self._past, limits=self._map.classes.limits)
-        return self._aside.submit(found.dated, began)
+        look_up = partial(beginnings.looked_up, self._journal, self._past, limits=self._map.classes.limits)
+        return self._aside.submit(found.dated, look_up)
+
+    def on_diff(self, query: Diff) -> Future[Difference]:
+        """What is otherwise than it was."""
+        return self._aside.submit(differences.difference, self._past, query, self._map.classes.limits)
+
+    def on_when(self, query: WasWhen) -> Future[Spells]:
+        """When one thing was on, in or at another."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.spells, self._journal, self._past, query, limits)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""

@@ -175,8 +175,10 @@ class CompiledEngine:
         try:
             if retraction is not None:
                 removed = retraction.delete(aside, gone)
-            added.extend(triple for triple in back if insert(triple))
-            self._paths.compute(come, lambda triple: insert(triple, COMPUTED), computed)
+            for triple in back:
+                if insert(triple):
+                    added.append(triple)
+            self._paths.compute(come, insert, computed)
             self._saturation.run()
         except (Clash, NotCompilable) as error:
             explanation = None
@@ -189,7 +191,8 @@ class CompiledEngine:
             raise Refused(explanation) from None
         finally:
             abox.store.log = None
-        touched, implied = frozenset(self._moved()), self._implied(log) if tell_implied else None
+        touched = frozenset(self._moved()) if abox.moved else frozenset[Term]()
+        implied = self._implied(log) if tell_implied else None
         abox.settle()
         if retraction is not None:
             retraction.release()

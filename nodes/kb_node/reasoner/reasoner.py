@@ -163,7 +163,7 @@ class Reasoner:
         Raises:
             Inconsistent: everything is as it was before.
         """
-        gone, come, aside, back = list(gone), list(come), list(aside), list(back)
+        gone, come, aside = list(gone), list(come), list(aside)
         back = [triple for triple in back if triple in self._aside]
         engine = self._engine
         try:

@@ -11,7 +11,9 @@ from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import own_sides
 from schemas.relations import RelationName
 
-_OF_SIZES = frozenset({"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches"})
+_OF_SIZES = frozenset(
+    {"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches", "isNear", "isNextTo"}
+)
 """The relations of which nothing can be said where a size is not known."""
 
 
@@ -24,6 +26,8 @@ def why_not(space: Space, relation: RelationName, solid: Solid, other: Solid) ->
     if relation == "isBetween":
         return "that takes two others; relations of a thing lists what it is between"
     if relation in SIDES:
+        if borne := _rests(space, solid, other) or _by_way_of(space, solid, other):
+            return f"{borne}, and what bears a thing is on no side of it"
         found = [spoken(side.relation).removeprefix("is ") for side in own_sides(solid, other)]
         where = f"it is {' and '.join(found)} it" if found else "it is neither beside it nor before it"
         return f"by the front of {other.name}, {where}"

@@ -40,7 +40,7 @@ def selected(
     """
     require_whole(where)
     those = resolved(where, tuple(everyone))
-    require_possible(space, those)
+    require_possible(space, those, where.within)
     return chosen(space, entities, where, those, left_out)
 
 
@@ -54,30 +54,59 @@ def require_whole(where: Where) -> None:
         raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
 
 
-def require_possible(space: Space, those: Meant) -> None:
-    """Raises Refused where nothing can be on or in any of those that are meant, as far as is known."""
-    on = sorted(name for name in those.on or () if name in space.solids)
-    if on and all(space.solids[name].is_place for name in on):
+def require_possible(space: Space, those: Meant, within_m: float | None = None) -> None:
+    """Raises Refused where nothing can be on, in or near any of those that are meant, as far as is known."""
+    _require_bearing(_placed(space, those.on, "on"))
+    _require_holding(_placed(space, those.in_, "in"))
+    near = _placed(space, those.near, "near")
+    if near and within_m is None and all(solid.is_place for solid in near):
         raise errors.Refused(
-            f"{wording.few(on, 6)} {_is_a_place(on)}: things are in a place, and not on it; use in (--in)"
-        )
-    in_ = sorted(name for name in those.in_ or () if name in space.solids)
-    for name in in_:
-        solid = space.solids[name]
-        if solid.hollows or (solid.is_place and solid.is_measured):
-            return
-    if in_ and all(space.solids[name].is_place for name in in_):
-        raise errors.Refused(
-            f"the extent of {wording.few(in_, 6)} is not known, so neither is what is in there"
-        )
-    if in_:
-        raise errors.Refused(
-            f"nothing can be in {wording.few(in_, 6)}: that has no hollow that is known, and is no place"
+            f"{_are_places(near)}: only things are near one another; use in (--in) for what is in there, or"
+            " say how far from it (--near PLACE --within M)"
         )
 
 
-def _is_a_place(names: Sequence[str]) -> str:
-    return "is a place" if len(names) == 1 else "are places"
+def _placed(space: Space, names: Iterable[str] | None, how: str) -> list[Solid]:
+    """Those that have a position, by name; none if nobody is meant. Raises Refused if none has one."""
+    if names is None:
+        return []
+    found = [space.solids[name] for name in sorted(names) if name in space.solids]
+    if not found:
+        has = "has" if len(those := sorted(names)) == 1 else "have"
+        raise errors.Refused(
+            f"{wording.few(those, 6)} {has} no position, so what is {how} there is not known"
+        )
+    return found
+
+
+def _require_bearing(solids: Sequence[Solid]) -> None:
+    if not solids:
+        return
+    if all(solid.is_place for solid in solids):
+        raise errors.Refused(f"{_are_places(solids)}: things are in a place, and not on it; use in (--in)")
+    if not any(solid.has_parts for solid in solids):
+        raise errors.Refused(
+            f"the size of {_few(solids)} is not known, so neither is what is on it; give it one:"
+            " semmap update NAME --size X Y Z"
+        )
+
+
+def _require_holding(solids: Sequence[Solid]) -> None:
+    if not solids or any(solid.hollows or (solid.is_place and solid.is_measured) for solid in solids):
+        return
+    if all(solid.is_place for solid in solids):
+        raise errors.Refused(f"the extent of {_few(solids)} is not known, so neither is what is in there")
+    raise errors.Refused(
+        f"nothing can be in {_few(solids)}: that has no hollow that is known, and is no place"
+    )
+
+
+def _few(solids: Sequence[Solid]) -> str:
+    return wording.few([solid.name for solid in solids], 6)
+
+
+def _are_places(solids: Sequence[Solid]) -> str:
+    return f"{_few(solids)} {'is a place' if len(solids) == 1 else 'are places'}"
 
 
 def chosen(
@@ -127,7 +156,8 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
         names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
         if names:
             return frozenset(names)
-    known = {e.name for e in everyone} | {e.preferred_reference or "" for e in everyone}
+    called_so = sorted({word for e in everyone for word in (e.name, e.preferred_reference or "", e.class_)})
+    known = {word.casefold(): word for word in called_so}.values()  # of Table and table, table
     raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
 
 

@@ -17,6 +17,7 @@ from nodes.kb_node.relations.measuring.phrases import SIDES, metres, spoken, why
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View, own_sides, seen, sides
 from nodes.kb_node.relations.reasons import why_not
+from nodes.kb_node.relations.support import bearers, borne, on_nothing
 from schemas import errors
 from schemas.commands import Relations
 from schemas.relations import Relation, RelationName
@@ -29,8 +30,11 @@ _MOST_SIDES = 4
 """Of so many neighbours, the nearest, it is told on which side of them a thing is."""
 
 
-def relations(space: Space, query: Relations) -> Iterator[Relation]:
-    """What is asked for. Raises UnknownName, Refused for what has no position."""
+def relations(space: Space, query: Relations, *, is_fixed: bool = False) -> Iterator[Relation]:
+    """What is asked for. Nothing need bear what is fixed, so of that it is not told that nothing does.
+
+    Raises UnknownName, Refused for what has no position, BadRequest for what is to be seen from itself.
+    """
     for name in filter(None, (query.other, query.viewer)):
         if name not in space.solids:
             raise errors.UnknownName(
@@ -39,7 +43,7 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
     if query.other is not None:
         yield from relations_between(space, query.name, query.other)
     else:
-        yield from relations_of(space, query.name)
+        yield from relations_of(space, query.name, is_fixed=is_fixed)
     if query.viewer == query.name:
         raise errors.BadRequest(
             f"{query.name} cannot be seen from itself; the viewer (--from) must be another entity"
@@ -54,18 +58,29 @@ def relations(space: Space, query: Relations) -> Iterator[Relation]:
                 yield relation
 
 
-def relations_of(space: Space, name: str) -> Iterator[Relation]:
-    """What a thing is in and on, hangs on, touches, is under, above, next to, near to and between."""
+def relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Iterator[Relation]:
+    """What a thing is in and on, hangs on, bears, touches, is under, above, next to, near to and between.
+
+    What it bears is told as that of the other one: `isOn` or `isInside`, of which it is the object.
+    """
     solid = _solid(space, name)
     yield from (found := list(whereabouts(space, name)))
     if solid.is_place:
         return
+    if not is_fixed and (hovering := on_nothing(space, solid)) is not None:
+        yield hovering
+    above = set[str]()
+    for relation, upper, (_, measure) in borne(space, solid):
+        above.add(upper.name)
+        yield _told(space, relation, upper, solid, measure)
     told = {relation.object for relation in found}
     beside = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
     beside = sorted(beside, key=lambda other: (measures.gap(solid, other), other.name))
     for other in beside:
         if other.name not in told:
-            yield from _special(relation for relation in _beside(space, solid, other) if relation.holds)
+            holding = (relation for relation in _beside(space, solid, other) if relation.holds)
+            is_borne = other.name in above
+            yield from _special(r for r in holding if not (is_borne and r.relation == "touches"))
     near = [other for other in beside if other.name not in told and not other.is_place][:_ABOUT_BETWEEN]
     pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
     amid = (pair for pair in pairs if solid in between(space, *pair))
@@ -211,14 +226,20 @@ def measured(space: Space, relation: RelationName, solid: Solid, other: Solid) -
 
 
 def as_seen(space: Space, name: str, view: View, viewer: Solid | None) -> Iterator[Relation]:
-    """Whether a thing can be seen by a viewer, and on which side of its neighbours and the viewer it is."""
+    """Whether a thing can be seen by a viewer, and on which side of its neighbours and the viewer it is.
+
+    Of what bears it, or is borne by it, nobody says that: a cup on a desk is not right of the desk.
+    """
     solid = _solid(space, name)
     if solid.is_place:
         return
+    below = bearers(space, solid)
     found = list(sides(space, solid, view))
     if viewer is not None:
         found = [*own_sides(solid, viewer), *(side for side in found if side.other is not viewer)]
     for relation, other, by_m in found:
+        if other in below or solid in bearers(space, other):
+            continue
         yield Relation(
             relation=relation,
             subject=name,

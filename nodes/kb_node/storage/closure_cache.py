@@ -19,14 +19,15 @@ _SUFFIX = ".closure"
 _DIGEST_BYTES = 16
 
 
-def reasoner(tbox: Collection[Triple], folder: Path) -> Reasoner:
+def reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = False) -> Reasoner:
     """A reasoner with the TBox. Raises Inconsistent.
 
-    What is in `folder` counts only for the same triples and the same format, and if it is not damaged.
+    What is in `folder` counts only for the same triples and the same format, and if it is not damaged. The
+    closure of a TBox `of_the_past` is not written down: the next start needs the present one's.
     """
     closed = _read(_path(tbox, folder))
     found = Reasoner(tbox, closed=closed)
-    if closed is None:
+    if closed is None and not of_the_past:
         keep(found.closed, tbox, folder)
     return found
 

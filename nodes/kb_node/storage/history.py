@@ -131,8 +131,17 @@ class Past:
             removed = commit.provenance
         return sighting(self.at_the_beginning()[name], removed)
 
+    @property
+    def last(self) -> int:
+        """The number of the last commit, 0 before the first."""
+        return self._journal.last
+
+    def knows(self, name: str) -> bool:
+        """Whether an entity was ever named so, as far as the history goes back."""
+        return name in self.at_the_beginning() or bool(self._journal.touching(name))
+
     def _require_known(self, name: str) -> None:
-        if name not in self.at_the_beginning() and not self._journal.touching(name):
+        if not self.knows(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""
             raise errors.UnknownName(

@@ -7,22 +7,21 @@ from nodes.kb_node.beliefs import Believed
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
-from nodes.kb_node.storage.journal import Journal
-from ontology import FLAT_TTL, HOUSEHOLD_TTL
+from ontology import FLAT_TTL
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Sparql
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
+from tests.kb_node import home
 
-TBOX = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t")
 FLAT = tuple(rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f"))
 ON_COUNTER = "SELECT ?x { ?x dm:isOn :counter1 } ORDER BY ?x"
 
 
-@pytest.fixture
-def flat(tmp_path):
-    journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(TBOX), "ntriples"))
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    journal = home.new_household_journal(tmp_path_factory.mktemp("flat"))
     made = SemanticMap(journal)
     changes = [
         {"insert": FLAT},

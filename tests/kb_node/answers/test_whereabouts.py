@@ -5,6 +5,7 @@ import pytest
 from nodes.kb_node.answers import beginnings, questions, whereabouts
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
@@ -17,9 +18,12 @@ from schemas.relations import Where
 from tests.kb_node import home
 
 
-def new_flat(folder):
-    triples = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h")
-    made = home.new_map(folder, triples)
+def new_flat(folder, further=b""):
+    if further:
+        triples = rdf.parse(HOUSEHOLD_TTL.read_bytes() + further, "household.ttl", label_prefix="h")
+        made = home.new_map(folder, triples)
+    else:
+        made = SemanticMap(home.new_household_journal(folder))
     made.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
     made.believe_places()
     return made
@@ -51,7 +55,7 @@ def explained(semantic_map, name, predicate, value, *, negated=False):
 
 def began(semantic_map, facts):
     journal = semantic_map._journal
-    return beginnings.spoken(journal, Past(journal), facts, semantic_map.classes.limits)
+    return beginnings.looked_up(journal, Past(journal), facts, semantic_map.classes.limits)
 
 
 def refused(semantic_map, name, predicate, value):
@@ -112,6 +116,22 @@ def test_a_relation_may_begin_with_what_goes_from_between(own):
     assert explained(own, "cup9", "isOn", "book9").text.endswith("(since commit 3)")
     change(remove=("book9",))
     assert explained(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
+
+
+def test_a_chain_is_as_old_as_the_latest_of_its_steps(tmp_path):
+    chain = b"dm:restsOver a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:isOn dm:isOn ) ."
+    own = new_flat(tmp_path, chain)
+    for seq, (class_, name, size, z) in enumerate(
+        (("Book", "book9", (0.2, 0.2, 0.02), 0.9), ("Cup", "cup9", (0.08, 0.08, 0.1), 0.92)), start=2
+    ):
+        iri, pose = v.bare(v.dm(class_)), Pose(position_m=(8.2, 0.3, z))
+        new = NewEntity(name=name, class_iri=iri, size=size, pose=pose)
+        own.commit(Transaction(id=f"c{seq}", source="operator", add=(new,)))
+    text = explained(own, "cup9", "restsOver", "counter1").text
+    assert "over it (since commit 3)" in text
+    assert "over it (since commit 2)" in text
+    assert text.endswith(". So it is since commit 3")
+    home.close(own)
 
 
 def test_why_not_says_by_what_way(flat):

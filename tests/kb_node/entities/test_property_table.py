@@ -106,6 +106,27 @@ def test_unset_takes_one_value_or_all(stateful_map):
     assert properties(stateful_map) == {}
 
 
+def test_what_is_unset_and_set_in_one_commit_is_replaced(stateful_map):
+    stated(stateful_map, "hasColor", "red", "blue")
+    edited(stateful_map, unset=(statement("hasColor"),), set=(statement("hasColor", "red"),))
+    assert properties(stateful_map) == {"hasColor": ("color_red",)}
+    same = edited(stateful_map, unset=(statement("hasColor"),), set=(statement("hasColor", "red"),))
+    assert same is None  # it was the only value, and is
+    edited(stateful_map, unset=(statement("hasColor", "red"),), set=(statement("ha colore", "blue"),))
+    edited(stateful_map, unset=(statement("isOpen"),), set=(statement("isOpen", "true"),))
+    assert properties(stateful_map) == {"hasColor": ("color_blue",), "isOpen": True}
+
+
+def test_the_same_value_cannot_be_set_and_unset(stateful_map):
+    stated(stateful_map, "isOpen", "true")
+    for set_, unset in (("true", "1"), ("false", "false")):
+        with pytest.raises(errors.BadRequest, match=r"isOpen (true|false|1) is both set and unset"):
+            edited(stateful_map, set=(statement("isOpen", set_),), unset=(statement("is open", unset),))
+    with pytest.raises(errors.BadRequest, match="isOpen has one value at most"):
+        edited(stateful_map, set=(statement("isOpen", "true"), statement("isOpen", "false")))
+    assert properties(stateful_map) == {"isOpen": True}
+
+
 def test_a_condition_holds_or_nothing_is_done(stateful_map):
     with pytest.raises(errors.PreconditionFailed, match="chair1: isOpen is not set, not false"):
         stated(stateful_map, "isOpen", "true", only_if=(statement("isOpen", "no"),))

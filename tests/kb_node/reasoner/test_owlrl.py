@@ -8,6 +8,7 @@ import rdflib
 
 from nodes.kb_node.reasoner import Inconsistent, Reasoner
 from nodes.kb_node.reasoner.terms import SAME_AS, TYPE
+from tests.depth import tries
 from tests.kb_node.reasoner.graphs import CLASSES, EVERYTHING, OBJECT_PROPERTIES, triples
 from tests.kb_node.reasoner.worlds import World
 
@@ -109,7 +110,7 @@ def test_where_owlrl_says_something_else(case):
     assert ours != {(s, p, o) for s, p, o in theirs if p == SAME_AS and s != o and s[0] == o[0] == "<"}
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(tries(20)))
 def test_random_worlds_are_the_same_as_with_owlrl(seed):
     """Ten changes, the last of which may be refused."""
     world = World(seed, without=WRONG)

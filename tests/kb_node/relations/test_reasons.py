@@ -118,3 +118,11 @@ def test_of_what_is_not_compared_in_a_crowd_that_is_said():
     )
     assert explained(crowd, "can149", "isOn", "table1").holds
     assert explained(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
+
+
+def test_what_is_on_a_thing_is_on_no_side_of_it():
+    space = Space([TABLE, thing("cup1", (0.2, 0.2, TOP))])
+    for name, other, borne in (("cup1", "table1", "it is on table1"), ("table1", "cup1", "cup1 is on it")):
+        found = explained(space, name, "isLeftOf", other)
+        assert not found.holds
+        assert found.text.endswith(f"{borne}, and what bears a thing is on no side of it")

@@ -108,3 +108,28 @@ def test_near_is_the_fact_that_a_query_sees():
             assert [e.name for e in found] == [
                 e.name for e in MAP if pairs.holds(e.name, "isNear", entity.name)
             ]
+
+
+@pytest.mark.parametrize(
+    ("where", "reason"),
+    [
+        ({"near": "kitchen1"}, r"kitchen1 is a place: only things are near one another; use in \(--in\)"),
+        ({"on": "ghost1"}, "ghost1 has no position, so what is on there is not known"),
+        ({"near": "ghost1"}, "ghost1 has no position, so what is near there is not known"),
+        ({"on": "relic1"}, "the size of relic1 is not known, so neither is what is on it"),
+    ],
+)
+def test_what_is_not_known_is_no_empty_list(where, reason):
+    everyone = [*MAP, thing("ghost1", None), thing("relic1", (1.0, 1.0, 0.0))]
+    with pytest.raises(errors.Refused, match=reason):
+        selected(Space(everyone), everyone, Where(**where), everyone)
+
+
+def test_how_far_from_a_place_can_be_asked():
+    assert names(near="corner1", within=0.1) == ["lamp1"]
+
+
+def test_who_asks_for_a_thing_by_several_words_is_told_of_what_the_last_of_them_names():
+    everyone = [ROOM, CORNER, thing("table1", (0.0, 0.0, 0.0), ref="table")]
+    with pytest.raises(errors.UnknownName, match="did you mean table, kitchen or"):
+        meant(everyone, "kitchen table")

@@ -100,3 +100,82 @@ def test_what_hangs_is_attached_to_something_where_it_is():
         "isAttachedTo",
         "isLocatedIn",
     ]
+
+
+def test_what_a_thing_bears_is_told_of_the_other_one():
+    found = list(relations(Space(MAP), Relations(name="table1")))
+    assert [(r.relation, r.subject) for r in found if r.object == "table1"] == [
+        ("isOn", "cup1"),
+        ("isOn", "cup2"),
+        ("isOn", "cup3"),
+    ]
+    assert not [r for r in found if r.relation == "touches"]  # what is on it touches it
+    bowl = [TABLE, thing("bowl1", (0.0, 0.0, TOP)), thing("apple1", (0.0, 0.0, TOP + 0.02))]
+    held = [(r.relation, r.subject, r.object) for r in relations(Space(bowl), Relations(name="bowl1"))]
+    assert held == [("isOn", "bowl1", "table1"), ("isInside", "apple1", "bowl1")]
+
+
+def test_nothing_is_left_of_what_bears_it():
+    here = [*MAP, thing("bowl1", (0.0, -0.4, TOP)), thing("apple1", (0.0, -0.4, TOP + 0.02))]
+    sides = {"isLeftOf", "isRightOf", "isInFrontOf", "isBehind"}
+    for name in ("cup2", "apple1", "table1"):
+        seen = relations(Space(here), Relations(name=name, viewpoint=(-3.0, 0.0, 0.0, 0.0)))
+        beside = {r.object for r in seen if r.relation in sides}
+        if name == "table1":
+            assert not beside & {"cup1", "apple1"}
+        else:
+            assert beside - {"table1"} == beside != set()
+    pair = relations(Space(here), Relations(name="cup2", other="table1", viewpoint=(-3.0, 0.0, 0.0, 0.0)))
+    assert not [r for r in pair if r.relation in sides]
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ((1.5, 1.5, 0.42), "is on nothing: its bottom is 42.0 cm above the floor of corner1"),
+        ((1.5, 1.5, -0.04), None),
+        ((1.5, 1.5, -0.3), "is on nothing: its bottom is at a height of -30.0 cm, and it is in no place"),
+        ((9.0, 9.0, 0.42), "is on nothing: its bottom is at a height of 42.0 cm, and it is in no place"),
+        ((0.0, 0.0, TOP + 0.2), "is on nothing: its bottom is 20.0 cm above a surface of table1"),
+        ((0.0, 0.0, TOP), None),
+        ((1.5, 1.5, 0.0), None),
+        ((9.0, 9.0, 0.0), None),
+    ],
+)
+def test_what_hovers_is_on_nothing(at, said):
+    space = Space([ROOM, CORNER, TABLE, thing("egg1", at)])
+    found = [r for r in relations(space, Relations(name="egg1")) if r.relation == "isOn" and not r.object]
+    assert [r.text.removeprefix("egg1 ").partition(" that has")[0] for r in found] == ([said] if said else [])
+    assert not any(r.holds for r in found)
+    fixed = list(relations(space, Relations(name="egg1"), is_fixed=True))
+    assert all(r.object for r in fixed)
+
+
+def test_too_little_of_its_base_over_an_edge_is_on_nothing():
+    edge = TABLE.size_m[0] / 2
+    box = thing("box1", (edge + 0.09, 0.0, TOP), size=(0.2, 0.2, 0.1))
+    (found,) = (r for r in relations(Space([ROOM, TABLE, box]), Relations(name="box1")) if not r.object)
+    assert found.text.endswith("level with a surface of table1, but 8% of its base is over that")
+
+
+def test_what_hangs_or_is_on_a_plan_is_not_said_to_hover():
+    wall = thing("wall1", (0.0, 0.0, 0.0), size=(0.1, 3.0, 2.5))
+    picture = thing("picture1", (0.07, 0.0, 1.3))
+    assert all(r.object for r in relations(Space([wall, picture]), Relations(name="picture1")))
+    plan = [thing("lamp1", (0.0, 0.0, 0.0)), thing("rug1", (0.0, 0.0, 0.0))]
+    assert all(r.object for r in relations(Space(plan), Relations(name="lamp1")))
+
+
+def test_what_has_no_known_size_is_told_what_is_missing():
+    relic = thing("relic1", (0.0, 0.0, TOP))
+    (found,) = (r for r in relations(Space([ROOM, TABLE, relic]), Relations(name="relic1")) if not r.object)
+    assert "give it a size: semmap update relic1 --size X Y Z" in found.text
+
+
+def test_what_has_no_known_size_is_near_nothing():
+    relic = thing("relic1", (0.0, 0.0, TOP))
+    space = Space([ROOM, TABLE, thing("cup1", (0.1, 0.0, TOP)), relic])
+    assert [r.relation for r in relations(space, Relations(name="relic1")) if r.holds] == ["isLocatedIn"]
+    pair = list(relations(space, Relations(name="cup1", other="relic1")))
+    assert not any(r.holds for r in pair)
+    assert "relic1" not in {r.object for r in relations(space, Relations(name="cup1"))}

@@ -128,6 +128,17 @@ def test_every_commit_before_the_question_is_seen(at_home):
     assert len(at_home.ask(SEATS, inferred=True).rows) == len(at_home.ask(CHAIRS).rows) == 19
 
 
+def test_what_the_map_does_not_know_is_told_by_readers_that_open_no_files(flat):
+    note = "nothing in the map is called dm:isOnn; did you mean dm:isOn"
+    for with_inferred in (False, True):
+        found = flat.ask("SELECT ?x { ?x dm:isOnn :table1 }", inferred=with_inferred)
+        assert [text.partition(",")[0].removesuffix("?") for text in found.notes] == [note]
+    assert "did you mean :table1" in flat.ask("ASK { ?x dm:isOn :tabel1 }").notes[0]
+    watching = flat.watch("SELECT ?x { ?x dm:isOnn ?y }")
+    assert watching.notes[0].startswith(note)
+    flat.renew(watching.watch, end=True)
+
+
 QUERIES = [
     "SELECT ?x ?c { ?x a ?c }",
     "SELECT ?x { ?x a dm:Seat }",

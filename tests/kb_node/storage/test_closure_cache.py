@@ -67,3 +67,14 @@ def test_what_is_damaged_does_not_count(tmp_path, closings, damage):
 def test_a_folder_that_takes_no_file_is_no_obstacle(tmp_path, closings):
     check(tmp_path / "absent")
     assert len(closings) == 1
+
+
+def test_one_of_the_past_leaves_the_present_one(tmp_path, closings):
+    check(tmp_path)
+    (present,) = tmp_path.iterdir()
+    before = [*TBOX, (CHAIR, v.RDFS_LABEL, '"Stuhl"@de')]
+    closure_cache.reasoner(before, tmp_path, of_the_past=True)
+    assert [*tmp_path.iterdir()] == [present]
+    assert len(closings) == 2
+    closure_cache.reasoner(TBOX, tmp_path, of_the_past=True)
+    assert len(closings) == 2

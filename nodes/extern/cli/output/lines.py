@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from schemas import wording
 from schemas.explanations import Explanation
+from schemas.happenings import Difference
+from schemas.relations import Relation
 from schemas.replies import Changed, Inferred
 
 _MOST = 20
-"""Lines of what would follow, or would no longer."""
+"""Lines of what would follow, or would no longer; names of what a thing bears."""
+_BEARS = {"isOn": "supports", "isInside": "holds"}
+"""By relation, what the other thing does."""
 
 
 def changed(reply: Changed) -> Iterable[str]:
@@ -18,6 +23,18 @@ def changed(reply: Changed) -> Iterable[str]:
     yield from (f"  note: {note}" for note in reply.notes)
     yield from _few("would follow", reply.follows)
     yield from _few("would no longer follow", reply.no_longer_follows)
+
+
+def difference(found: Difference) -> Iterable[str]:
+    """What is otherwise, one line an entity."""
+    about: dict[str, list[str]] = {}
+    for change in found.changes:
+        about.setdefault(change.name, []).append(change.text)
+    for related in found.relations:
+        about.setdefault(related.subject, []).append(related.text)
+    yield from (f"{name}: {'; '.join(texts)}" for name, texts in sorted(about.items()))
+    same = "nothing is otherwise" if not about else f"{wording.entities(len(about))} otherwise"
+    yield f"{same} (commit {found.last} against {found.first})"
 
 
 def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
@@ -31,6 +48,20 @@ def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
 def inferred(reply: Inferred) -> Iterable[str]:
     """What follows, one line a triple."""
     return reply.text or ("nothing follows beyond what is asserted",)
+
+
+def relations(found: Sequence[Relation]) -> Iterable[str]:
+    """A sentence each; of several things that are on one, or inside it, one sentence without measurements."""
+    borne: dict[tuple[str, str], list[str]] = {}
+    for relation in found:
+        if relation.holds and relation.relation in _BEARS:
+            borne.setdefault((relation.relation, relation.object), []).append(relation.subject)
+    for relation in found:
+        names = borne.get((relation.relation, relation.object), ())
+        if len(names) < 2 or not relation.holds:
+            yield relation.text
+        elif relation.subject == names[0]:
+            yield f"{relation.object} {_BEARS[relation.relation]} {wording.few(names, _MOST)}"
 
 
 def explanation(e: Explanation) -> Iterable[str]:

@@ -73,7 +73,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "types": ", ".join(e.types),
         "pose": pose_text(e.pose),
         "size": (_size(e) or "unknown") + own_size,
-        **({"where": ", ".join(map(_whereabouts, e.whereabouts))} if e.whereabouts else {}),
+        **({"where": where} if (where := _where(e)) else {}),
         **({"but": "; ".join(doubts)} if (doubts := (*(r.text for r in e.denied), *e.withheld)) else {}),
         "reference": e.preferred_reference or "none",
         "also called": ", ".join(e.alternative_references) or "-",
@@ -197,6 +197,11 @@ def commit_line(commit: Commit) -> str:
 def _size(e: Entity) -> str:
     extents = e.size_m or ()
     return " x ".join(f"{extent:.3g}" if extent < 100 else f"{extent:.0f}" for extent in extents)
+
+
+def _where(e: Described) -> str:
+    known = ", ".join(map(_whereabouts, e.whereabouts))
+    return "; ".join(filter(None, (known, e.on_nothing.removeprefix(f"{e.name} is "))))
 
 
 def _whereabouts(relation: Relation) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from nodes.extern.cli import output
+from nodes.extern.cli.angles import ANGLE
 from nodes.extern.cli.calling import (
     TIME,
     answered_by_robots,
@@ -176,7 +177,11 @@ def could(client: Client, name: str, predicate: str, value: str, format: str) ->
 @click.argument("other", required=False, shell_complete=entity_names)
 @click.option("--from", "viewer", metavar="ENTITY", help="Also left of, behind ... as seen from there.")
 @click.option(
-    "--from-pose", "viewpoint", nargs=4, type=float, metavar="X Y Z YAW", help="The same, from a pose."
+    "--from-pose",
+    "viewpoint",
+    type=(float, float, float, ANGLE),
+    metavar="X Y Z YAW",
+    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
 )
 @_format(type=click.Choice(["text", "json"]), default="text", show_default=True)
 @_as_of
@@ -190,7 +195,18 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
     if format == "json":
         print_json(found)
     else:
-        print_lines([relation.text for relation in found] or [f"{name} is on, in and near nothing"])
+        print_lines(list(lines.relations(found)) or [_beside_nothing(client, name)])
+
+
+def _beside_nothing(client: Client, name: str) -> str:
+    """What is said of a thing that is in no relation to any other."""
+    try:
+        is_place = client.get(name).place
+    except errors.UnknownName:  # a reference or a class
+        is_place = False
+    if is_place:
+        return f"{name} is a place; what is in it tells: semmap list --in {name}"
+    return f"{name} is on, in and near nothing"
 
 
 @click.command()
@@ -327,6 +343,12 @@ def _watch_key(client: Client, keyexpr: str) -> None:
                 f"your certificate ({client.identity.role}) may not follow '{keyexpr}'; it may follow all of:"
                 f" {', '.join(followed)}"
             )
+    if not bus.meets(keys.published(), keyexpr):
+        print(
+            f"  note: semmap publishes nothing on '{keyexpr}', so this waits for somebody else to;"
+            f" all that it publishes is on '{keys.ROOT}/**'",
+            file=sys.stderr,
+        )
     for key, payload in bus.listen(client.session, keyexpr):
         say(f"{key}  {payload}")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from nodes.extern.cli.angles import yaw_option
 from nodes.extern.cli.calling import carrying, given, print_lines, talks, vector_option
 from nodes.extern.cli.completing import class_names, entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
@@ -41,7 +42,7 @@ _set = click.option(
 _if_is = click.option("--if-is", metavar="VALUE", help="Only if this is a value now (compare and set).")
 _describing = _options(
     vector_option("--at", metavar="X Y Z", help="Position of the bottom centre in the map frame [m]."),
-    click.option("--yaw", type=float, metavar="RAD", help="Rotation about the z axis [rad]."),
+    yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
     vector_option("--size", metavar="X Y Z", help="Size along its own axes [m]."),
     click.option("--ref", metavar="TEXT", help="Preferred reference: what people call it."),
@@ -76,7 +77,10 @@ def add(client: Client, **fields: Any) -> None:
 )
 @_set
 @click.option(
-    "--unset", multiple=True, metavar="PROPERTY[=VALUE]", help="Remove a property; may be repeated."
+    "--unset",
+    multiple=True,
+    metavar="PROPERTY[=VALUE]",
+    help="Remove a value of a property, or all; with --set of the same property they are replaced.",
 )
 @click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
 @carrying

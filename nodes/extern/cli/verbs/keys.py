@@ -11,6 +11,7 @@ from nodes.extern.cli.output import show
 from nodes.extern.cli.output.tables import table
 from nodes.identity.register import Member, Register
 from nodes.runtime import extras
+from schemas.keys import ROUTER
 from schemas.roles import ROLES, Role
 
 _path = click.Path(path_type=Path)
@@ -109,6 +110,40 @@ def list_(folder: Path) -> None:
         state = "revoked" if member.revoked else "expired" if expired else "admitted"
         rows.add(member.name, member.role, f"{member.expires:%Y-%m-%d}", state)
     show.console().print(rows)
+
+
+@keys.command()
+@_folder
+@click.option(
+    "--listen",
+    default="tls/0.0.0.0:7447",
+    show_default=True,
+    metavar="EP",
+    help="Zenoh endpoint that the router listens on.",
+)
+@click.option("--connect", multiple=True, metavar="EP", help="Another router to connect to; may be repeated.")
+@click.option("--namespace", default="", metavar="ROBOT", help="The robot whose keys it routes; * is all.")
+def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) -> None:
+    """Print a configuration that makes zenohd a router.
+
+    It is for a secure system, with the rules for everybody who is admitted now: print it again after each
+    change.
+    """
+    from nodes import bus
+    from nodes.identity import Identity
+    from nodes.router.access import access_control
+
+    register = Register.read(folder)
+    for endpoint in (listen, *connect):
+        bus.require_tls(endpoint)
+    network = bus.Network(
+        mode="router",
+        listen=(listen,),
+        connect=connect,
+        identity=Identity.read(folder / ROUTER),
+        access=access_control(register.admitted, namespace),
+    )
+    click.echo(network.as_file())
 
 
 def _told(done: str, folder: Path, member: Member) -> None:

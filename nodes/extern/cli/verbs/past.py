@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
@@ -10,6 +11,8 @@ from nodes.extern.cli import output
 from nodes.extern.cli.calling import TIME, print_json, print_lines, talks
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.output import lines
+from schemas import errors
+from schemas.happenings import KeptRelation
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
@@ -18,6 +21,9 @@ _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 
+_text_or_json = click.option(
+    "--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True
+)
 _PIPED_WIDTH = 120
 """Columns: what commits change may be a long story."""
 
@@ -58,6 +64,40 @@ def last_seen(client: Client, name: str, format: str) -> None:
         print_json(sighting)
     else:
         output.show.console().print(output.show_past.sighting_card(sighting))
+
+
+@click.command()
+@click.argument("since", metavar="COMMIT|TIME")
+@click.argument("until", metavar="[COMMIT|TIME]", required=False)
+@_text_or_json
+@talks
+def diff(client: Client, since: str, until: str | None, format: str) -> None:
+    """Show what is otherwise than it was: after a commit or at a time, against another or now."""
+    found = client.diff(since, until)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(lines.difference(found))
+
+
+@click.command()
+@click.argument("name", shell_complete=entity_names)
+@click.argument("relation", type=click.Choice(get_args(KeptRelation)))
+@click.argument("other", shell_complete=entity_names)
+@_text_or_json
+@talks
+def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
+    """Show when a thing was on, inside, in or attached to another, as measured.
+
+    For example: semmap when cup1 isOn table1. The exit status is 1 if it never was.
+    """
+    found = client.when(name, relation, other)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([found.text])
+    if not found.spells:
+        sys.exit(errors.Refused.exit_status)
 
 
 @click.command()

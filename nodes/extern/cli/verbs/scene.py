@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from nodes.extern.cli.angles import yaw_option
 from nodes.extern.cli.calling import carrying, given, talks, vector_option
 from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.negative_numbers import NegativeNumbers
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("name", shell_complete=entity_names)
 @vector_option("--at", metavar="X Y Z", required=True, help="Where to put it: bottom centre [m].")
-@click.option("--yaw", type=float, metavar="RAD")
+@yaw_option
 @carrying
 @talks
 def move(client: Client, **fields: Any) -> None:

@@ -45,6 +45,7 @@ def ask(
 ) -> None:
     """Print the answer; without a format, a table of rows, the verdict, or Turtle for a graph."""
     result = client.sparql(read_query(query), inferred=inferred, timeout=timeout, limit=limit, as_of=as_of)
+    _note(result.notes)
     format = format or ("turtle" if result.kind == "graph" else "table")
     if format != "table" or result.kind == "ask":
         write(output.sparql_formats.text(result, format))
@@ -57,12 +58,19 @@ def ask(
 def watch(client: Client, query: str, *, inferred: bool) -> None:
     """Print the rows, and then what appears and disappears."""
     with client.watch(read_query(query), inferred=inferred) as standing:
+        _note(standing.notes)
         if standing.rows:
             print_rows(standing.variables, standing.rows)
         print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
             for line in output.sparql_formats.news(standing.variables, changed):
                 say(line)
+
+
+def _note(notes: Iterable[str]) -> None:
+    """Why there is nothing, beside what is there."""
+    for note in notes:
+        say(f"  note: {note}", file=sys.stderr)
 
 
 def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:

@@ -106,6 +106,16 @@ class ABox:
             for edge in store.into.among(member, group.into):
                 yield edge, member, store.subject[edge]
 
+    def has_any(self, node: int, group: Group) -> bool:
+        """Whether a role of that group leads anywhere from a node: whether `related` has any."""
+        out, into = self.store.out, self.store.into
+        if not self.equals:
+            return out.has_any(node, group.out) or into.has_any(node, group.into)
+        return any(
+            out.has_any(member, group.out) or into.has_any(member, group.into)
+            for member in self.members(node)
+        )
+
     def _among_all(self, node: int, group: Group) -> Iterator[tuple[int, int, int]]:
         store, out, into = self.store, frozenset(group.out), frozenset(group.into)
         predicate = store.predicate

@@ -138,13 +138,32 @@ class Adjacency:
             edge = group[edge]
         return edge
 
-    def firsts(self, node: int) -> dict[int, int]:
-        """The first edge of each predicate that a node's edges have."""
+    def has_any(self, node: int, predicates: tuple[int, ...]) -> bool:
+        """Whether a node has an edge with one of some predicates."""
         edge, column, group = self.heads[node], self.predicate, self.group
-        found: dict[int, int] = {}
         while edge != NONE:
-            found[column[edge]] = edge
+            if column[edge] in predicates:
+                return True
             edge = group[edge]
+        return False
+
+    def predicates(self, node: int) -> Iterator[int]:
+        """Those of a node's edges, each once."""
+        edge = self.heads[node]
+        while edge != NONE:
+            yield self.predicate[edge]
+            edge = self.group[edge]
+
+    def firsts(self, node: int, predicates: tuple[int, ...]) -> list[int]:
+        """The first edge of each of some predicates that a node has, in the order of the predicates."""
+        edge, column, group = self.heads[node], self.predicate, self.group
+        found: list[int] = []
+        while edge != NONE:
+            if column[edge] in predicates:
+                found.append(edge)
+            edge = group[edge]
+        if len(found) > 1:
+            found.sort(key=lambda first: predicates.index(column[first]))
         return found
 
     def of(self, node: int, predicate: int) -> Iterator[int]:
@@ -161,9 +180,8 @@ class Adjacency:
         return self._among(node, predicates)
 
     def _among(self, node: int, predicates: tuple[int, ...]) -> Iterator[int]:
-        firsts, after = self.firsts(node), self.after
-        for predicate in predicates:
-            edge = firsts.get(predicate, NONE)
+        after = self.after
+        for edge in self.firsts(node, predicates):
             while edge != NONE:
                 yield edge
                 edge = after[edge]

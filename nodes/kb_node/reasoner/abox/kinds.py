@@ -28,7 +28,7 @@ class Kind:
     Kinds are interned: two individuals of one kind share the object. `nodes` lists who is of the kind.
     """
 
-    __slots__ = ("base", "clash", "excluded", "given", "mask", "names", "nodes", "values")
+    __slots__ = ("base", "clash", "excluded", "given", "mask", "names", "nodes", "value_terms", "values")
 
     base: Kind
     """The kind that the given classes alone would make; itself when nothing was added."""
@@ -42,6 +42,8 @@ class Kind:
         """Two classes that exclude each other; for a literal the second may be the first, a datatype."""
         self.values: tuple[tuple[int, Term], ...] = ()
         """Properties and values that come with the classes (cls-hv1)."""
+        self.value_terms: frozenset[Term] = frozenset()
+        """These values."""
         self.names: frozenset[Term] = frozenset()
         """The named classes."""
         self.nodes = array("i")
@@ -158,6 +160,7 @@ class Kinds:
             number = next(bits(wrong))
             kind.clash = (number, number)
         kind.values = tuple(dict.fromkeys(schema.values[n] for n in numbers if n in schema.values))
+        kind.value_terms = frozenset(term for _, term in kind.values)
         kind.names = frozenset(
             schema.classes[number] for number in numbers if schema.classes[number][0] == "<"
         )

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from nodes.kb_node.reasoner.abox.abox import ABox, Equals
 from nodes.kb_node.reasoner.abox.adjacency import NONE
+from nodes.kb_node.reasoner.abox.kinds import Kind
 from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, GIVEN, VALUE
 from nodes.kb_node.reasoner.explain.reasons import Reason
@@ -50,10 +51,8 @@ class Retraction:
         for node in self._loosened:
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
-        kinds, made_by = self._store.kind, self._abox.steps.made_by
-        for subject, predicate, object_ in self._dropped:
-            if made_by(predicate) or kinds[subject].values or kinds[object_].values:
-                self._derive_anew(subject, predicate, object_)
+        for edge in self._dropped:
+            self._derive_anew(*edge)
         return types + edges, others
 
     def release(self) -> None:
@@ -116,11 +115,25 @@ class Retraction:
         if p <= DIFFERENT or s in self._reset or o in self._reset:
             yield from (s, o)
             return
-        step = self._abox.steps.step
-        if step(p, subject.base, object_).subject is not subject.base:
+        step, store = self._abox.steps.step, self._store
+        said = step(p, subject.base, object_).subject
+        if said is not subject.base and not self._says(store.out.first(s, p), said, at_subject=True):
             yield s
-        if step(p, subject, object_.base).object is not object_.base:
+        said = step(p, subject, object_.base).object
+        if said is not object_.base and not self._says(store.into.first(o, p), said, at_subject=False):
             yield o
+
+    def _says(self, edge: int, kind: Kind, *, at_subject: bool) -> bool:
+        """Whether an edge, if there is one, makes its end of a kind by what was given to both ends alone.
+
+        Then that need not be asked about another edge that said the same: nothing goes in a circle.
+        """
+        store = self._store
+        if edge == NONE or store.source[edge] not in GIVEN:
+            return False
+        subject, object_ = store.kind[store.subject[edge]], store.kind[store.object[edge]]
+        step = self._abox.steps.step(store.predicate[edge], subject.base, object_.base)
+        return (step.subject if at_subject else step.object) is kind
 
     def _cancel(self, reason: Reason) -> None:
         if not reason.alive:
@@ -206,11 +219,28 @@ class Retraction:
     def _derive_anew(self, subject: int, predicate: int, object_: int) -> None:
         """What a dropped edge implied may follow from others: by a chain, or with a class."""
         abox = self._abox
-        for node in (subject, object_):
-            if self._store.kind[node].values:
+        for node, other in ((subject, object_), (object_, subject)):
+            if self._may_have_been_a_value(node, other):
                 self._saturation.add_values(node)
-        for backwards, chain in abox.steps.made_by(predicate):
-            self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
+        steps = abox.steps
+        if not (made_by := steps.made_by(predicate)):
+            return
+        begins = [
+            abox.has_any(node, group)
+            for node, group in zip((subject, object_), steps.beginnings(predicate), strict=True)
+        ]
+        for backwards, chain in made_by:
+            if begins[backwards]:
+                self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
+
+    def _may_have_been_a_value(self, node: int, other: int) -> bool:
+        """Whether a node's classes come with values of which another, which it lost, may have been one."""
+        values = self._store.kind[node].value_terms
+        if not values:
+            return False
+        is_one = self._store.terms[other] in values
+        # or it stood for one that is the same
+        return is_one or bool(self._abox.equals or self._loosened) or self._abox.is_literal(other)
 
     def _look_for_middle(self, x: int, z: int, chain: Chain) -> None:
         """An individual between two that a chain goes through, sought from the end with fewer edges."""

@@ -178,14 +178,20 @@ class Saturation:
             raise Clash(Edge(edge, rules.irreflexive), Same(s, o))
         for at_subject, limit in rules.limits:
             self._equality.limit(edge, *((s, o) if at_subject else (o, s)), limit)
-        for role, other in rules.exclusive:
-            found = self._abox.find(s, other, o)
-            if found != NONE:
-                raise Clash(Edge(edge, role), Edge(found, other), *self._abox.bridges((edge, found)))
-        for forwards, chain in rules.heads:
-            self._continue(edge, *((s, o) if forwards else (o, s)), chain)
-        for forwards, chain in rules.tails:
-            self._begin(edge, *((s, o) if forwards else (o, s)), chain)
+        has_any = self._abox.has_any
+        if rules.exclusive and has_any(s, rules.beside):
+            for role, other in rules.exclusive:
+                found = self._abox.find(s, other, o)
+                if found != NONE:
+                    raise Clash(Edge(edge, role), Edge(found, other), *self._abox.bridges((edge, found)))
+        if rules.heads or rules.tails:
+            goes_on = has_any(s, rules.beyond[0]), has_any(o, rules.beyond[1])
+            for forwards, chain in rules.heads:
+                if goes_on[forwards]:
+                    self._continue(edge, *((s, o) if forwards else (o, s)), chain)
+            for forwards, chain in rules.tails:
+                if goes_on[not forwards]:
+                    self._begin(edge, *((s, o) if forwards else (o, s)), chain)
 
     def _continue(self, edge: int, x: int, y: int, chain: Chain) -> None:
         for other, end, z in list(self._abox.related(y, self._steps.group((chain.second, False)))):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
@@ -18,10 +19,14 @@ class EdgeRules:
     """Limits that everybody has (prp-fp, prp-ifp), and whether the owner is the subject."""
     exclusive: tuple[tuple[Role, Role], ...]
     """(implied role, role that must not hold beside it)."""
+    beside: Group
+    """Along which edges of the subject any of those roles leads."""
     heads: tuple[tuple[bool, Chain], ...]
     """Chains that the edge may begin, and whether it is read forwards."""
     tails: tuple[tuple[bool, Chain], ...]
     """Chains that the edge may end."""
+    beyond: tuple[Group, Group]
+    """Along which edges of the subject, and of the object, these chains go on."""
     by_value: bool
     """Whether it matters that two literals are spellings of one value."""
     of_values: bool
@@ -60,6 +65,7 @@ class Steps:
         self.known: dict[tuple[int, Kind, Kind], Step] = {}
         self._concerned: dict[int, tuple[int, int]] = {}
         self._made_by: dict[int, tuple[tuple[bool, Chain], ...]] = {}
+        self._beginnings: dict[int, tuple[Group, Group]] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
@@ -103,6 +109,16 @@ class Steps:
                 for chain in self._schema.chains
                 if chain.result == q
             )
+        return found
+
+    def beginnings(self, prop: int) -> tuple[Group, Group]:
+        """Along which edges the chains of `made_by` begin: at a subject, and at an object if backwards."""
+        found = self._beginnings.get(prop)
+        if found is None:
+            groups: tuple[list[Group], list[Group]] = [], []
+            for backwards, chain in self.made_by(prop):
+                groups[backwards].append(self.group((chain.first, False)))
+            found = self._beginnings[prop] = _together(groups[False]), _together(groups[True])
         return found
 
     def group(self, role: Role) -> Group:
@@ -186,10 +202,31 @@ class Steps:
         others = by_value or irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
-        of_values = not others and self._are_of_values(prop, limits)
+        beyond: tuple[list[Group], list[Group]] = [], []
+        for forwards, chain in heads:
+            beyond[forwards].append(self.group((chain.second, False)))
+        for forwards, chain in tails:
+            beyond[not forwards].append(self.group((chain.first, True)))
         return EdgeRules(
-            irreflexive, tuple(limits), tuple(exclusive), tuple(heads), tuple(tails), by_value, of_values
+            irreflexive=irreflexive,
+            limits=tuple(limits),
+            exclusive=tuple(exclusive),
+            beside=_together(self.group(other) for _, other in exclusive),
+            heads=tuple(heads),
+            tails=tuple(tails),
+            beyond=(_together(beyond[False]), _together(beyond[True])),
+            by_value=by_value,
+            of_values=not others and self._are_of_values(prop, limits),
         )
+
+
+def _together(groups: Iterable[Group]) -> Group:
+    """What any of some leads along."""
+    out, into = dict[int, None](), dict[int, None]()
+    for group in groups:
+        out.update(dict.fromkeys(group.out))
+        into.update(dict.fromkeys(group.into))
+    return Group(tuple(out), tuple(into))
 
 
 def _in(cls: int, kind: Kind) -> bool:

@@ -360,14 +360,12 @@ class Store:
         """The first edge of two with one of some predicates, or NONE."""
         if not predicates or self.out.heads[subject] == NONE or self.into.heads[object_] == NONE:
             return NONE
-        leaving = self.out.firsts(subject)
-        for p in predicates:
-            if p in leaving:
-                entering = self.into.first(object_, p)
-                if entering != NONE:
-                    edge = self._edge(subject, object_, leaving[p], entering)
-                    if edge != NONE:
-                        return edge
+        for leaving in self.out.firsts(subject, predicates):
+            entering = self.into.first(object_, self.predicate[leaving])
+            if entering != NONE:
+                edge = self._edge(subject, object_, leaving, entering)
+                if edge != NONE:
+                    return edge
         return NONE
 
     def _edge(self, subject: int, object_: int, leaving: int, entering: int) -> int:

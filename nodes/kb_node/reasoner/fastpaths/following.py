@@ -118,7 +118,7 @@ class Following:
         if not any(
             concerned(p)[which] & new
             for which, side in enumerate((store.out, store.into))
-            for p in side.firsts(node)
+            for p in side.predicates(node)
         ):
             del abox.dirty[node]
             if now.values != before.values:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
 from nodes.kb_node.reasoner.abox.abox import ABox
 from nodes.kb_node.reasoner.abox.store import COMPUTED
@@ -18,6 +18,8 @@ MANY_GO = 1000
 """Triples that are deleted: of so many, those who go without concerning anybody are told apart first."""
 WorkOut = Callable[[Sequence[Triple]], None]
 """Inserts triples and draws all conclusions, by the rules."""
+Insert = Callable[[Triple, int], bool]
+"""Inserts a triple from a source, and tells whether it is new; the rules are yet to be run."""
 
 
 class Known(Exception):
@@ -52,14 +54,11 @@ class PlainPaths:
             work_out(triples)
         return []
 
-    def compute(
-        self, triples: Iterable[Triple], insert: Callable[[Triple], bool], added: list[Triple]
-    ) -> None:
-        """Have triples as computed; those that are new are `added`. The rules are yet to be run.
-
-        `insert` is for one of them, and tells whether it is new.
-        """
-        added.extend(triple for triple in triples if insert(triple))
+    def compute(self, triples: Sequence[Triple], insert: Insert, added: list[Triple]) -> None:
+        """Have triples as computed; those that are new are `added`. The rules are yet to be run."""
+        for triple in triples:
+            if insert(triple, COMPUTED):
+                added.append(triple)
 
     def refuse(self, triples: Sequence[Triple], proof: Proof, terms: Sequence[Term]) -> None:
         """Take note of triples that were refused, by a proof that is about `terms`."""
@@ -111,11 +110,8 @@ class FastPaths(PlainPaths):
             work_out(rest)
         return alike
 
-    def compute(
-        self, triples: Iterable[Triple], insert: Callable[[Triple], bool], added: list[Triple]
-    ) -> None:
+    def compute(self, triples: Sequence[Triple], insert: Insert, added: list[Triple]) -> None:
         """See `PlainPaths`. Many are stored column by column."""
-        triples = list(triples)
         if len(triples) >= MANY and not (self._abox.equals or self._abox.is_mixed):
             stored, triples = self._edges.insert(triples, COMPUTED)
             added += stored

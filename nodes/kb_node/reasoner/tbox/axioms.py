@@ -26,11 +26,11 @@ class Group:
 
     out: tuple[int, ...]
     into: tuple[int, ...]
+    is_wide: bool = field(init=False, compare=False)
+    """Whether it is quicker to look at all edges of a node than for those of each property."""
 
-    @property
-    def is_wide(self) -> bool:
-        """Whether it is quicker to look at all edges of a node than for those of each property."""
-        return len(self.out) + len(self.into) > WIDE
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "is_wide", len(self.out) + len(self.into) > WIDE)
 
 
 @dataclass(frozen=True, slots=True)

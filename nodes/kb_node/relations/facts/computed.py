@@ -14,6 +14,8 @@ from ontology import vocabulary as v
 from schemas.entities import Entity
 from schemas.explanations import Term, Triple
 
+_MANY: Final = 32
+"""Facts that are worth being turned into triples together."""
 Known = Callable[[str], Entity | None]
 """The entity of a name."""
 
@@ -32,7 +34,7 @@ class Computed:
 
     def __init__(self, properties: Set[Term], limits: Thresholds | None = None) -> None:
         """`properties` are those that the TBox has."""
-        self._relations: Final = frozenset(COMPUTED[p] for p in properties if p in COMPUTED)
+        self._properties: Final = {COMPUTED[p]: p for p in properties if p in COMPUTED}
         self.facts = Facts(limits)
         self._said: dict[str, dict[Triple, None]] = {}
         """By the names that a triple is about."""
@@ -43,7 +45,7 @@ class Computed:
     @property
     def is_idle(self) -> bool:
         """Whether the TBox has no property that could be computed."""
-        return not self._relations
+        return not self._properties
 
     def placed(self) -> None:
         """All solids are where they are, though not all facts have been worked out."""
@@ -74,13 +76,16 @@ class Computed:
         `before` knows the entities as they were.
         """
         now = {entity.name: entity for entity in changed}
-        were = list(map(before, now))
-        reborn = [
-            e.name for e, was in zip(now.values(), were, strict=True) if was is not None and was.iri != e.iri
-        ]
+        reborn: list[str] = []
+        moved: list[Entity] = []
+        for entity in now.values():
+            was = before(entity.name)
+            if was is None or not _stays(was, entity):
+                moved.append(entity)
+            if was is not None and was.iri != entity.iri:
+                reborn.append(entity.name)
         old = self.facts.update((), reborn) if reborn else None
         shifted = self.facts.shifted if reborn else frozenset()
-        moved = [e for e, was in zip(now.values(), were, strict=True) if was is None or not _stays(was, e)]
         gone, come = self.facts.update(moved, removed)
         if old is not None:
             gone, come = gone | old.gone, come | old.come
@@ -104,17 +109,17 @@ class Computed:
 
     def _triples(self, facts: Collection[Fact], known: Known) -> Collection[Triple]:
         """Those about entities, by properties that the TBox has. Each fact is there once."""
-        if not facts:
-            return ()
+        if len(facts) < _MANY:
+            return [t for fact in facts if (t := self._triple(fact, known)) is not None]
         names, relations, others = zip(*facts, strict=True)
         found = {name: known(name) for name in {*names, *others}}
         terms = {name: v.iri(entity.iri) for name, entity in found.items() if entity is not None}
-        if len(terms) < len(found) or not self._relations.issuperset(relations):
+        properties = self._properties
+        if len(terms) < len(found) or not properties.keys() >= set(relations):
             facts = [
-                fact for fact in facts if fact[0] in terms and fact[1] in self._relations and fact[2] in terms
+                fact for fact in facts if fact[0] in terms and fact[1] in properties and fact[2] in terms
             ]
             return self._triples(facts, known)
-        properties = {relation: v.dm(relation) for relation in self._relations}
         return list(
             zip(
                 map(terms.__getitem__, names),
@@ -124,11 +129,18 @@ class Computed:
             )
         )
 
+    def _triple(self, fact: Fact, known: Known) -> Triple | None:
+        name, relation, other = fact
+        entity, its, property_ = known(name), known(other), self._properties.get(relation)
+        if entity is None or its is None or property_ is None:
+            return None
+        return v.iri(entity.iri), property_, v.iri(its.iri)
+
     def _still_holds(self, triple: Triple, known: Known) -> bool:
         """Whether what is no longer asserted is computed."""
         s, p, o = triple
         relation = COMPUTED.get(p)
-        if relation not in self._relations:
+        if relation not in self._properties:
             return False
         fact = (v.entity_name(s), relation, v.entity_name(o))
         return self.facts.holds(fact) and _are((known(fact[0]), known(fact[2])), (s, o))
@@ -197,4 +209,4 @@ def _names(triple: Triple) -> tuple[str, str]:
 
 def _stays(was: Entity, now: Entity) -> bool:
     """Whether nothing that relations depend on is otherwise: a reference changed, or a property."""
-    return Placed.of(was) == Placed.of(now)
+    return was.pose == now.pose and Placed.of(was) == Placed.of(now)

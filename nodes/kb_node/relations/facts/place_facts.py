@@ -47,6 +47,7 @@ class Facts:
     def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
         self._kept = [_Kept(rule) for rule in rules]
+        self._margin_m = max(rule.margin_m(self.space.limits) for rule in rules)
         self._in_turn: Iterator[Solid] = iter(())
         self._to_forget = 0
         self._waiting: dict[str, Solid] = {}
@@ -130,11 +131,10 @@ class Facts:
             self._work_out_those(list(waiting.values()))
             return
         names = (*removed, *(entity.name for entity in changed))
-        margin_m = max(kept.rule.margin_m(space.limits) for kept in self._kept)
         concerned = dict.fromkeys(names)
         for solid in (*map(space.solids.get, names), *map(solid_of, changed)):
             if solid is not None:
-                concerned.update((other.name, None) for other in space.around(solid, margin_m))
+                concerned.update((other.name, None) for other in space.around(solid, self._margin_m))
         self._work_out_those([waiting[name] for name in concerned if name in waiting])
 
     def _things(self, names: Iterable[str]) -> list[Solid]:
@@ -183,29 +183,33 @@ class Facts:
         space = self.space
         moved: dict[str, None] = {}
         left: list[Solid] = []
-        fresh: list[Solid] = []
         for name in removed:
             moved[name] = None
             left += filter(None, (self._counted(name),))
             space.take(name)
-        moved.update((entity.name, None) for entity in changed)
-        if space.solids:
-            left += filter(None, (self._counted(entity.name) for entity in changed))
-        fresh += chain.from_iterable(space.put_all(changed))
+        for entity in changed:
+            moved[entity.name] = None
+            if space.solids:
+                left += filter(None, (self._counted(entity.name),))
+        if len(changed) < MANY:
+            fresh = [solid for entity in changed if (solid := space.put(entity)) is not None]
+        else:
+            fresh = list(chain.from_iterable(space.put_all(changed)))
         shifted = space.shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
-        moved.update((solid.name, None) for solid in shifted)
+        for solid in shifted:
+            moved[solid.name] = None
         gone: set[Fact] = set()
         come: set[Fact] = set()
-        concerned = [kept.concerned(space, moved, left, fresh) for kept in self._kept]
-        if sum(map(len, concerned)) < MANY * len(concerned):
-            for kept, names in zip(self._kept, concerned, strict=True):
-                kept.work_out(space, names, gone, come)
-        else:
-            everybody = dict.fromkeys(chain.from_iterable(concerned))
-            things = self._things(everybody)
-            if len(things) < len(everybody):
-                left_over = everybody.keys() - {solid.name for solid in things}
+        with space.remembering(of_few=True):
+            concerned = self._concerned(moved, (*fresh, *left))
+            if len(concerned) < MANY:
+                for kept in self._kept:
+                    kept.work_out(space, concerned, gone, come)
+        if len(concerned) >= MANY:
+            things = self._things(concerned)
+            if len(things) < len(concerned):
+                left_over = concerned.keys() - {solid.name for solid in things}
                 for kept in self._kept:
                     kept.work_out(space, left_over, gone, come)
             for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
@@ -213,8 +217,34 @@ class Facts:
         self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
         if self._to_forget > _MOST_TO_FORGET:
             self.forget()
-        self.shifted = frozenset(solid.name for solid in shifted)
+        self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
+
+    def _concerned(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
+        """Of whom something else may hold now: those who moved, and others by how `solids` were or are."""
+        space, found = self.space, dict(moved)
+        for kept in self._kept:
+            if kept.about:
+                for name in moved:
+                    found.update(kept.about.get(name, ()))
+        if found.keys() >= space.solids.keys():
+            return found
+        if len(solids) >= MANY:
+            found.update((solid.name, None) for solid in space.beside(solids, self._margin_m))
+            return found
+        for solid in solids:
+            self._add_whom_it_concerns(solid, found)
+        return found
+
+    def _add_whom_it_concerns(self, solid: Solid, found: dict[str, None]) -> None:
+        space = self.space
+        for other in space.around(solid, self._margin_m):
+            if other.is_place or other.name in found:
+                continue
+            for kept in self._kept:
+                if kept.rule.concerns(space, solid, other):
+                    found[other.name] = None
+                    break
 
 
 def _nothing() -> None:
@@ -235,26 +265,6 @@ class _Kept:
         for name, found in self.of.items():
             for relation, other in found:
                 yield name, relation, other
-
-    def concerned(
-        self, space: Space, moved: Iterable[str], left: Iterable[Solid], fresh: Iterable[Solid]
-    ) -> dict[str, None]:
-        """Of whom something else may hold now."""
-        found = dict.fromkeys(moved)
-        about = self.about
-        for name in moved if about else ():
-            if name in about:
-                found.update(about[name])
-        if found.keys() >= space.solids.keys():
-            return found
-        others: Sequence[Solid] = (*fresh, *left) if self.rule.when_gone else tuple(fresh)
-        if len(others) < MANY:
-            for solid in others:
-                self._add_whom_it_concerns(space, solid, found)
-        else:
-            beside = space.beside(others, self.rule.margin_m(space.limits))
-            found.update((solid.name, None) for solid in beside)
-        return found
 
     def take(
         self, space: Space, solids: Sequence[Solid], survey: Survey, gone: set[Fact], come: set[Fact]
@@ -288,12 +298,6 @@ class _Kept:
             now = self._work_out(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
-
-    def _add_whom_it_concerns(self, space: Space, solid: Solid, found: dict[str, None]) -> None:
-        concerns = self.rule.concerns
-        for other in space.around(solid, self.rule.margin_m(space.limits)):
-            if other.name not in found and not other.is_place and concerns(space, solid, other):
-                found[other.name] = None
 
     def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)

@@ -37,16 +37,14 @@ class Rule(NamedTuple):
     of_many: Callable[[Survey], list[tuple[About, ...] | None]]
     """The same for each of those who were surveyed; None where `facts` has to be asked."""
     concerns: Callable[[Space, Solid, Solid], bool]
-    """Whether something may come to hold of the second because of the first, who is new there.
+    """Whether something may come to hold of the second, or cease to, because of the first, who is new there
+    or went, and of whom it need not speak.
 
-    It must be quick, and may say yes too often. It is asked of those whose bounds are within the margin. What
-    speaks of somebody who went, or changed, is worked out again in any case.
+    It must be quick, and may say yes too often: then all rules are asked anew. It is asked of those whose
+    bounds are within the margins. What speaks of somebody who moved or went is worked out again in any case.
     """
     margin_m: Callable[[Thresholds], float] = lambda limits: 0.0
     """Between the bounds of two whom the relations may join [m]."""
-    when_gone: bool = False
-    """Whether something may come to hold, or cease to, because of somebody who went and of whom it does not
-    speak (nothing is between two things any more). Then `concerns` is asked of the first as it was, too."""
 
 
 def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
@@ -91,10 +89,8 @@ def _attachments_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
 
 
 def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether the other may hang on the solid, or not do so any more because that bears it."""
-    if solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m:
-        return True
-    return _may_bear(space, solid, other)
+    """Whether the other may hang on the solid; who may not hang there any more is who that may bear."""
+    return solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m
 
 
 def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
@@ -105,16 +101,15 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
     gap = limits.gap_m + _ROUNDING
     if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
         return False
-    if not (other.is_level and solid.is_level) or (solid.hollows and other.volume < solid.volume):
+    if not (other.is_level and solid.is_level) or (other.volume < solid.volume and solid.hollows):
         return True
     return other.bottom >= solid.bottom - limits.contact_m and other.highest_bottom >= solid.lowest_top - gap
 
 
 RULES: Final[tuple[Rule, ...]] = (
-    Rule(_WHEREABOUTS, _whereabouts, _whereabouts_of_many, _may_bear, when_gone=True),
+    Rule(_WHEREABOUTS, _whereabouts, _whereabouts_of_many, _may_bear),
     Rule(
-        ("isAttachedTo",), _attachments, _attachments_of_many, _may_hold, lambda limits: limits.attached_m,
-        when_gone=True,
+        ("isAttachedTo",), _attachments, _attachments_of_many, _may_hold, lambda limits: limits.attached_m
     ),
 )  # fmt: skip
 

@@ -92,6 +92,16 @@ class Form:
         return max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
 
     @lazily
+    def lowest_top(self) -> float:
+        """Where the first of its parts ends."""
+        return min([part.high[2] for part in self.parts], default=self.top)
+
+    @lazily
+    def highest_bottom(self) -> float:
+        """Where the last of its parts begins."""
+        return max([part.low[2] for part in self.parts], default=self.bottom)
+
+    @lazily
     def bounds(self) -> Bounds:
         """Of its box."""
         (a, b, c), (d, e, f), _ = self.rotation

@@ -110,15 +110,15 @@ class Solid:
         """Its interiors, in its own frame."""
         return self.form.shape.interiors if self.is_measured else ()
 
-    @lazily
+    @property
     def lowest_top(self) -> float:
         """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
-        return min([part.high[2] for part in self.parts], default=self.top)
+        return self.position[2] + self.form.lowest_top if self.has_parts else self.top
 
-    @lazily
+    @property
     def highest_bottom(self) -> float:
         """Where the last of its parts begins [m]: a bookshelf may rest on a table by one of its boards."""
-        return max([part.low[2] for part in self.parts], default=self.bottom)
+        return self.position[2] + self.form.highest_bottom if self.has_parts else self.bottom
 
     @lazily
     def outline(self) -> list[Point]:

@@ -79,7 +79,7 @@ def attached(space: Space, solid: Solid, other: Solid) -> Measure | None:
     None for what is not beside the other, or is borne.
     """
     made = _against(space, solid, other)
-    return None if made is None or _is_borne(space, solid) else made
+    return None if made is None or is_borne(space, solid) else made
 
 
 def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
@@ -97,7 +97,7 @@ def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
         and (made := _against(space, solid, other))
         and made.holds
     ]
-    if found and not _is_borne(space, solid):
+    if found and not is_borne(space, solid):
         yield from sorted(found, key=lambda other: other.name)
 
 
@@ -115,7 +115,7 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     return Measure(holds, apart, share, limit=limits.attached_m)
 
 
-def _is_borne(space: Space, solid: Solid) -> bool:
+def is_borne(space: Space, solid: Solid) -> bool:
     """Whether something holds it from below, were it the floor of its place."""
     container, supports, place = space.whereabouts(solid)
     if container is not None or supports:

@@ -91,14 +91,18 @@ class Grid:
                 del self.crowds[cell]
                 self.shifted.update(there)
 
-    def around(self, bounds: Bounds, margin_m: float = 0.0) -> list[Solid]:
-        """Whose bounds meet these, or are within a margin of them."""
+    def around(self, bounds: Bounds, margin_m: float = 0.0, but: Solid | None = None) -> list[Solid]:
+        """Whose bounds meet these, or are within a margin of them; `but` one."""
         x0, y0, x1, y1 = bounds
         x0, y0, x1, y1 = x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m
         return [
             solid
             for solid in self._filed(_cells((x0, y0, x1, y1)))
-            if (its := solid.bounds)[0] <= x1 and its[2] >= x0 and its[1] <= y1 and its[3] >= y0
+            if (its := solid.bounds)[0] <= x1
+            and its[2] >= x0
+            and its[1] <= y1
+            and its[3] >= y0
+            and solid is not but
         ]
 
     def counted_around(self, bounds: Bounds, margin_m: float = 0.0) -> list[Solid]:
@@ -168,9 +172,10 @@ class Grid:
         """Once each who is filed under some cells; under all for None."""
         if cells is not None and len(cells) == 1 and not self._large:
             return self._cells.get(cells[0], ())
-        found = dict(self._large)
+        found = self._large.copy()
         for cell in self._cells if cells is None else cells:
-            found.update(self._cells.get(cell, {}))
+            if cell in self._cells:
+                found.update(self._cells[cell])
         return found
 
 

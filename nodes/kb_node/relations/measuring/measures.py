@@ -49,11 +49,11 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         return None
     # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
     most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
-    if most < 0.0 and upper.is_level and lower.is_level:
+    is_level = upper.is_level and lower.is_level
+    if is_level and (most < 0.0 or upper.highest_bottom - lower.lowest_top < -reach):
         return None
     most = max(most, limits.contact_m)
     pairs = []
-    is_level = upper.is_level and lower.is_level
     for part in upper.parts:
         (x0, y0, z0), (x1, y1, z1) = part.low, part.high
         for other in lower.parts:
@@ -226,8 +226,8 @@ def gap(one: Solid, other: Solid) -> float:
 
 
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
-    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances."""
-    if one is other or one.is_place or other.is_place:
+    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances; None without a size."""
+    if one is other or not (one.has_parts and other.has_parts):
         return None
     limit = near_limit(one, other, limits)
     between = gap(one, other)

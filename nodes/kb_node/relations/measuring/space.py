@@ -44,7 +44,8 @@ class Space:
         self.grid: Final = Grid()
         self._raised: set[str] = set()
         """The things that are above the floor or of a size of their own."""
-        self._remembered: dict[str, Whereabouts] | None = None
+        self.memory: Memory | None = None
+        """What need not be worked out again, while `remembering`."""
         for _ in self.put_all(entities):
             pass
 
@@ -125,16 +126,28 @@ class Space:
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Whose bounds meet its own, or are within a margin of them."""
-        return [other for other in self.grid.around(solid.bounds, margin_m) if other is not solid]
+        widest_m = self.limits.attached_m
+        if self.memory is None or self.memory.around is None or margin_m > widest_m:
+            return self.grid.around(solid.bounds, margin_m, solid)
+        around = self.memory.around.get(solid)
+        if around is None:
+            around = self.memory.around[solid] = self.grid.around(solid.bounds, widest_m, solid)
+        if margin_m == widest_m:
+            return around
+        return [other for other in around if measures.overlap(solid.bounds, other.bounds, margin_m)]
 
     def counted_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
+        if not self.grid.crowds:
+            return self.around(solid, margin_m)
         return [other for other in self.grid.counted_around(solid.bounds, margin_m) if other is not solid]
 
     def bearers_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
         """Those of them who may bear and hold it; of what does not count itself, only what is larger."""
+        if not self.grid.crowds:
+            return self.around(solid, margin_m)
         around = self.counted_around(solid, margin_m)
-        if not self.grid.crowds or self.grid.counts(solid):
+        if self.grid.counts(solid):
             return around
         return [other for other in around if other.is_place or other.volume > solid.volume]
 
@@ -158,21 +171,20 @@ class Space:
         """Whose bounds meet these."""
         return self.grid.around(bounds)
 
-    @contextmanager
-    def remembering(self) -> Iterator[None]:
-        """Within, nothing changes, so that whereabouts need to be worked out once only."""
-        self._remembered = {}
-        try:
-            yield
-        finally:
-            self._remembered = None
+    def remembering(self, *, of_few: bool = False) -> Memory:
+        """Within a `with`, nothing changes, so that whereabouts need to be worked out once only.
+
+        Where it is `of_few` that anything is asked, who is around them is remembered, too.
+        """
+        return Memory(self, of_few=of_few)
 
     def whereabouts(self, solid: Solid) -> Whereabouts:
         """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
-        if self._remembered is None:
+        if self.memory is None:
             return self._whereabouts(solid)
-        if (known := self._remembered.get(solid.name)) is None:
-            known = self._remembered[solid.name] = self._whereabouts(solid)
+        known = self.memory.whereabouts.get(solid.name)
+        if known is None:
+            known = self.memory.whereabouts[solid.name] = self._whereabouts(solid)
         return known
 
     def _whereabouts(self, solid: Solid) -> Whereabouts:
@@ -233,7 +245,7 @@ class Space:
         gaps += [made.gap_m for _, made in below]
         if floor_m is not None and on_floor:
             gaps.append(floor_m)
-        nearest = min(gaps, key=_nearness)
+        nearest = gaps[0] if len(gaps) == 1 else min(gaps, key=_nearness)
         level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
         if sum(made.share for _, made in level) < limits.base_share and not measures.is_balanced(
             solid, [other for other, _ in level], solid.bottom - nearest
@@ -253,6 +265,26 @@ class Space:
         return (
             back is not None and back.holds and (abs(back.gap_m), solid.name) < (abs(made.gap_m), other.name)
         )
+
+
+class Memory:
+    """What was worked out of a space that is as it was; it is asked for within a `with`."""
+
+    __slots__ = ("_space", "around", "whereabouts")
+
+    def __init__(self, space: Space, *, of_few: bool) -> None:
+        """Nothing yet."""
+        self._space = space
+        self.whereabouts: dict[str, Whereabouts] = {}
+        """By name."""
+        self.around: dict[Solid, list[Solid]] | None = {} if of_few else None
+        """Who is within the margin of what hangs; of many that would take too much room."""
+
+    def __enter__(self) -> None:
+        self._space.memory = self
+
+    def __exit__(self, *_: object) -> None:
+        self._space.memory = None
 
 
 def _nothing() -> None:

@@ -8,6 +8,7 @@ from typing import Final
 import pyoxigraph as ox
 
 from nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
+from nodes.kb_node.sparql.queries.unknown import unknown
 from nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
 from ontology import prefixes
 from ontology import vocabulary as v
@@ -16,6 +17,7 @@ from schemas.explanations import Term
 from schemas.sparql import Row, SparqlResult
 
 _PREFERRED_PREFIX: Final = ox.NamedNode(v.bare(prefixes.PREFERRED_PREFIX))
+_ZERO: Final = f'"0"^^<{v.XSD}integer>'
 _SPO: Final = ("subject", "predicate", "object")
 
 
@@ -40,17 +42,27 @@ def answer(
             named_graphs=[],
         )
         if isinstance(found, ox.QueryBoolean):
-            return SparqlResult(kind="ask", verdict=bool(found), seq=dataset.seq)
+            verdict = bool(found)
+            notes = () if verdict else tuple(unknown(query, dataset, known))
+            return SparqlResult(kind="ask", verdict=verdict, notes=notes, seq=dataset.seq)
         if isinstance(found, ox.QueryTriples):
-            return SparqlResult(kind="graph", variables=_SPO, rows=_graph(found, limit), seq=dataset.seq)
-        rows: tuple[Row, ...] = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
+            rows: tuple[Row, ...] = _graph(found, limit)
+            notes = () if rows else tuple(unknown(query, dataset, known))
+            return SparqlResult(kind="graph", variables=_SPO, rows=rows, notes=notes, seq=dataset.seq)
+        rows = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
     except SyntaxError as error:
         raise syntax_error(query, error, known) from None
     except (RuntimeError, ValueError, OSError) as error:
         raise errors.Refused(f"the query cannot be evaluated: {' '.join(str(error).split())}") from None
     _require_few(len(rows), limit)
     variables = tuple(variable.value for variable in found.variables)
-    return SparqlResult(kind="select", variables=variables, rows=rows, seq=dataset.seq)
+    notes = tuple(unknown(query, dataset, known)) if _is_nothing(rows) else ()
+    return SparqlResult(kind="select", variables=variables, rows=rows, notes=notes, seq=dataset.seq)
+
+
+def _is_nothing(rows: tuple[Row, ...]) -> bool:
+    """Whether there is no row, or one that says that there is none: a COUNT of 0."""
+    return not rows or (len(rows) == 1 and set(rows[0]) <= {None, _ZERO})
 
 
 def declared_in(dataset: Dataset) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Final
 
@@ -47,6 +47,11 @@ def has_variable_predicate(query: str) -> bool:
     while (simpler := _PARENTHESES.sub(_as_one, shape)) != shape:
         shape = simpler
     return _PREDICATE.search(shape) is not None
+
+
+def terms_of(query: str) -> Iterator[str]:
+    """The terms and bare words of a query in their order, as they are written; no variables."""
+    return (match[0] for match in _TOKEN.finditer(query) if match.lastgroup in ("term", "word"))
 
 
 def _as_one(match: re.Match[str]) -> str:

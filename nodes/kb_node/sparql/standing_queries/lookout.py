@@ -262,4 +262,5 @@ def _watching(standing: Standing, result: SparqlResult) -> Watching:
         rows=result.rows,
         seq=result.seq,
         lease_s=standing.lease_s,
+        notes=result.notes,
     )

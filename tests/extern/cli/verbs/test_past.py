@@ -33,6 +33,18 @@ def system(tmp_path_factory):
         yield system
 
 
+def test_what_is_otherwise_and_when_it_was_so(system):
+    assert system.cli("diff", "2", "3").splitlines() == [
+        "chair1: moved from (1, 1, 0) to (2, 1, 0)",
+        "1 entity otherwise (commit 3 against 2)",
+    ]
+    assert system.cli("diff", "3", "5") == "nothing is otherwise (commit 5 against 3)\n"
+    found = json.loads(system.cli("diff", "3", "4", "--format", "json"))
+    assert [(change["name"], change["kind"]) for change in found["changes"]] == [("chair2", "added")]
+    with system.client() as client:
+        assert client.when("chair1", "isOn", "chair2").text == "it was never so that chair1 is on chair2"
+
+
 def test_history(system):
     table = system.cli("history", "chair1", "--until", "5")
     for word in ("operator/ann", "perception/camera", "0.50", "add Chair chair1", "2 commits"):

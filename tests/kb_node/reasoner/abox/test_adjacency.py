@@ -38,3 +38,22 @@ def test_linking_many_edges_leaves_what_linking_one_by_one_does(seed):
         for node, edge in zip(nodes, edges, strict=True):
             singly.link(node, edge, predicate)
     assert columns(together) == columns(singly)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_edges_are_found_by_some_predicates(seed):
+    rng = random.Random(seed)
+    adjacency = empty()
+    of: dict[int, dict[int, set[int]]] = {node: {} for node in range(NODES)}
+    for edge in range(EDGES // 6):
+        node, predicate = rng.randrange(NODES), rng.randrange(5)
+        adjacency.predicate[edge] = predicate
+        adjacency.link(node, edge, predicate)
+        of[node].setdefault(predicate, set()).add(edge)
+    for node, edges in of.items():
+        assert sorted(adjacency.predicates(node)) == sorted(edges)
+        wanted = tuple(rng.sample(range(5), rng.randint(0, 5)))
+        there = [predicate for predicate in wanted if predicate in edges]
+        assert [adjacency.predicate[first] for first in adjacency.firsts(node, wanted)] == there
+        assert adjacency.has_any(node, wanted) == bool(there)
+        assert set(adjacency.among(node, wanted)) == {edge for p in there for edge in edges[p]}

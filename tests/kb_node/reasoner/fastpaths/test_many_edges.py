@@ -10,6 +10,7 @@ from nodes.kb_node.reasoner.abox.saturation import Saturation
 from nodes.kb_node.reasoner.fastpaths import paths
 from nodes.kb_node.reasoner.fastpaths.many_edges import ManyEdges
 from nodes.kb_node.reasoner.terms import TYPE
+from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.graphs import triple, triples
 from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, TRANSITIVE, World
@@ -124,7 +125,7 @@ def follow(seed, theme):
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
 def test_they_are_as_those_that_come_singly(theme):
-    assert sum(follow(seed, theme) for seed in range(12)) > 100
+    assert sum(follow(seed, theme) for seed in range(tries(12))) > tries(100)
 
 
 @pytest.mark.long

@@ -9,6 +9,7 @@ from nodes.kb_node.reasoner.abox.store import Store
 from nodes.kb_node.reasoner.explain.sentences import sentence
 from nodes.kb_node.reasoner.fastpaths import batches
 from nodes.kb_node.reasoner.fastpaths.shapes import Contradiction, Shapes, Written
+from tests.depth import tries
 from tests.kb_node.reasoner import proofs
 from tests.kb_node.reasoner.facts import prefixed
 from tests.kb_node.reasoner.graphs import (
@@ -62,7 +63,7 @@ def by_columns(request, monkeypatch):
 
 
 @pytest.mark.usefixtures("by_columns")
-@sequences(100)
+@sequences(tries(100))
 @given(
     RUNS, st.lists(st.sampled_from(sorted(set(LITERALS) - {KNOWN})), min_size=24, max_size=24), st.booleans()
 )

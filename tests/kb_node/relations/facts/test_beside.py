@@ -12,6 +12,7 @@ from nodes.kb_node.relations.measuring.crowds import MOST
 from nodes.kb_node.relations.measuring.space import Space
 from ontology import vocabulary as v
 from schemas.entities import Pose
+from tests.depth import tries
 from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
 
 EVERY = frozenset(MIRRORED)
@@ -38,7 +39,7 @@ def anew(there, whole=EVERY, some=()):
     return facts(pairs, there)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(tries(6)))
 @pytest.mark.parametrize(
     ("whole", "some"), [(EVERY, ()), (("isNextTo",), ()), ((), ("table1", "cup3")), (("isNear",), ("cup1",))]
 )

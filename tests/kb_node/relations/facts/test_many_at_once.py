@@ -21,6 +21,7 @@ from nodes.kb_node.relations.measuring.survey import NOBODY, Survey
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from ontology.model_shapes import own_size_m, shapes
 from schemas.entities import Pose, orientation_from_yaw
+from tests.depth import tries
 
 MODELS = [*sorted(shapes()), "odd"]
 """All that are shipped, and one that nobody knows."""
@@ -140,19 +141,19 @@ class World:
         return px, py, pz + up
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=tries(60))
 @given(st.integers(0, 10**9), st.sampled_from([0.5, 2.0, 6.0]), st.sampled_from([0.0, 0.15]))
 def test_crowded_worlds_of_all_models(seed, extent, odd):
     require_alike(World(seed, extent=extent, odd=odd).things(40))
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=tries(50))
 @given(st.integers(0, 10**9), st.sampled_from([TABLEWARE, FURNITURE]))
 def test_what_stands_on_and_in_few_models(seed, models):
     require_alike(World(seed, models, extent=1.0, odd=0.0).things(40))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=tries(25))
 @given(
     st.integers(0, 10**9),
     st.sampled_from([(9000.0, -9000.0), (1.2e5, 3.0), (1e12, -1e12), (-(2.0**31), 2.0**31)]),
@@ -169,7 +170,7 @@ def test_further_than_numbers_reach():
     require_alike([*made, *(structs.replace(one, name=f"far-{one.name}", pose=away) for one in made)])
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=tries(25))
 @given(st.integers(0, 10**9), st.builds(
     Thresholds,
     gap_m=st.sampled_from([0.0, 0.001, 0.05, 0.3]),
@@ -183,14 +184,14 @@ def test_other_thresholds(seed, limits):
     require_alike(World(seed, extent=1.0).things(25), limits)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=tries(25))
 @given(st.integers(0, 10**9), st.sampled_from([1, 3, 8]), st.sampled_from([0.3, 1.0, 3.0]))
 def test_in_crowds(seed, most, extent):
     with patch.object(crowds, "MOST", most):
         require_alike(World(seed, extent=extent).things(30))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=tries(25))
 @given(st.integers(0, 10**9), st.sampled_from([3, 100]), st.integers(1, 12))
 def test_step_by_step(seed, most, step):
     """Some come, others go or are moved, whether by many at once or not."""

@@ -70,11 +70,8 @@ def test_a_heap_that_comes_into_a_large_map_is_not_compared_pair_by_pair():
     facts = Facts()
     facts.update([ROOM, TABLE, *(thing(f"book{k}", (5.0 + 0.5 * k, 3.0, 0.0), "book") for k in range(2000))])
     looks = []
-    concerned = Facts.update.__globals__["_Kept"]._add_whom_it_concerns
-    with patch(
-        "nodes.kb_node.relations.facts.place_facts._Kept._add_whom_it_concerns",
-        lambda *args: looks.append(args) or concerned(*args),
-    ):
+    concerned = Facts._add_whom_it_concerns
+    with patch.object(Facts, "_add_whom_it_concerns", lambda *args: looks.append(args) or concerned(*args)):
         facts.update(heap(1500))
     assert len(looks) < 2 * (crowds.MOST + 10)
     assert ("cup1499", "isOn", "table1") in set(facts)

@@ -167,3 +167,17 @@ def test_what_leans_and_stands_on_the_floor_is_on_nothing():
     for there in ([ROOM, *low], low):  # also where no floor is known
         space = Space([*there, thing("ball1", (-0.235, 0.0, 0.0))])
         assert space.whereabouts(space.solids["ball1"]).supports == ()
+
+
+@given(
+    st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), max_size=12),
+    st.lists(st.sampled_from([0.0, 0.01, 0.02, 0.5]), min_size=3, max_size=3),
+)
+def test_who_is_around_is_the_same_whether_it_is_remembered_or_not(places, margins):
+    space = Space([ROOM, TABLE, *(thing(f"cup{k}", (x, y, TOP)) for k, (x, y) in enumerate(places))])
+    for solid in space.solids.values():
+        expected = [set(space.around(solid, margin)) for margin in margins]
+        with space.remembering(of_few=True):
+            assert [set(space.around(solid, margin)) for margin in margins] == expected
+            assert set(space.bearers_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
+    assert space.memory is None

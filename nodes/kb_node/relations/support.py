@@ -1,0 +1,94 @@
+"""What bears a thing and what it bears, and of what hovers how high that is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.arrangement import attachments, is_borne
+from nodes.kb_node.relations.measuring.phrases import height_over, metres
+from nodes.kb_node.relations.measuring.space import Found, Space
+from schemas.relations import Relation, RelationName
+
+
+def bearers(space: Space, solid: Solid) -> set[Solid]:
+    """What it is on or inside, and what that is on or inside, and so on down."""
+    found, waiting = set[Solid](), [solid]
+    while waiting:
+        container, supports, _ = space.whereabouts(waiting.pop())
+        below = {bearer for bearer, _ in (*filter(None, (container,)), *supports)} - found
+        found |= below
+        waiting += below
+    return found
+
+
+def borne(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Found]]:
+    """What is inside a thing or on it itself, by name; in a crowd the largest. Nothing for a place."""
+    if solid.is_place:
+        return
+    around = (o for o in space.counted_around(solid) if not o.is_place and space.may_bear(solid, o))
+    for upper in sorted(around, key=lambda other: other.name):
+        container, supports, _ = space.whereabouts(upper)
+        if container is not None and container[0] is solid:
+            yield "isInside", upper, container
+        for support in supports:
+            if support[0] is solid:
+                yield "isOn", upper, support
+
+
+def on_nothing(space: Space, solid: Solid) -> Relation | None:
+    """How high a thing is that nothing bears, as `isOn` of nothing that does not hold; None of any other.
+
+    Of a thing of unknown size it is said that its size is missing. On a plan nothing is known of heights.
+    """
+    if solid.is_place:
+        return None
+    if not solid.is_measured:
+        reason = (
+            "neither the map nor a model says how large it is, so only its place can be told;"
+            f" give it a size: semmap update {solid.name} --size X Y Z"
+        )
+        return _told(solid, f"{solid.name} is on nothing that is known: {reason}")
+    if space.is_flat or space.is_crowded(solid) or is_borne(space, solid):
+        return None
+    if next(attachments(space, solid), None) is not None:
+        return None
+    _, _, place = space.whereabouts(solid)
+    floor_m = solid.bottom - (0.0 if place is None else place[0].bottom)
+    if place is None and abs(floor_m) <= space.limits.gap_m:
+        return None  # the ground, as far as anybody knows
+    if (nearest := _nearest_surface(space, solid, floor_m)) is not None:
+        other, made = nearest
+        reason = f"its bottom is {height_over(made.gap_m)} a surface of {other.name}"
+        if made.gap_m <= space.limits.gap_m:
+            reason += f", but {made.share:.0%} of its base is over that"
+        return _told(solid, f"{solid.name} is on nothing: {reason}", made.gap_m, made.share)
+    if place is None:
+        reason = f"its bottom is at a height of {metres(floor_m)}, and it is in no place that has a floor"
+    else:
+        reason = f"its bottom is {height_over(floor_m)} the floor of {place[0].name}"
+    return _told(solid, f"{solid.name} is on nothing: {reason}", floor_m)
+
+
+def _nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found | None:
+    """The surface that is nearest to its bottom, beneath it or within it; None if the floor is nearer."""
+    found: Found | None = None
+    nearest = abs(floor_m)
+    for other in space.counted_around(solid):
+        made = None if other.is_place else measures.over(solid, other, space.limits)
+        if made is not None and abs(made.gap_m) < nearest and made.gap_m > solid.bottom - solid.top:
+            found, nearest = (other, made), abs(made.gap_m)
+    return found
+
+
+def _told(solid: Solid, text: str, gap_m: float = 0.0, share: float = 0.0) -> Relation:
+    return Relation(
+        relation="isOn",
+        subject=solid.name,
+        object="",
+        holds=False,
+        gap_m=round(gap_m, 4) + 0.0,
+        share=round(share, 4),
+        text=text,
+    )

@@ -1,0 +1,35 @@
+"""Angles as people write them."""
+
+import math
+
+import click
+import pytest
+
+from nodes.extern.cli.angles import ANGLE
+
+
+@pytest.mark.parametrize(
+    ("text", "radians"),
+    [
+        ("1.57", 1.57),
+        ("-1.57rad", -1.57),
+        ("90deg", math.pi / 2),
+        ("-90°", -math.pi / 2),
+        ("4.5e1 deg", math.pi / 4),
+        (0.5, 0.5),
+    ],
+)
+def test_radians_or_degrees(text, radians, capsys):
+    assert ANGLE.convert(text, None, None) == pytest.approx(radians)
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("text", ["", "ninety", "90 degrees", "nan", "1.5.7", "deg"])
+def test_what_is_no_angle(text):
+    with pytest.raises(click.BadParameter, match=r"write radians \(1.57\) or degrees \(90deg\)"):
+        ANGLE.convert(text, None, None)
+
+
+def test_who_writes_degrees_without_a_unit_is_told_how_they_are_read(capsys):
+    assert ANGLE.convert("90", None, None) == 90.0
+    assert "90 is read as radians, which is 116.6°; for degrees write 90deg" in capsys.readouterr().err

@@ -1,0 +1,85 @@
+"""What happened between two commits, and when something was on something."""
+
+import pytest
+
+from schemas import errors
+from tests.conftest import running
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with running(
+        tmp_path_factory.mktemp("differences"), "--abox", "none", "--no-sim", "--no-record"
+    ) as system:
+        yield system
+
+
+@pytest.fixture(scope="module")
+def told(system):
+    """A client of a map with a cup that went from a table to another and back."""
+    with system.client() as client:
+        client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(6, 6, 3))  # 2, after the ontology
+        client.add("Table", "table1", at=(1, 1, 0), size=(1, 1, 0.7))
+        client.add("Table", "table2", at=(-1, -1, 0), size=(1, 1, 0.7))
+        client.add("Cup", "cup1", at=(1, 1, 0.7), ref="my cup")  # 5
+        client.update("cup1", at=(-1, -1, 0.7))  # 6
+        client.update("cup1", at=(1.1, 1, 0.7), ref="your cup")  # 7
+        client.remove("table2")  # 8
+        yield client
+
+
+def test_what_is_otherwise_is_told_by_entity(told):
+    found = told.diff("5", "6")
+    assert [(change.name, change.kind) for change in found.changes] == [("cup1", "pose")]
+    assert [(r.subject, r.text) for r in found.relations] == [
+        ("cup1", "is no longer on table1"),
+        ("cup1", "is on table2"),
+    ]
+    assert (found.first, found.last) == (5, 6)
+
+
+def test_there_and_back_is_what_is_left(told):
+    found = told.diff("5")
+    kinds = [(change.name, change.kind) for change in found.changes]
+    assert kinds == [("cup1", "pose"), ("cup1", "reference"), ("table2", "removed")]
+    assert [r.text for r in found.relations] == ["is no longer in kitchen1"]
+    assert found.relations[0].subject == "table2"
+    assert told.diff("8").changes == told.diff("8").relations == ()
+
+
+def test_every_diff_takes_the_one_map_to_the_other(told):
+    for first in range(1, 8):
+        for last in range(first, 9):
+            names = {e.name for e in told.list(as_of=str(first))}
+            for change in told.diff(str(first), str(last)).changes:
+                if change.kind == "added":
+                    assert change.name not in names
+                    names.add(change.name)
+                if change.kind == "removed":
+                    names.remove(change.name)
+            assert names == {e.name for e in told.list(as_of=str(last))}
+
+
+def test_when_it_was_there(told):
+    found = told.when("cup1", "isOn", "table1")
+    assert [(spell.since, spell.until) for spell in found.spells] == [(5, 6), (7, None)]
+    assert found.text.startswith(
+        "cup1 is on table1 since commit 7; before that from commit 5 until commit 6;"
+    )
+    assert found.total_s >= 0
+    gone = told.when("cup1", "isOn", "table2")
+    assert [(spell.since, spell.until) for spell in gone.spells] == [(6, 7)]
+    assert gone.text.startswith(
+        "cup1 is on table2 no longer; it was so from commit 6 until commit 7; once, for"
+    )
+    assert told.when("your cup", "isLocatedIn", "kitchen").spells[0].since == 5
+    assert told.when("table1", "isOn", "cup1").text == "it was never so that table1 is on cup1"
+
+
+def test_what_cannot_be_asked_is_said(told):
+    with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
+        told.diff("6", "5")
+    with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 8"):
+        told.diff("99")
+    with pytest.raises(errors.UnknownName):
+        told.when("nothing1", "isOn", "table1")

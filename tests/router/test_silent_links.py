@@ -1,0 +1,20 @@
+"""Connections are given up when nothing is acknowledged."""
+
+import socket
+import sys
+
+import pytest
+
+from nodes.router.silent_links import give_up_after
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is no such option")
+def test_every_connection_of_the_process_is_told():
+    option = socket.TCP_USER_TIMEOUT
+    with socket.create_server(("127.0.0.1", 0)) as server, socket.socket(socket.AF_UNIX) as other:
+        with socket.create_connection(server.getsockname()) as one:
+            assert one.getsockopt(socket.IPPROTO_TCP, option) == 0
+            assert give_up_after(2.5) >= 2
+            assert one.getsockopt(socket.IPPROTO_TCP, option) == 2500
+            one.sendall(b"still open")
+        other.bind("")  # is as it was
