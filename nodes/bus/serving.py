@@ -19,7 +19,7 @@ from schemas.calls import largest
 from schemas.replies import Ack, Document, Done
 
 _JSON = "application/json"
-_ACKS = 1000
+_ACKS = 20_000
 """Acknowledgements that wait to be published; then the next put is read when there are fewer."""
 
 

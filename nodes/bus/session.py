@@ -33,9 +33,6 @@ _MEET_MS = 100
 """Milliseconds: as long as a peer that joins may take to meet those that it hears of. It takes a few, but
 often Zenoh 1.10.2 does not notice that it is done, and would wait for half a second."""
 
-_LEASE_MS: Final = 2000
-"""Milliseconds for which a peer may say nothing, or take nothing while what is for it waits; then its link is
-closed. Whoever sends to it waits as long, so it is less than the silence by which a hang is told."""
 _READERS: Final = 8
 """Threads that read links. One whose messages wait for a busy callback holds up its thread; of Zenoh's own
 number, 2, two senders that flood would take both, and whoever asks over another link would wait for them."""
@@ -92,8 +89,7 @@ class Network(Struct, frozen=True):
             "scouting/multicast/enabled": False,
             "scouting/delay": _MEET_MS,
             "transport/shared_memory/enabled": False,
-            "transport/link/tx/lease": _LEASE_MS,
-            "transport/link/tx/queue/congestion_control/block/wait_before_close": _LEASE_MS * 1000,
+            "transport/link/tx/lease": 2000,
             "transport/unicast/open_timeout": int(PATIENCE_S * 1000),
         }
         if self.namespace:
