@@ -30,7 +30,7 @@ test: setup  ## The tests, under 5 minutes
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 --dist worksteal -m "not long"
+	$(BIN)/pytest -n 3 --dist worksteal -m "not long"  # on two cores: many of them wait for a system
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
 	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2

@@ -20,6 +20,10 @@ NAMESPACE_VARIABLE: Final = "SEMMAP_NAMESPACE"
 _ROBOT: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,127}")
 
 
+ALL_ROBOTS: Final = "*"
+"""As a namespace: of a router that several robots share, and of nothing else."""
+
+
 def robot_name(name: str) -> str:
     """`name`, if a robot may be called so; empty is a robot without a name. Raises BadRequest."""
     if name and not _ROBOT.fullmatch(name):

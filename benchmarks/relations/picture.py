@@ -11,7 +11,6 @@ from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.relations.situations import SITUATIONS, Said, Situation
 from nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from nodes.sim_node.bodies import Floats
 from nodes.sim_node.models.library import build
 from nodes.sim_node.models.parts import Colour, Part, Role, ball, box
 from nodes.sim_node.physics.build import add_part
@@ -23,15 +22,19 @@ from schemas.entities import Entity
 _WIDTH, _HEIGHT, _LINE, _COLUMNS, _FINE = 320, 232, 18, 6, 2
 _PAPER, _INK, _QUIET, _RULE = (250, 250, 248), (24, 24, 28), (70, 70, 78), (205, 205, 200)
 _LABEL = (255, 255, 236)
+_SMALL = ImageFont.load_default(12)
+Rectangle = tuple[float, float, float, float]
 _FLOOR: Colour = (0.86, 0.85, 0.82)
 _PLACES: tuple[Colour, ...] = ((0.78, 0.84, 0.90), (0.90, 0.84, 0.74), (0.78, 0.88, 0.78))
 _BOXES: tuple[Colour, ...] = ((0.72, 0.55, 0.36), (0.45, 0.58, 0.66), (0.62, 0.66, 0.42))
-_ROUND_ABOUT = (0.06, 0.16)
+_ROUND_ABOUT = (0.06, 0.13)
 """How much of what is around small things is shown, at least and at most [m]."""
+_OF_A_ROOM_M = 0.9
+"""How much of a room is shown around what stands in it."""
 _FROM_THE_SIDE, _FROM_ABOVE = (0.90, -0.42, 0.16), (0.55, -0.30, 0.90)
 _SEEN_FROM = {
-    "let go two centimetres above it": _FROM_THE_SIDE,
-    "sunk a centimetre into it": _FROM_THE_SIDE,
+    "let go two centimetres above it": (0.90, -0.42, -0.03),
+    "sunk a centimetre into it": (0.90, -0.42, 0.03),
     "in the air above it": (0.80, -0.50, 0.32),
     "under it": (0.80, -0.50, 0.22),
     "beside it, at its height": (0.25, -0.90, 0.35),
@@ -50,7 +53,7 @@ _SEEN_FROM = {
     "one orange on another in a basket": (0.45, -0.25, 1.20),
     "a tomato in a bin": (0.40, -0.25, 1.60),
     "a ball in the bathtub": _FROM_ABOVE,
-    "keys in a drawer": _FROM_ABOVE,
+    "close by, on another thing": (0.85, 0.50, 0.40),
     "a lamp that hangs over a table": (0.80, -0.50, 0.30),
     "a picture on a wall": (0.80, -0.60, 0.20),
     "a shelf on a wall, with a book": (0.80, -0.60, 0.35),
@@ -62,6 +65,11 @@ _SEEN_FROM = {
     "of no known size": (0.80, -0.50, 0.42),
 }
 """From where a situation is looked at, if not from the front: its direction."""
+_LOOKED_AT_CLOSELY = {
+    "beside it, at its height",
+    "nearly all of it over the edge",
+    "a large one on a small one",
+}
 _NOWHERE: Colour = (0.85, 0.20, 0.55)
 _WORDS = {
     "isOn": "on", "isInside": "inside", "isLocatedIn": "in", "isAttachedTo": "attached to",
@@ -127,38 +135,84 @@ def view_of(situation: Situation) -> Image.Image:
         around = np.clip(max(max(s.size) for s in close), *_ROUND_ABOUT) * np.array([1.0, 1.0, 0.6])
         low = np.maximum(low, np.min([(*s.bounds[:2], s.bottom) for s in close], axis=0) - offset - around)
         high = np.minimum(high, np.max([(*s.bounds[2:], s.top) for s in close], axis=0) - offset + around)
+    if any(entity.place for entity in entities):
+        things = [solid for solid in solids if not solid.is_place]
+        low[:2] = np.maximum(low[:2], np.min([s.bounds[:2] for s in things], axis=0) - _OF_A_ROOM_M)
+        high[:2] = np.minimum(high[:2], np.max([s.bounds[2:] for s in things], axis=0) + _OF_A_ROOM_M)
     back = _SEEN_FROM.get(situation.title, FROM_THE_FRONT)
     view = overview(low, high, _FINE * _WIDTH, _FINE * _HEIGHT, back)
     rgb, depth, _ = raycast(compiled, data, view)
     rgb[depth == 0.0] = _PAPER
     made = Image.fromarray(rgb).resize((_WIDTH, _HEIGHT), Image.Resampling.BOX)
-    _name(made, view, [(s.name, np.subtract(_top_of(s), (ox, oy, 0.0))) for s in solids])
+    named = _named(situation)
+    outlines = [_outline(s, view, (ox, oy, 0.0)) for s in solids if not s.is_place]
+    around = dict(zip((s.name for s in solids if not s.is_place), outlines, strict=True))
+    _name_places(made, [(s.name, _outline(s, view, (ox, oy, 0.0))) for s in solids if s.is_place])
+    _name_things(made, {name: around[name] for name in named}, outlines)
     return made
 
 
-def _top_of(solid: Solid) -> tuple[float, float, float]:
-    """Where the name of a thing is written: above its middle; of a place, in a corner of its floor."""
-    if solid.is_place:
-        return solid.to_map((0.3 * solid.size[0], -0.3 * solid.size[1], 0.0))
-    return (*solid.centre[:2], solid.top)
+def _named(situation: Situation) -> list[str]:
+    """Of which the name is written: the things that are told apart by nothing but their numbers."""
+    names = [entity.name for entity in situation.things if not entity.place]
+    kinds = [name.rstrip("0123456789") for name in names]
+    return [name for name, kind in zip(names, kinds, strict=True) if kinds.count(kind) > 1]
 
 
-def _name(made: Image.Image, view: View, named: list[tuple[str, Floats]]) -> None:
-    """Write the names into a picture, each near what it is of, none over another or beyond the edge."""
-    draw, font = ImageDraw.Draw(made), ImageFont.load_default(13)
-    to_camera = np.linalg.inv(view.map_from_camera)
-    taken: list[tuple[float, float, float, float]] = []
-    for name, point in named:
-        u, v, w = view.intrinsics @ (to_camera @ (*point, 1.0))[:3]
-        x0, y0, x1, y1 = draw.textbbox((0, 0), name, font=font)
-        wide, high = x1 - x0, y1 - y0
-        x = float(np.clip(u / w / _FINE - wide / 2, 6, made.width - wide - 6))
-        y = float(np.clip(v / w / _FINE - high - 8, 6, made.height - high - 6))
-        while any(x < b and a < x + wide and y < d and c < y + high for a, c, b, d in taken):
-            y += 3.0
-        taken.append((x - 4, y - 3, x + wide + 4, y + high + 3))
-        draw.rounded_rectangle((x - 4, y - 3, x + wide + 4, y + high + 4), 4, fill=_LABEL)
-        draw.text((x - x0, y - y0), name, fill=_INK, font=font)
+def _outline(solid: Solid, view: View, origin: tuple[float, float, float]) -> Rectangle:
+    """The rectangle around it in the picture [pixel]: left, top, right, bottom."""
+    x, y, z = solid.size
+    heights = (0.0,) if solid.is_place else (0.0, z)
+    corners = [solid.to_map((u * x, v * y, w)) for u in (-0.5, 0.5) for v in (-0.5, 0.5) for w in heights]
+    there = np.linalg.inv(view.map_from_camera) @ np.c_[np.subtract(corners, origin), np.ones(len(corners))].T
+    u, v, w = view.intrinsics @ there[:3]
+    return (min(u / w) / _FINE, min(v / w) / _FINE, max(u / w) / _FINE, max(v / w) / _FINE)
+
+
+def _name_things(made: Image.Image, named: dict[str, Rectangle], others: list[Rectangle]) -> None:
+    """Write names above, beside or below what they are of: where they hide least."""
+    hidden = [one for one in others if (one[2] - one[0]) * (one[3] - one[1]) < 0.4 * _WIDTH * _HEIGHT]
+    for name, (x0, y0, x1, y1) in named.items():
+        wide, high = _extent(name)
+        middle, level = (x0 + x1 - wide) / 2, (y0 + y1 - high) / 2
+        spots = ((middle, y0 - high - 3), (x1 + 4, level), (x0 - wide - 4, level), (middle, y1 + 3))
+        inside = [(np.clip(x, 4, _WIDTH - wide - 4), np.clip(y, 4, _HEIGHT - high - 6)) for x, y in spots]
+        rectangles = [(float(x), float(y), float(x) + wide, float(y) + high) for x, y in inside]
+        best = min(rectangles, key=lambda spot: sum(_shared(spot, other) for other in hidden))
+        hidden.append(best)
+        _write(made, name, best)
+
+
+def _name_places(made: Image.Image, named: list[tuple[str, Rectangle]]) -> None:
+    """Write the names of places in a column, each with the colour of its floor."""
+    for row, ((name, _), colour) in enumerate(zip(named, _PLACES, strict=False)):
+        wide, high = _extent(name)
+        top = 8.0 + row * (high + 9)
+        ImageDraw.Draw(made).rectangle((8, top, 8 + high, top + high), fill=_as_bytes(colour), outline=_INK)
+        _write(made, name, (high + 16.0, top, high + 16.0 + wide, top + high))
+
+
+def _as_bytes(colour: Colour) -> tuple[int, int, int]:
+    red, green, blue = (round(255 * value) for value in colour[:3])
+    return red, green, blue
+
+
+def _extent(name: str) -> tuple[float, float]:
+    x0, y0, x1, y1 = _SMALL.getbbox(name)
+    return float(x1 - x0), float(y1 - y0)
+
+
+def _write(made: Image.Image, name: str, where: Rectangle) -> None:
+    draw = ImageDraw.Draw(made)
+    draw.rounded_rectangle((where[0] - 3, where[1] - 2, where[2] + 3, where[3] + 3), 3, fill=_LABEL)
+    x0, y0, _, _ = _SMALL.getbbox(name)
+    draw.text((where[0] - x0, where[1] - y0), name, fill=_INK, font=_SMALL)
+
+
+def _shared(one: Rectangle, other: Rectangle) -> float:
+    """The area that two rectangles share."""
+    wide, high = min(one[2], other[2]) - max(one[0], other[0]), min(one[3], other[3]) - max(one[1], other[1])
+    return max(0.0, wide) * max(0.0, high)
 
 
 def _close(situation: Situation, solids: list[Solid]) -> list[Solid]:
@@ -166,6 +220,8 @@ def _close(situation: Situation, solids: list[Solid]) -> list[Solid]:
     relations = {relation for _, relation, _ in (*situation.said, *situation.also)}
     small = [solid for solid in solids if max(solid.size) < 0.5 * max(max(s.size) for s in solids)]
     carried = {name for name, _, _ in situation.said}
+    if situation.title in _LOOKED_AT_CLOSELY:
+        return small
     if relations & {"isUnder", "isAbove", "isLocatedIn", "isAttachedTo"} or not small:
         return []
     return small if {solid.name for solid in small} <= carried else []
@@ -177,8 +233,8 @@ def _height(solid: Solid) -> float:
 
 def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> list[Part]:
     x, y, _ = solid.size
-    if entity.place:
-        return [box((x - 0.04, y - 0.04, 0.02), (0.0, 0.0, -0.015), colour)]
+    if entity.place:  # the smaller one over the larger
+        return [box((x - 0.04, y - 0.04, 0.02), (0.0, 0.0, -0.015 - 1e-4 * x * y), colour)]
     if not solid.is_measured:
         return [ball((0.08, 0.08, 0.08), (0.0, 0.0, 0.04), _NOWHERE)]
     if not entity.model:
@@ -186,7 +242,17 @@ def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> li
     parts = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.FELT]
     if entity.name in opened and not any(inner.open for inner in shapes()[entity.model].interiors):
         return _cut_open(entity)
-    return parts
+    return [part for part in parts if entity.name not in opened or not _fills(part, entity.model)]
+
+
+def _fills(part: Part, model: str) -> bool:
+    """Whether a part takes up most of a hollow, as the water in a bathtub does, which hides what is in it."""
+    for inner in shapes()[model].interiors:
+        low, high = np.array(inner.low), np.array(inner.high)
+        middle, reach = np.array(part.centre), part.reach()
+        if np.all((low < middle) & (middle < high)) and np.all(reach[:2] > 0.3 * (high - low)[:2]):
+            return True
+    return False
 
 
 def _cut_open(entity: Entity) -> list[Part]:
@@ -217,7 +283,7 @@ def sheet() -> Image.Image:
 
 def main() -> None:
     """Write the picture to the file named on the command line."""
-    sheet().quantize(128).save(Path(sys.argv[1]), optimize=True)
+    sheet().save(Path(sys.argv[1]), optimize=True)
 
 
 if __name__ == "__main__":

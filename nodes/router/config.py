@@ -17,3 +17,5 @@ class RouterConfig:
 
     keys: Path | None
     network: Network
+    namespace: str = ""
+    """Which keys those who are admitted may use: a robot's, or `*`, those of all robots."""

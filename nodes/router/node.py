@@ -56,6 +56,7 @@ class Router:
     def __init__(self, config: RouterConfig) -> None:
         """Raises BadFile for a folder without keys."""
         self._network = config.network
+        self._namespace = config.namespace
         self._live = None if config.keys is None else LiveRegister(config.keys)
         self._node: Node | None = None
         self._stopped = False
@@ -75,7 +76,7 @@ class Router:
         """Admit those of `register`, or everybody, until there is another one."""
         network = self._network
         if register is not None:
-            access = access_control(register.admitted, network.namespace)
+            access = access_control(register.admitted, self._namespace)
             network = structs.replace(network, access=access)
         with bus.open_session(network) as session:
             node = self._node = Node(keys.ROUTER, session)

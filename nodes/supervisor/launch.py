@@ -146,7 +146,7 @@ def _router(settings: Settings) -> None:
     from nodes.router.node import run
 
     keys = None if settings.secure is None else Path(settings.secure)
-    run(RouterConfig(keys, settings.network(ROUTER)))
+    run(RouterConfig(keys, settings.network(ROUTER), settings.namespace))
 
 
 _LAUNCHERS: dict[str, Callable[[Settings], None]] = {

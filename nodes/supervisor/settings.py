@@ -12,7 +12,7 @@ from msgspec import Meta, Struct, structs
 
 from nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from nodes.identity import Identity
-from schemas.endpoints import robot_name
+from schemas.endpoints import ALL_ROBOTS, robot_name
 from schemas.errors import BadRequest
 from schemas.keys import ROUTER
 
@@ -74,7 +74,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The folder of keys: everybody, nodes included, shows a certificate to the router, the one listener of
     this host."""
     namespace: str = ""
-    """The name of the robot, which prefixes every key: several robots can share a network."""
+    """The name of the robot, which prefixes every key: several robots can share a network.
+
+    Of a single router that robots share it is `*`.
+    """
     zenoh_config: str | None = None
     """A Zenoh configuration file of one's own, for every process of the system."""
 
@@ -86,7 +89,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 " 20GB"
             )
         try:
-            robot_name(self.namespace)
+            robot_name("" if self.single and self.namespace == ALL_ROBOTS else self.namespace)
         except BadRequest as error:
             raise ValueError(error.text) from None
         for endpoint in (self.listen, *self.connect):
@@ -135,7 +138,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Where there is a router it listens, and all others are its clients; it connects to other hosts. A
         single node is a client of whoever listens there.
         """
-        return structs.replace(self._place(node), namespace=self.namespace, own_config=self.zenoh_config)
+        namespace = "" if self.namespace == ALL_ROBOTS else self.namespace
+        return structs.replace(self._place(node), namespace=namespace, own_config=self.zenoh_config)
 
     def _place(self, node: str) -> Network:
         identity = None if self.secure is None else Identity.read(Path(self.secure) / node)

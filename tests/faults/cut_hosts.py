@@ -101,7 +101,6 @@ class SpreadOut:
         self.here = f"{self._scheme}/127.0.0.1:{_PORT}"
         """Where each host has its router."""
         self._loads = count(1)
-        self._there: set[str] = set()
         self._pids: dict[str, dict[str, int]] = {}
 
     def start(self) -> None:
@@ -184,8 +183,7 @@ class SpreadOut:
             yield f"refused: {refused[0]}"
         acknowledged = [name for one in ended for name in one.acknowledged]
         there, last = self.hosts[0].do(on_a_host.cups, self.here)
-        new, self._there = there - self._there, there
-        nobodys = len(new) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
+        nobodys = len(there) - len(set(acknowledged)) - sum(one.in_doubt for one in ended)
         row.lost = len(set(acknowledged) - there)
         row.doubled = len(acknowledged) - len(set(acknowledged)) + max(0, nobodys)
         for host in self.hosts:
@@ -193,6 +191,7 @@ class SpreadOut:
                 if seqs != list(range(seqs[0], last + 1)):
                     yield f"on {host.name} commits were missed, or heard of twice"
         self.hosts[0].do(on_a_host.recorded, self.here, last)
+        self.hosts[0].do(on_a_host.clear, self.here)
 
 
 def _data(host: Host) -> str:

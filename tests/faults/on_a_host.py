@@ -135,6 +135,13 @@ def cups(endpoint: str) -> tuple[set[str], int]:
     return found
 
 
+def clear(endpoint: str) -> None:
+    """Let the map be empty: what is measured next is not how long many bodies take."""
+    with connect(endpoint) as client:
+        client.clear()
+        wait_for(lambda: client.status().bodies == 0, "the bodies are gone")
+
+
 def recorded(endpoint: str, until: int) -> None:
     """Return when the recorder, wherever it runs, says that it has all commits."""
 

@@ -140,6 +140,9 @@ def _result(body: bytes, url: str) -> SparqlResult:
         if "boolean" in document:
             return SparqlResult(kind="ask", verdict=bool(document["boolean"]), seq=0)
         variables = tuple(document["head"]["vars"])
+        if variables == (_ASKED_OF_VIRTUOSO,):
+            (binding,) = document["results"]["bindings"]
+            return SparqlResult(kind="ask", verdict=binding[_ASKED_OF_VIRTUOSO]["value"] == "1", seq=0)
         rows: tuple[Row, ...] = tuple(
             tuple(_term(binding.get(name)) for name in variables)
             for binding in document["results"]["bindings"]
@@ -167,5 +170,7 @@ def _term(value: Any) -> Term | None:
     return f'"{escaped}"' if datatype in (None, _STRING) else f'"{escaped}"^^<{datatype}>'
 
 
+_ASKED_OF_VIRTUOSO: Final = "__ASK_RETVAL"
+"""Virtuoso 7 answers an ASK with a row."""
 _STRING: Final = "http://www.w3.org/2001/XMLSchema#string"
 _ESCAPED: Final = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n", "\r": r"\r"})

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from sklearn.ensemble import HistGradientBoostingClassifier
 
 from nodes.perception_node.segmentation.trees import LEAVES, Trees
 from nodes.training.segmentation.examples import Rows
@@ -15,6 +14,8 @@ TREES = 150
 
 def fit(rows: Rows, trees: int = TREES) -> Trees:
     """Trees that tell pairs that are one object from those that are not."""
+    from sklearn.ensemble import HistGradientBoostingClassifier  # takes longer to import than all else
+
     model = HistGradientBoostingClassifier(
         max_iter=trees,
         learning_rate=0.1,

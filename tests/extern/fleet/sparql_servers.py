@@ -14,6 +14,7 @@ from pathlib import Path
 import pyoxigraph
 
 from nodes.extern.fleet import facts as f
+from nodes.extern.fleet.server import SparqlServer
 from nodes.extern.testing import free_endpoint
 
 Graph = frozenset[tuple[str, str, str]]
@@ -64,6 +65,83 @@ class Oxigraph:
             if error.code == 404:
                 return frozenset()
             raise
+
+
+class Virtuoso:
+    """`virtuoso-t`, as Debian has it, on a folder and two ports. Its one endpoint is for all."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir()
+        self.folder = folder
+        sql, http = (free_endpoint().removeprefix("tcp/") for _ in range(2))
+        self._sql = sql
+        self.update_url = self.query_url = f"http://{http}/sparql"
+        (folder / "virtuoso.ini").write_text(_VIRTUOSO_INI.format(folder=folder, sql=sql, http=http))
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Returns when it answers, and lets whoever asks write."""
+        ini = self.folder / "virtuoso.ini"
+        self.process = subprocess.Popen(
+            ["virtuoso-t", "-f", "+configfile", ini], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        grant = self.folder / "grant.sql"
+        grant.write_text('GRANT SPARQL_UPDATE TO "SPARQL";\n')
+        deadline_s = time.monotonic() + 90
+        while True:
+            command = ["isql-vt", self._sql, "dba", "dba", grant]
+            done = subprocess.run(command, capture_output=True, text=True)
+            said = done.stdout + done.stderr
+            if ("Done." in said and "Error" not in said) or "already have role" in said:
+                return
+            assert time.monotonic() < deadline_s, f"virtuoso did not start: {said}"
+            time.sleep(0.2)
+
+    def kill(self) -> None:
+        """As by kill -9."""
+        assert self.process is not None
+        self.process.kill()
+        self.process.wait()
+        (self.folder / "virtuoso.lck").unlink(missing_ok=True)
+
+    def graph(self, robot: str) -> Graph:
+        """What is in a robot's graph, in the spelling of Oxigraph."""
+        server = SparqlServer(self.query_url)
+        rows = server.query(f"SELECT ?s ?p ?o {{ GRAPH {f.graph(robot)} {{ ?s ?p ?o }} }}").rows
+        server.close()
+        return spelled("".join(f"{s} {p} {o} .\n" for s, p, o in rows).encode())
+
+
+_VIRTUOSO_INI = """
+[Database]
+DatabaseFile = {folder}/virtuoso.db
+ErrorLogFile = {folder}/virtuoso.log
+LockFile = {folder}/virtuoso.lck
+TransactionFile = {folder}/virtuoso.trx
+xa_persistent_file = {folder}/virtuoso.pxa
+[TempDatabase]
+DatabaseFile = {folder}/temporary.db
+TransactionFile = {folder}/temporary.trx
+[Parameters]
+ServerPort = {sql}
+NumberOfBuffers = 10000
+[HTTPServer]
+ServerPort = {http}
+ServerRoot = {folder}
+[SPARQL]
+ResultSetMaxRows = 1000000
+"""
+
+
+@contextlib.contextmanager
+def virtuoso(folder: Path) -> Iterator[Virtuoso]:
+    """A server that answers; killed at the end."""
+    server = Virtuoso(folder)
+    server.start()
+    try:
+        yield server
+    finally:
+        server.kill()
 
 
 @contextlib.contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from sklearn.ensemble import HistGradientBoostingClassifier
 
 from nodes.perception_node.segmentation.trees import LEAVES
 from nodes.training.segmentation.fit import trees_of
@@ -14,6 +13,8 @@ Y = X[:, 0] * X[:, 1] + X[:, 2] > 0.3
 
 
 def fitted(y, **options):
+    from sklearn.ensemble import HistGradientBoostingClassifier  # when it is needed: it takes a second
+
     model = HistGradientBoostingClassifier(max_leaf_nodes=LEAVES, min_samples_leaf=5, **options)
     model.fit(X, y)
     return model, trees_of([p[0].nodes for p in model._predictors], float(model._baseline_prediction.item()))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from nodes.perception_node.segmentation.pairs import NAMES
@@ -10,11 +12,14 @@ from nodes.training.segmentation.fit import fit
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
 
-EXAMPLES = [example(*boxes_on_table(*boxes)) for boxes in SCENES.values()]
+
+@functools.cache
+def examples():
+    return [example(*boxes_on_table(*boxes)) for boxes in SCENES.values()]
 
 
 def test_the_right_way_ends_with_the_objects():
-    for one in EXAMPLES[1:]:
+    for one in examples()[1:]:
         rows = right_way(one, np.random.default_rng(0))
         assert rows.features.shape == (len(rows.one), len(NAMES))
         assert rows.one.any()
@@ -23,10 +28,10 @@ def test_the_right_way_ends_with_the_objects():
 
 
 def test_a_model_learns_it_and_its_own_way_is_met():
-    rows = joined([right_way(one, np.random.default_rng(n)) for n in range(4) for one in EXAMPLES])
+    rows = joined([right_way(one, np.random.default_rng(n)) for n in range(4) for one in examples()])
     trees = fit(rows, trees=20)
     assert ((trees.probability(rows.features) > 0.5) == rows.one).mean() > 0.95
-    own = own_way(EXAMPLES[0], trees.probability)
+    own = own_way(examples()[0], trees.probability)
     assert len(own.one) > 0
 
 

@@ -24,7 +24,7 @@ from nodes.supervisor.parts import nodes_of
 from nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from schemas import codec, errors
-from schemas.endpoints import CONNECT_VARIABLE, NAMESPACE_VARIABLE, robot_name
+from schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE, robot_name
 from schemas.keys import NODES, ROUTER
 
 _path = click.Path(path_type=Path)
@@ -205,8 +205,10 @@ def node(name: str, settings: Settings) -> None:
     """Run a single node in the foreground.
 
     The coordinator (with --secure the router) listens on --listen; the other nodes connect to it there, or
-    to the router at --connect.
+    to the router at --connect. A router with --namespace '*' is shared by several robots.
     """
+    if settings.namespace == ALL_ROBOTS and name != ROUTER:
+        raise errors.BadRequest("--namespace '*' is for a router that robots share: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
     from nodes.supervisor.launch import run_node, seed
     from nodes.supervisor.privacy import UMASK, make_private
@@ -281,7 +283,7 @@ def _settings(
         "record_keep": record_keep,
         "fresh": fresh,
         "secure": None if secure is None else _folder(secure),
-        "namespace": robot_name(namespace),
+        "namespace": namespace if single else robot_name(namespace),
         "zenoh_config": None if zenoh_config is None else _existing(zenoh_config),
     }
     _require_protected(values, insecure=insecure)
