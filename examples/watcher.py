@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from collections.abc import Iterator
 
 import semmap
 
@@ -24,24 +25,23 @@ def watch_drinks(client: semmap.Client, seconds: float) -> None:
             pass  # nothing happened for that long
 
 
-def watch_commits(client: semmap.Client, seconds: float) -> None:
-    """Every commit from now on."""
-    with client.commits(timeout=seconds) as commits:
-        try:
-            for commit in commits:
-                who = commit.agent or commit.source
-                print(f"commit {commit.seq} by {who}: {commit.reason} ({' '.join(commit.names)})", flush=True)
-        except semmap.NoAnswer:
-            pass
+def tell(commits: Iterator[semmap.Commit]) -> None:
+    """Every commit, as it comes."""
+    try:
+        for commit in commits:
+            who = commit.agent or commit.source
+            print(f"commit {commit.seq} by {who}: {commit.reason} ({' '.join(commit.names)})", flush=True)
+    except semmap.NoAnswer:
+        pass
 
 
 def main() -> None:
     """Both at once, until nothing happens for some time."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
-    with semmap.connect(agent="watcher") as client:
+    with semmap.connect(agent="watcher") as client, client.commits(timeout=seconds) as commits:
         drinks = threading.Thread(target=watch_drinks, args=(client, seconds))
         drinks.start()
-        watch_commits(client, seconds)
+        tell(commits)
         drinks.join()
 
 

@@ -283,7 +283,7 @@ def sheet() -> Image.Image:
 
 def main() -> None:
     """Write the picture to the file named on the command line."""
-    sheet().quantize(128).save(Path(sys.argv[1]), optimize=True)
+    sheet().save(Path(sys.argv[1]), optimize=True)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from ontology import FLAT_TTL, HOUSEHOLD_TTL
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.bridge import Entities
-from schemas.commands import Could, Explain
+from schemas.commands import Could, Explain, Get, Relations
 from schemas.commits import Edit, NewEntity, Transaction
 from schemas.entities import Pose
 from schemas.relations import Where
@@ -178,3 +178,17 @@ def test_why_not_is_told_by_what_was_measured(flat):
 
 def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):
     assert "as it stands" not in explained(flat, "kitchen1", "isLocatedIn", "flat1").text
+
+
+def test_get_says_how_high_a_thing_is_that_nothing_bears(own):
+    def hovering(name):
+        return whereabouts.Now(own).entity(Get(name=name, where=True)).on_nothing
+
+    assert hovering("milk1") == hovering("light1") == hovering("kitchen1") == ""  # lights are fixed
+    edit = Edit(name="milk1", at=(2.0, 2.0, 0.42))
+    own.commit(Transaction(id="lifted", source="operator", edit=(edit,)))
+    text = "milk1 is on nothing: its bottom is 42.0 cm above the floor of livingroom1"
+    assert hovering("milk1") == text
+    told = [r.text for r in whereabouts.Now(own).relations(Relations(name="milk1")) if not r.object]
+    assert told == [text]
+    assert not whereabouts.Now(own).entity(Get(name="milk1")).on_nothing

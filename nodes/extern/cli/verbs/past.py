@@ -72,7 +72,10 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @_text_or_json
 @talks
 def diff(client: Client, since: str, until: str | None, format: str) -> None:
-    """Show what is otherwise than it was: after a commit or at a time, against another or now."""
+    """Show what is otherwise than it was.
+
+    Between two commits or times, or from one until now.
+    """
     found = client.diff(since, until)
     if format == "json":
         print_json(found)
@@ -87,7 +90,7 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
 @_text_or_json
 @talks
 def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
-    """Show when a thing was on, inside, in or attached to another, as measured.
+    """Show when one thing was on, in or attached to another.
 
     For example: semmap when cup1 isOn table1. The exit status is 1 if it never was.
     """

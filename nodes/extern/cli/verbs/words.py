@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 )
 @talks
 def understand(client: Client, text: str, format: str) -> None:
-    """Show what a command in words asks for, with the entities that it speaks of.
+    """Show what a command in words asks for, and of what.
 
     For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
     exit status is 1 if no frame is understood.

@@ -3,6 +3,7 @@
 import pytest
 
 from nodes.extern.cli.output import lines
+from schemas.relations import Relation
 from schemas.replies import Changed
 
 
@@ -13,3 +14,25 @@ def test_of_many_consequences_a_few_are_shown_and_the_rest_counted(count, shown)
     assert text == "it would be"
     assert rest[:shown] == [f"  would no longer follow: {fact}" for fact in facts[:shown]]
     assert rest[shown:] == [f"  would no longer follow: {count - shown} more facts"] * (count > shown)
+
+
+def test_what_a_thing_bears_is_one_sentence():
+    def on(name, relation="isOn", other="table1"):
+        return Relation(relation=relation, subject=name, object=other, text=f"{name} {relation} {other}: ...")
+
+    alone = [on("table1", "isLocatedIn", "kitchen1"), on("cup1")]
+    assert list(lines.relations(alone)) == [relation.text for relation in alone]
+    several = [
+        on("table1", "isLocatedIn", "kitchen1"),
+        on("cup1"),
+        on("cup2"),
+        on("ball1", "isInside", "bin1"),
+    ]
+    assert list(lines.relations(several)) == [
+        several[0].text,
+        "table1 supports cup1 and cup2",
+        several[3].text,
+    ]
+    many = list(lines.relations([on(f"cup{n}") for n in range(30)]))
+    assert many[0].startswith("table1 supports cup0, cup1")
+    assert many[0].endswith("and 11 more")
