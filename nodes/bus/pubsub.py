@@ -60,7 +60,7 @@ def follow(
             return
         receive(str(sample.key_expr), message)
 
-    # Zenoh (1.10.2) passes some over while it recovers what came before, in a flood that is more than its cache.
+    # In a flood larger than the cache, Zenoh (1.10.2) passes some over while it recovers what came before.
     if topic.qos == "newest" or "*" in topic.key or topic is keys.ACK:
         return session.declare_subscriber(topic.key, on_sample)
     return ext.declare_advanced_subscriber(
