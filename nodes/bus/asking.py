@@ -165,6 +165,8 @@ def _ask(
         gathered = pieces.Gathered()
         try:
             for reply in replies if meanwhile is None or last is None else _polled(replies, meanwhile):
+                if lifelines is not None:
+                    lifelines.look(servers)
                 if lifelines is None or lifelines.vouch(servers, reply):
                     if (whole := read_reply(key, reply, kind, round_s, gathered)) is not None:
                         return whole.decode()

@@ -14,6 +14,7 @@ import zenoh
 from schemas import keys
 
 _ROBOTS_S: Final = 3.0
+_LOOK_S: Final = 1.0
 
 
 class Lifelines:
@@ -23,6 +24,7 @@ class Lifelines:
     """
 
     def __init__(self, session: zenoh.Session) -> None:
+        self._session = session
         self._tokens: dict[tuple[str, ...], zenoh.CancellationToken] = {}
         self._there: set[str] = set()
         self._foreign_replies: set[str] = set()
@@ -36,6 +38,17 @@ class Lifelines:
     def has_seen(self, nodes: tuple[str, ...]) -> bool:
         """Has a process of any of these nodes been ready since this session began?"""
         return any(node in self._instances for node in nodes)
+
+    def look(self, nodes: tuple[str, ...]) -> None:
+        """Wait until it is known which of these nodes are there, if none has been seen yet.
+
+        In a session's first moments a reply may be here before the news of who is there. Not for a thread
+        of Zenoh's.
+        """
+        if not self.has_seen(nodes):
+            for reply in self._session.liveliness().get(keys.live_key("*"), timeout=_LOOK_S):
+                if reply.ok is not None:
+                    self._know(str(reply.ok.key_expr))
 
     def vouch(self, nodes: tuple[str, ...], reply: zenoh.Reply) -> bool:
         """Is the reply by one of these nodes? Of whom none is ready, nobody can tell."""
@@ -53,13 +66,17 @@ class Lifelines:
         """For questions, from now on, that any of these nodes may answer."""
         return self._tokens.get(nodes) or self._tokens.setdefault(nodes, zenoh.CancellationToken())
 
+    def _know(self, key: str) -> None:
+        node = keys.live_node(key)
+        self._instances[node] = self._instances.get(node, frozenset()) | {keys.last_chunk(key)}
+
     def _on_change(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
-        node, instance = keys.live_node(key), keys.last_chunk(key)
         if sample.kind != zenoh.SampleKind.DELETE:
             self._there.add(key)
-            self._instances[node] = self._instances.get(node, frozenset()) | {instance}
+            self._know(key)
             return
+        node, instance = keys.live_node(key), keys.last_chunk(key)
         self._there.discard(key)
         self._instances[node] = self._instances.get(node, frozenset()) - {instance}
         gone = node

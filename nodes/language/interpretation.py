@@ -30,7 +30,7 @@ class Interpreter:
     """Reads commands with what was learnt of a language. One thread at a time."""
 
     def __init__(self, frames: str, roles: str, language: str = "english") -> None:
-        """frames, roles: paths of the learnt taggers, as `nodes.training.language` writes them."""
+        """frames, roles: paths of the learnt taggers, as `make train-language` writes them."""
         self._lexicon = lexicon.load(language)
         self._frames, self._roles = pycrfsuite.Tagger(), pycrfsuite.Tagger()
         self._frames.open(frames)

@@ -11,7 +11,10 @@ from importlib.util import find_spec
 from schemas import errors
 
 MODULES: Mapping[str, tuple[str, ...]] = {
-    "kb": ("numpy", "owlrl", "psutil", "pyhornedowl", "pyoxigraph", "rapidfuzz", "rdflib", "supervisor"),
+    "kb": (
+        *("numpy", "owlrl", "psutil", "pycrfsuite", "pyhornedowl", "pyoxigraph", "rapidfuzz", "rdflib"),
+        "supervisor",
+    ),
     "sim": ("PIL", "mujoco", "numpy", "scipy", "trimesh"),
     "perception": ("PIL", "numpy", "scipy"),  # and Open3D, where there is one
     "record": ("PIL", "numpy", "rerun"),

@@ -57,6 +57,21 @@ def test_its_reply_is_passed_over_for_the_nodes_own(three, caplog):
     assert caplog.text.count(said) <= 1
 
 
+def test_it_is_passed_over_before_the_news_of_the_node_has_come(three):
+    node, client, stolen = three
+    bus.serve(node, keys.BRIDGE, answer(lambda _: replies.Done(text="true")))
+    _token = bus.appear(node, "kb_node")
+    probe = bus.Lifelines(client)
+    until(lambda: probe.is_there("kb_node"), "the token is seen")
+    for _ in range(300):
+        lifelines = bus.Lifelines(client)
+        lifelines._instances.clear()  # as if its thread had not run yet
+        assert bus.ask(client, keys.BRIDGE, "get", *ASKED, lifelines=lifelines).text == "true"
+        if len(stolen) > 3:
+            break
+    assert stolen
+
+
 def test_without_the_nodes_own_it_is_told(three):
     node, client, _ = three
     lifelines = bus.Lifelines(client)
