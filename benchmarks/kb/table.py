@@ -186,6 +186,7 @@ def of_scale(found: Sequence[Scale]) -> list[Row]:
             ("sparql", f"later SPARQL by the command line, {of}", one.sparql_by_command_line_s, "s"),
             ("list", f"list of one class in a hundred, {of}", one.list_class_s, "s"),
             ("check", f"check from nothing, {of}", one.check_s, "s"),
+            ("", f"add over Zenoh right after a start, {of}, p50", one.early_add_ms, "ms"),
             ("", f"add over Zenoh, {of}, p50", one.add_ms, "ms"),
             ("", f"move over Zenoh, {of}, p50", one.update_ms, "ms"),
         ]
