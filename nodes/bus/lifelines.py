@@ -15,6 +15,7 @@ from schemas import keys
 
 _ROBOTS_S: Final = 3.0
 _LOOK_S: Final = 1.0
+_LOOKS: Final = 6
 
 
 class Lifelines:
@@ -42,10 +43,12 @@ class Lifelines:
     def look(self, nodes: tuple[str, ...]) -> None:
         """Wait until it is known which of these nodes are there, if none has been seen yet.
 
-        In a session's first moments a reply may be here before the news of who is there. Not for a thread
-        of Zenoh's.
+        In a session's first moments a reply may be here before the news of who is there. It is asked several
+        times, since Zenoh (1.10.2) now and then says that nobody is. Not for a thread of Zenoh's.
         """
-        if not self.has_seen(nodes):
+        for _ in range(_LOOKS):
+            if self.has_seen(nodes):
+                return
             for reply in self._session.liveliness().get(keys.live_key("*"), timeout=_LOOK_S):
                 if reply.ok is not None:
                     self._know(str(reply.ok.key_expr))
