@@ -233,6 +233,8 @@ class _Acks:
         self._waiting.put(ack)
         if self._waiting.qsize() >= _ACKS:
             self._has_room.clear()
+            if self._waiting.qsize() < _ACKS // 2:  # they went meanwhile, and nobody is left to say so
+                self._has_room.set()
 
     def wait_for_room(self) -> None:
         """Return when few acknowledgements wait."""
