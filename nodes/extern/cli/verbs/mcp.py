@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import functools
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,14 +15,26 @@ if TYPE_CHECKING:
     from nodes.extern.client import Client
 
 
+def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
+    """A verb that says what it lacks before it connects to a system."""
+
+    @functools.wraps(function)
+    def checked(**arguments: Any) -> None:
+        extras.require("semmap mcp", "mcp")
+        function(**arguments)
+
+    return checked
+
+
 @click.command()
+@_with_its_extra
 @talks
 def mcp(client: Client) -> None:
-    """Serve the map to language-model agents, over the Model Context Protocol.
+    """Serve the map to language-model agents, over MCP.
 
-    It speaks on standard input and output, as hosts that start it expect. It only reads.
+    It speaks the Model Context Protocol on standard input and output, as hosts that start it expect. It only
+    reads.
     """
-    extras.require("semmap mcp", "mcp")
     from nodes.extern.mcp.server import run_stdio
     from nodes.extern.mcp.tools import Tools
 
