@@ -33,7 +33,7 @@ test: setup  ## The tests, under 5 minutes
 	$(BIN)/pytest -n 3 --dist worksteal -m "not long"  # on two cores: many of them wait for a system
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
-	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2
+	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2 -o faulthandler_timeout=7200
 
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000
