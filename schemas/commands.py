@@ -308,7 +308,7 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Diff(Command[Difference], frozen=True, tag="diff"):
-    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+    """What changed between `since` and `until` (or now): commits or times."""
 
     since: When
     until: When | None = None

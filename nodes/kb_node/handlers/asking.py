@@ -191,8 +191,9 @@ class Asking:
         return self._aside.submit(found.dated, look_up)
 
     def on_diff(self, query: Diff) -> Future[Difference]:
-        """What is otherwise than it was."""
-        return self._aside.submit(differences.difference, self._past, query, self._map.classes.limits)
+        """What changed between two commits or times."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.difference, self._journal, self._past, query, limits)
 
     def on_when(self, query: WasWhen) -> Future[Spells]:
         """When one thing was on, in or at another."""

@@ -171,7 +171,7 @@ class Past:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > max(time.time_ns(), self._journal.stamps.latest() if moment.first_ns else 0):
-            raise errors.Refused("that is in the future; ask about the present without --as-of")
+            raise errors.Refused(f"that is in the future; the last commit so far is {last}")
         seq = self._journal.stamps.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")
