@@ -78,7 +78,8 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
     fact = (one, query.relation, other)
-    found = spells_of(journal.outlines(Moves), past.at_the_beginning().values(), [fact], limits)[fact]
+    first = past.at_the_beginning().values()
+    found = spells_of(journal.outlines(Moves), first, [fact], limits, in_any_place=True)[fact]
     told = tuple(
         Spell(
             since=since,

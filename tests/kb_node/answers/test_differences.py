@@ -81,10 +81,21 @@ def test_when_it_was_there(told):
     assert told.when("table1", "isOn", "cup1").text == "table1 was never on cup1"
 
 
+def test_what_is_in_a_corner_is_in_the_room_too(told):
+    told.add("Corner", "corner1", at=(1, 1, 0), size=(1, 1, 2))  # 9
+    assert [(spell.since, spell.until) for spell in told.when("cup1", "isLocatedIn", "kitchen1").spells] == [
+        (5, None)
+    ]
+    assert [(spell.since, spell.until) for spell in told.when("cup1", "isLocatedIn", "corner1").spells] == [
+        (9, None)
+    ]
+    told.undo(9)
+
+
 def test_what_cannot_be_asked_is_said(told):
     with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
         told.diff("6", "5")
-    with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 8"):
+    with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 10"):
         told.diff("99")
     with pytest.raises(errors.UnknownName):
         told.when("nothing1", "isOn", "table1")
