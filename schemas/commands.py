@@ -360,7 +360,10 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
-    """When, where and by whom an entity was last seen or placed, even if it has been removed."""
+    """When, where and by whom an entity was last seen or placed, even if it has been removed.
+
+    The answer tells what has merely not been seen since from what was seen to be gone.
+    """
 
     name: Word
 

@@ -131,6 +131,17 @@ class Past:
             removed = commit.provenance
         return sighting(self.at_the_beginning()[name], removed)
 
+    def in_conflict_since(self, entity: Entity) -> Provenance:
+        """The commit by which the conflict that an entity has was stated."""
+        stated = entity.pose_provenance
+        for seq in reversed(self._journal.touching(entity.name)):
+            commit = self._journal.commit(seq)
+            then = _entities_after(commit).get(entity.name)
+            if then is None or then.conflict != entity.conflict:
+                break
+            stated = commit.provenance
+        return stated
+
     @property
     def last(self) -> int:
         """The number of the last commit, 0 before the first."""

@@ -57,7 +57,8 @@ def history(
 def last_seen(client: Client, name: str, format: str) -> None:
     """Show where and when an entity was last seen or placed.
 
-    It may have been removed since.
+    It may have been removed since. What was seen to be gone is told from what
+    has merely not been seen since.
     """
     sighting = client.last_seen(name)
     if format == "json":

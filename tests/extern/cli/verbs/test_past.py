@@ -89,7 +89,11 @@ def test_last_seen(system):
     assert "commit 4" in said
     assert "removed" in said
     seen = json.loads(system.cli("last-seen", "chair1", "--format", "json"))
-    assert (seen["provenance"]["source"], seen["removed"]) == ("perception", None)
+    assert (seen["provenance"]["source"], seen["removed"], seen["gone"]) == ("perception", None, None)
+    assert re.fullmatch(
+        r"last seen at commit 3, \d+ s ago; not seen since, nor seen to be gone", seen["text"]
+    )
+    assert re.search(r"removed at commit 5, \d+ s ago by operator/ann", said)
 
 
 def test_get_shows_who_when_why_and_how_sure(system):
