@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import queue
 import threading
 import time
 
@@ -48,15 +47,17 @@ def test_a_malformed_message_is_a_bad_request(pair, payload):
 
 def test_a_put_is_executed_and_acknowledged(pair):
     server, client = pair
-    acks: queue.SimpleQueue = queue.SimpleQueue()
-    client.declare_subscriber(keys.ACK.key, acks.put)
+    acks = []
+    client.declare_subscriber(keys.ACK.key, lambda sample: acks.append(sample.payload.to_bytes()))
     bus.serve_puts(server, PREFIX, answer(lambda request: replies.Done(text=request.verb)))
     time.sleep(0.3)
     client.put(PREFIX, msgpack.packb({"verb": "get", "name": "chair1", "id": "7"}))
-    ack = msgpack.unpackb(acks.get(timeout=PATIENCE_S).payload.to_bytes())
+    assert until(lambda: acks, "the put is acknowledged")
+    ack = msgpack.unpackb(acks[0])
     assert (ack["id"], ack["verb"], ack["ok"], ack["reply"]["text"]) == ("7", "get", True, "get")
     client.put(f"{PREFIX}/add", b'{"class": "Chair"}')
-    assert json.loads(acks.get(timeout=PATIENCE_S).payload.to_bytes())["verb"] == "add"
+    assert until(lambda: len(acks) == 2, "the put of JSON is acknowledged")
+    assert json.loads(acks[1])["verb"] == "add"
 
 
 def test_one_who_answers_puts_does_not_wait_for_those_who_read_the_acknowledgements_slowly(pair):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from schemas import keys
+from schemas.commands import Load
 from tests.conftest import running, until
 from tests.faults.mutations import Mutator, pids, queries, send, topics
 
@@ -38,5 +39,6 @@ def test_no_node_dies_and_every_payload_is_answered_or_counted(tmp_path, count):
 def _wait_under_the_id_of_a_change_that_named_nothing(system):
     """Found by mutations: it was an internal error."""
     with system.client() as client:
-        assert client.clear(id="again").names == ()
+        nobody = Load(content=b"<urn:a> <urn:b> <urn:c> .", filename="a.ttl", id="again")
+        assert client.send(nobody).names == ()
         assert client.add("Cup", at=(1.0, 1.0, 0.0), wait=True, id="again").names == ()
