@@ -94,10 +94,10 @@ def test_a_system_that_does_not_come_is_said_to_be_starting(monkeypatch):
 @pytest.mark.parametrize(("mode", "is_peer"), [("client", False), ("peer", True), (None, True)])
 def test_a_session_joins_as_it_is_told(mode, is_peer):
     where = free_endpoint()
-    with bus.open_session(bus.Network(connect=(), listen=(where,), mode="peer")) as listening:
-        with connect(where, mode=mode) as client:
-            zid = client.session.info.zid()
-            deadline_s = time.monotonic() + 5.0
-            while (zid in listening.info.peers_zid()) != is_peer and time.monotonic() < deadline_s:
-                time.sleep(0.01)
-            assert (zid in listening.info.peers_zid()) == is_peer
+    there = bus.Network(connect=(), listen=(where,), mode="peer")
+    with bus.open_session(there) as listening, connect(where, mode=mode) as client:
+        zid = client.session.info.zid()
+        deadline_s = time.monotonic() + 5.0
+        while (zid in listening.info.peers_zid()) != is_peer and time.monotonic() < deadline_s:
+            time.sleep(0.01)
+        assert (zid in listening.info.peers_zid()) == is_peer
