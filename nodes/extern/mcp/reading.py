@@ -75,7 +75,7 @@ def list_(client: Client, asked: a.List) -> Answer:
             to=asked.to,
         )
         page = found[start : start + _ON_A_PAGE]
-        where = _where(client, page) if as_of is None else {}
+        where = placed(client, page) if as_of is None else {}
         return {}, [rows.entity(entity, where.get(entity.name, {})) for entity in found]
 
     return _paged(client, asked, asked.as_of, read, of="entities")
@@ -199,7 +199,7 @@ def _now(client: Client, read: Callable[[], R]) -> tuple[R, int, int]:
     return at_one_commit(partial(known, client), partial(newest, client), read)
 
 
-def _where(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
+def placed(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
     """What these are on, inside and in."""
     if not entities:
         return {}
