@@ -1,4 +1,4 @@
-"""The verbs that take words as people say them: `understand`."""
+"""The verbs that take words as people say them, or say some: `understand`, `tell`."""
 
 from __future__ import annotations
 
@@ -8,11 +8,35 @@ from typing import TYPE_CHECKING
 import click
 
 from nodes.extern.cli.calling import complain, print_json, print_lines, talks
+from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.output import lu4r
 from schemas import errors
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
+
+
+@click.command()
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option(
+    "--words",
+    type=click.IntRange(20, 5000),
+    default=150,
+    show_default=True,
+    help="Most words of the text.",
+)
+@click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def tell(client: Client, name: str | None, words: int, format: str) -> None:
+    """Tell in a few words what is there.
+
+    In the map, or in a place, or of a thing: by its name, or a reference or class that only one has.
+    """
+    found = client.tell(name, words=words)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([found.text])
 
 
 @click.command()
