@@ -35,7 +35,7 @@ test: setup  ## The tests, about five minutes
 	$(BIN)/pytest -n 3 --dist worksteal -m "not long" $(NO_TEST_FOR_EVER)  # on two cores: many of them wait for a system
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
-	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2
+	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2 -o faulthandler_timeout=7200 -o faulthandler_exit_on_timeout=true
 
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000
