@@ -10,6 +10,7 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.answers.understanding import Understanding
@@ -31,6 +32,7 @@ from schemas.commands import (
     Diff,
     Explain,
     Export,
+    Find,
     Get,
     History,
     Infer,
@@ -75,6 +77,7 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._understanding = Understanding(semantic_map)
+        self._finding = Finding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self._aside = FairPool(2, asker)
 
@@ -97,6 +100,7 @@ class Asking:
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
+            Find.answered_by(self._finding.find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
