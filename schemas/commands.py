@@ -308,7 +308,7 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Diff(Command[Difference], frozen=True, tag="diff"):
-    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+    """What changed between `since` and `until` (or now): commits or times."""
 
     since: When
     until: When | None = None
@@ -373,7 +373,10 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
-    """When, where and by whom an entity was last seen or placed, even if it has been removed."""
+    """When, where and by whom an entity was last seen or placed, even if it has been removed.
+
+    The answer tells what has merely not been seen since from what was seen to be gone.
+    """
 
     name: Word
 

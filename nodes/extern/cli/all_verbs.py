@@ -27,6 +27,7 @@ _MODULES = {
     "tbox": ("tbox",),
     "keys": ("keys",),
     "fleet": ("fleet",),
+    "mcp": ("mcp",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""
