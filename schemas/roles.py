@@ -35,6 +35,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "relations",
             "understand",
             "tell",
+            "find",
             "diff",
             "when",
             "export",

@@ -254,6 +254,7 @@ class Verbs:
     relations = Verb(commands.Relations)
     understand = Verb(commands.Understand)
     tell = Verb(commands.Tell)
+    find = Verb(commands.Find)
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
     export = Verb(commands.Export)

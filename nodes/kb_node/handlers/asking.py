@@ -11,6 +11,7 @@ from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
 from nodes.kb_node.answers.accounts import Accounts
+from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -33,6 +34,7 @@ from schemas.commands import (
     Diff,
     Explain,
     Export,
+    Find,
     Get,
     History,
     Infer,
@@ -78,6 +80,7 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._understanding = Understanding(semantic_map)
+        self._finding = Finding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""
@@ -104,6 +107,7 @@ class Asking:
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
             Tell.answered_by(self._accounts.tell),
+            Find.answered_by(self._finding.find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
