@@ -11,7 +11,8 @@ from statistics import median
 
 from nodes.language import lexicon
 from nodes.language.grounding import Scene, Thing, scene
-from nodes.language.interpretation import Interpreter
+from nodes.language.interpretation import Interpreter, Seen
+from nodes.language.vocabulary import Vocabulary
 from nodes.training.language import made
 from nodes.training.language.__main__ import TIMES_MADE
 from nodes.training.language.corpus import Example
@@ -42,17 +43,24 @@ def trial(
     with_made: bool = True,
     with_corpus: bool = True,
     changed: Callable[[Example], Example] = lambda example: example,
+    seen: Seen = lambda features: features,
+    known: Vocabulary | None = None,
 ) -> Pairs:
-    """What is understood of all that is read. changed: what is done to every example, also while learning."""
-    known = household()
+    """What is understood of all that is read, by what learnt from the rest.
+
+    changed, seen: what is done to every example, and to the features of its words, also while learning.
+    known: what things are called, the household TBox's classes and our synonyms unless said otherwise.
+    """
+    known = known or household()
     own = [changed(e) for e in made.examples(TIMES_MADE, known)] if with_made else []
     pairs: Pairs = []
     with tempfile.TemporaryDirectory() as folder:
         frames, fillers = Path(folder) / "frames", Path(folder) / "roles"
         for learnt_from, kept in splits:
-            learn([*(map(changed, learnt_from) if with_corpus else ()), *own], known, frames, fillers)
-            interpreter = Interpreter(str(frames), str(fillers))
-            pairs += [(e, interpreter.read(e.words, scene_of(changed(e)))) for e in kept]
+            examples = [*(map(changed, learnt_from) if with_corpus else ()), *own]
+            learn(examples, known, frames, fillers, seen=seen)
+            interpreter = Interpreter(str(frames), str(fillers), seen=seen)
+            pairs += [(e, interpreter.read(e.words, scene_of(changed(e), known=known))) for e in kept]
     return pairs
 
 
@@ -69,7 +77,7 @@ def read(examples: Sequence[Example], interpreter: Interpreter) -> tuple[Pairs, 
     return pairs, median(times)
 
 
-def scene_of(example: Example, seed: int = 0) -> Scene:
+def scene_of(example: Example, seed: int = 0, known: Vocabulary | None = None) -> Scene:
     """The map of an example, its entities in no order: that of their names tells which are spoken of."""
     things: list[Thing] = random.Random(f"{seed} {example.name}").sample(example.things, len(example.things))
-    return scene(things, household(), lexicon.load())
+    return scene(things, known or household(), lexicon.load())

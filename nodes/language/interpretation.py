@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from typing import Final
 
@@ -23,15 +23,22 @@ _ACTED_ON: Final = (
     *("Theme", "Item", "Device", "Entity", "Sought_entity", "Phenomenon", "Containing_object", "Ground"),
     "Container_portal",
 )
+Seen = Callable[[list[list[str]]], list[list[str]]]
 _Span = tuple[str, int, int]  # slot, index of the first and of the last word
 
 
 class Interpreter:
     """Reads commands with what was learnt of a language. One thread at a time."""
 
-    def __init__(self, frames: str, roles: str, language: str = "english") -> None:
-        """frames, roles: paths of the learnt taggers, as `make train-language` writes them."""
+    def __init__(
+        self, frames: str, roles: str, language: str = "english", seen: Seen = lambda features: features
+    ) -> None:
+        """frames, roles: paths of the learnt taggers, as `make train-language` writes them.
+
+        seen: what is left of the features of each word; the same as was given for learning.
+        """
         self._lexicon = lexicon.load(language)
+        self._seen = seen
         self._frames, self._roles = pycrfsuite.Tagger(), pycrfsuite.Tagger()
         self._frames.open(frames)
         self._roles.open(roles)
@@ -56,7 +63,7 @@ class Interpreter:
 
     def _calls(self, s: Sentence) -> list[tuple[int, int, list[tuple[float, str]]]]:
         """Where frames are called for: first and last word, and the frames with their probabilities."""
-        self._frames.set(predicates.features(s))
+        self._frames.set(self._seen(predicates.features(s)))
         labels = self._frames.tag()
         calls: list[tuple[int, int, list[tuple[float, str]]]] = []
         for i, label in enumerate(labels):
@@ -77,7 +84,7 @@ class Interpreter:
         """The frame that together with its roles is the most probable, and what fills its slots."""
         best: tuple[float, str, list[str]] | None = None
         for probability, name in found:
-            self._roles.set(roles.features(s, verb, name, others))
+            self._roles.set(self._seen(roles.features(s, verb, name, others)))
             labels = self._roles.tag()
             score = math.log(probability) + _WEIGHT_OF_ROLES * math.log(
                 max(self._roles.probability(labels), 1e-300)
