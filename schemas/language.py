@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from msgspec import Struct
+
+Language = Literal["english", "italian"]
+"""The languages in which commands are understood."""
 
 
 class Argument(Struct, frozen=True):
@@ -47,9 +52,13 @@ class Grounded(Struct, frozen=True):
 
 
 class Understood(Struct, frozen=True):
-    """A command as it was understood; `unknown` are words used as verbs that nobody has taught."""
+    """A command as it was understood.
+
+    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read.
+    """
 
     words: tuple[str, ...]
     frames: tuple[Frame, ...]
     groundings: tuple[Grounded, ...]
     unknown: tuple[str, ...] = ()
+    language: Language = "english"

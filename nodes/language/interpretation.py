@@ -10,11 +10,11 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import grounding, lexicon, predicates, roles, slots
+from nodes.language import grounding, italian, languages, lexicon, predicates, roles, slots
 from nodes.language.grounding import Scene, Thing, Things
 from nodes.language.sentence import Sentence, sentence
-from nodes.language.words import split
-from schemas.language import Argument, Frame, Grounded, Understood
+from nodes.language.words import PartOfSpeech, split
+from schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
@@ -43,13 +43,21 @@ class Interpreter:
         self._frames.open(frames)
         self._roles.open(roles)
 
-    def understand(self, text: str, scene: Scene) -> Understood:
-        """The frames of a command, in the order of their verbs, with their arguments grounded in a map."""
-        return self.read(split(text), scene)
+    def understand(self, text: str, scene: Scene, language: Language | None = None) -> Understood:
+        """The frames of a command, in the order of their verbs, with their arguments grounded in a map.
 
-    def read(self, texts: Sequence[str], scene: Scene) -> Understood:
-        """The same of words that are split already, in lower case."""
-        s = sentence(texts, scene, self._lexicon)
+        language: what it is said in; without one its words tell.
+        """
+        if (language or languages.language_of(text)) == "english":
+            return self.read(split(text), scene)
+        told = italian.gloss(text, scene)
+        return told.told_back(self.read(told.texts, scene, told.kinds), "italian")
+
+    def read(
+        self, texts: Sequence[str], scene: Scene, kinds: Sequence[PartOfSpeech | None] = ()
+    ) -> Understood:
+        """The same of English words that are split already, in lower case, some parts of speech being known."""
+        s = sentence(texts, scene, self._lexicon, kinds)
         calls = self._calls(s) if texts else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
         frames: list[Frame] = []
