@@ -32,7 +32,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Understood
+from schemas.language import Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -323,9 +323,13 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):
-    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+    """What a command in words asks for: frames, and which entities of the map fill their roles.
+
+    Without a `language` its words tell which one it is in.
+    """
 
     text: Text
+    language: Language | None = None
 
 
 class Export(Command[Document], frozen=True, tag="export"):

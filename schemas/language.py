@@ -9,6 +9,9 @@ from msgspec import Struct
 Language = Literal["english", "italian"]
 """The languages in which commands are understood."""
 
+Mood = Literal["command", "question", "past"]
+"""What a sentence is said for; statements of what is (`this is the kitchen`) count as commands."""
+
 
 class Argument(Struct, frozen=True):
     """What fills a role. Words count from 1.
@@ -54,7 +57,8 @@ class Grounded(Struct, frozen=True):
 class Understood(Struct, frozen=True):
     """A command as it was understood.
 
-    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read.
+    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
+    `mood` other than "command" says why there are no frames: something is asked, or told of the past.
     """
 
     words: tuple[str, ...]
@@ -62,3 +66,4 @@ class Understood(Struct, frozen=True):
     groundings: tuple[Grounded, ...]
     unknown: tuple[str, ...] = ()
     language: Language = "english"
+    mood: Mood = "command"

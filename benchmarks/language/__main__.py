@@ -1,4 +1,4 @@
-"""`python -m benchmarks.language [--ablations]`, or with `--errors`, or with `--evaluate DIR --predictions FILE`."""
+"""`python -m benchmarks.language [--ablations | --errors | --evaluate DIR --predictions FILE]`."""
 
 from __future__ import annotations
 
@@ -54,6 +54,7 @@ def rows(examples: list[Example], with_ablations: bool) -> list[Row]:
     found += _rows("baseline", scores(baseline.pairs(trials.folds(examples))))
     _, ms = trials.read(examples, shipped())
     found.append(Row("a sentence, p50", ms, "ms", 5, 2))
+    found += _rows("Italian", scores(trials.italian(examples)))
     if with_ablations:
         found += ablations.rows(examples)
     return found

@@ -14,7 +14,7 @@ from nodes.language.interpretation import Seen
 from nodes.training.language.corpus import Example
 from nodes.training.language.household import household
 
-_GROUPS: Final = {  # a feature is of a group if it mentions it, also together with others
+GROUPS: Final = {  # a feature is of a group if it mentions it, also together with others
     "the word itself": r"\bw=",
     "neighbouring words": r"(^|\|)[+-]?1=|\bprevw=",
     "parts of speech": r"pos=",
@@ -37,7 +37,7 @@ def rows(examples: list[Example]) -> Iterator[Row]:
         "the corpus": {"with_corpus": False},
         "the map's positions": {"changed": _without_places},
         "synonyms": {"known": household(synonyms=False)},
-        **{title: {"seen": without(pattern)} for title, pattern in _GROUPS.items()},
+        **{title: {"seen": without(pattern)} for title, pattern in GROUPS.items()},
     }
     for title, options in trials_without.items():
         for name, splits in (("ten folds", trials.folds), ("a folder left out", trials.groups)):

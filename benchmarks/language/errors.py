@@ -1,4 +1,4 @@
-"""What goes wrong: the commands that are not understood as a whole, grouped by the first thing that is wrong."""
+"""The commands that are not understood as a whole, grouped by the first thing that is wrong."""
 
 from __future__ import annotations
 

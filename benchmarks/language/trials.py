@@ -103,7 +103,7 @@ def _italian(row: dict[str, Any], original: Example) -> Example:
         Filled(
             frame["name"],
             tuple(frame["verb"]),
-            tuple(Role(a["role"], *a["span"], a["head"]) for a in frame["arguments"]),
+            tuple(Role(a["role"], a["span"][0], a["span"][1], a["head"]) for a in frame["arguments"]),
         )
         for frame in row["frames"]
     )

@@ -16,7 +16,7 @@ from schemas.language import Argument, Grounded, Language, Understood
 
 @dataclass(frozen=True, slots=True)
 class Glossed:
-    """An English word that stands for words of a sentence. Words count from 1; first > last: it is not said."""
+    """An English word that stands for words of a sentence, counted from 1; first > last: nobody says it."""
 
     text: str
     first: int
@@ -61,6 +61,7 @@ class Gloss:
             tuple(Grounded(token, name) for token, name in sorted(groundings.items())),
             understood.unknown,
             language,
+            understood.mood,
         )
 
     def _said_by(self, tokens: Sequence[int]) -> tuple[int, ...]:

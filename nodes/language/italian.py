@@ -1,4 +1,4 @@
-"""Italian told with English words: clitics, articles and prepositions apart, verbs and nouns for what they are."""
+"""Italian told with English words: clitics and articles apart, verbs and nouns for what they are."""
 
 from __future__ import annotations
 
@@ -23,6 +23,9 @@ _CLITICS: Final = {
 _SHORT: Final = ("da", "va", "fa", "sta")  # before these a clitic's consonant is doubled: dammi
 _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "their", "some", "no", "every")
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
+_GIVING: Final = ("give", "hand", "offer")
+_NUMBERS: Final = ("two", "three", "four", "five", "ten", "thirty", "ninety")
+_ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
 _OPENING: Final = (
     *("and", "or", "but", "then", "please", "robot", "sorry", "hey", "hello", "you", "not", "to", "okay"),
     *("would", "should", "while", "thanks", "now"),
@@ -101,10 +104,16 @@ class _Glossing:
         for n, token in enumerate(self._tokens):
             if token.startswith("-"):
                 yield _Piece(token[1:], n, True)
-            elif token in ARTICULATED:
+            elif token in ARTICULATED and not self._gives(n):
                 yield from (_Piece(part, n) for part in ARTICULATED[token])
             else:
                 yield _Piece(token, n)
+
+    def _gives(self, n: int) -> bool:
+        """Whether a word is `dai` (give) and not `da i` (from the): an article or a clitic follows."""
+        following = self._tokens[n + 1] if n + 1 < len(self._tokens) else ""
+        article = self._known.expressions.get((following,), "") in _DETERMINERS
+        return self._tokens[n] in self._known.verbs and (following.startswith("-") or article)
 
     def _read(self, i: int) -> int:
         """Tell the next words in English. Returns how many pieces they are."""
@@ -128,7 +137,11 @@ class _Glossing:
             return 1
         for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
             said = tuple(p.text for p in self._pieces[i : i + length])
-            if said in self._known.expressions:
+            if said[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
+                if length == 1:
+                    self._say("by", i, i, "prep")
+                    return 1
+            elif said in self._known.expressions:
                 return self._expression(self._known.expressions[said], i, length)
         if piece.text in self._known.relative:
             self._say(self._known.relative[piece.text], i, i, "rel")
@@ -154,6 +167,8 @@ class _Glossing:
         if english == "of" and self._is_partitive(i):
             self._say("some", i, i + 1, "det")
             return 2
+        if english == "of" and self._is_compound(i):  # "il tavolo della cucina" is the kitchen table
+            return 2 + self._compound(i + 2)
         if english == "the" and self._known.expressions.get((following,)) in _POSSESSIVES:
             self._say(self._known.expressions[(following,)], i, i + 1, "det")
             return 2
@@ -162,6 +177,11 @@ class _Glossing:
             return 1
         self._say(english, i, i + length - 1, "det" if english in _DETERMINERS else None)
         return length
+
+    def _counts(self, i: int) -> bool:
+        """Whether a number stands here."""
+        text = self._pieces[i].text if i < len(self._pieces) else ""
+        return text[:1].isdigit() or self._known.expressions.get((text,), "") in _NUMBERS
 
     def _is_partitive(self, i: int) -> bool:
         """Whether `di` and an article begin an object: `prendi del latte`."""
@@ -172,6 +192,19 @@ class _Glossing:
             or before.kind in ("verb", "pron")
             or before.text in ("like", "need", "is", "are", "want", "please", "there")
         )
+
+    def _is_compound(self, i: int) -> bool:
+        """Whether `di` and an article stand between two nouns."""
+        joined = i + 2 < len(self._pieces) and self._pieces[i].token == self._pieces[i + 1].token
+        return joined and self._follows("noun") and self._called(i + 2, 1) is not None
+
+    def _compound(self, i: int) -> int:
+        """Say the noun at a piece before the one that it tells more of. Returns how many pieces it is."""
+        lengths = range(min(_LONGEST, len(self._tokens) - self._pieces[i].token), 0, -1)
+        length = next(n for n in lengths if self._called(i, n) is not None)
+        pieces = self._noun(self._called(i, length) or "", i, length)
+        self._found[-2:] = reversed(self._found[-2:])
+        return pieces
 
     def _noun(self, name: str, i: int, length: int) -> int:
         first = self._pieces[i].token
@@ -192,7 +225,7 @@ class _Glossing:
         english = self._known.clitics[text]
         if moves and text in ("ti", "ci", "si"):
             english = "there" if text == "ci" else ""
-        elif text == "le" and verb is not None and verb.text in ("give", "hand", "offer") and not self._ends(i):
+        elif text == "le" and verb is not None and verb.text in _GIVING and not self._ends(i):
             english = "her"
         if english:
             kind: PartOfSpeech = "adv" if english == "there" else "pron"
@@ -227,7 +260,9 @@ class _Glossing:
             return opens and following is not None and following.is_clitic
         if text.endswith(("are", "ere", "ire", "r")) or (following is not None and following.is_clitic):
             return True
-        if self._called(i, 1) is not None or (before is not None and before.text in ("in", "of", "from", "on")):
+        if self._called(i, 1) is not None or (
+            before is not None and before.text in ("in", "of", "from", "on")
+        ):
             takes = following is not None and (
                 self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
             )
@@ -244,7 +279,7 @@ class _Glossing:
         following = self._pieces[i + 1]
         english = self._known.expressions.get((following.text,), "")
         return (
-            english in ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
+            english in _ENDING
             or following.is_clitic
             or (following.text in self._known.verbs and self._called(i + 1, 1) is None)
         )

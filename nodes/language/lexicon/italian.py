@@ -18,7 +18,8 @@ ARTICULATED: Final = {
 }
 """Preposition and article in one word: `della` is `di` and `la`."""
 
-_ENDINGS: Final = {  # of the stem: imperative (tu, Lei, voi), present, infinitive also before a clitic, subjunctive
+# Behind the stem: imperatives (tu, Lei, voi), present, infinitives (also before a clitic), past subjunctive.
+_ENDINGS: Final = {
     "are": ("a", "i", "ate", "are", "ar", "assi"),
     "ere": ("i", "a", "e", "ete", "ere", "er", "essi"),
     "ire": ("i", "a", "e", "ite", "ire", "ir", "issi"),
@@ -83,7 +84,7 @@ def singulars(word: str) -> Iterator[str]:
     yield word
     for plural, singular in (
         ("chi", "co"), ("ghi", "go"), ("che", "ca"), ("ghe", "ga"), ("ci", "cio"), ("gi", "gio"),
-        ("gli", "glio"), ("i", "o"), ("i", "e"), ("e", "a"), ("i", "a"), ("i", "io"), ("ce", "cia"), ("ge", "gia"),
+        ("gli", "glio"), ("i", "o"), ("i", "e"), ("e", "a"), ("i", "io"), ("ce", "cia"), ("ge", "gia"),
     ):  # fmt: skip
         if word.endswith(plural) and len(word) > len(plural) + 1:
             yield word[: -len(plural)] + singular
