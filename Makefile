@@ -5,6 +5,8 @@
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
 BIN := .venv/bin
+# One that hangs is ended and named, with what each of its threads was doing.
+NO_TEST_FOR_EVER := -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
 export UV_PYTHON_DOWNLOADS := never
 
 help:  ## Show this list
@@ -25,15 +27,15 @@ $(UV):
 demo: setup  ## A tour through every command; leaves demo/flat.owl, demo/session.rrd, demo/scene.png
 	$(BIN)/python -m demo.tour
 
-test: setup  ## The tests, under 5 minutes
+test: setup  ## The tests, about five minutes
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 3 --dist worksteal -m "not long"  # on two cores: many of them wait for a system
+	$(BIN)/pytest -n 3 --dist worksteal -m "not long" $(NO_TEST_FOR_EVER)  # on two cores: many of them wait for a system
 
 test-long: setup  ## The tests that take longer too, and all tries of those that search
-	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2
+	SEMMAP_THOROUGH=1 $(BIN)/pytest -n 2 -o faulthandler_timeout=7200 -o faulthandler_exit_on_timeout=true
 
 test-faults: setup  ## Kill, stop, forge, send nonsense: nothing acknowledged may be lost or done twice; half an hour
 	$(BIN)/python -m tests.faults.mutations 20000

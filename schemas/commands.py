@@ -32,7 +32,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Language, Understood
+from schemas.language import Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -308,7 +308,7 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Diff(Command[Difference], frozen=True, tag="diff"):
-    """What is otherwise after `until` (now, without it) than it was after `since`: commits or times."""
+    """What changed between `since` and `until` (or now): commits or times."""
 
     since: When
     until: When | None = None
@@ -330,6 +330,19 @@ class Understand(Command[Understood], frozen=True, tag="understand"):
 
     text: Text
     language: Language | None = None
+
+
+class Find(Command[Found], frozen=True, tag="find"):
+    """Which entities a noun phrase describes: "the red cup on the kitchen table".
+
+    `viewer` (a name, reference or class that only one thing has) or `viewpoint` is who sees what is left,
+    right or behind; `asker` is who says "my".
+    """
+
+    text: Text
+    viewer: Word | None = None
+    viewpoint: ViewPoint | None = None
+    asker: Word | None = None
 
 
 class Export(Command[Document], frozen=True, tag="export"):
@@ -364,7 +377,10 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
-    """When, where and by whom an entity was last seen or placed, even if it has been removed."""
+    """When, where and by whom an entity was last seen or placed, even if it has been removed.
+
+    The answer tells what has merely not been seen since from what was seen to be gone.
+    """
 
     name: Word
 

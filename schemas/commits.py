@@ -27,14 +27,14 @@ from schemas.explanations import Term, Triple
 from schemas.scene_files import pose_of
 
 
-class Statement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class Statement(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """A property, by name or label, and values of it as they are written; none stands for all."""
 
     property: str
     values: tuple[str, ...] = ()
 
 
-class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class NewEntity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
 
     name: Name
@@ -48,7 +48,7 @@ class NewEntity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     set: tuple[Statement, ...] = ()
 
 
-class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """What an entity is to be from now on; omitted fields keep their values.
 
     `alt` replaces all alternative references. An empty `conflict` takes the present one back. `unset` goes
@@ -86,7 +86,7 @@ class Edit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_d
         return pose_of(at, self.yaw, self.orientation, before)
 
 
-class Departed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Departed(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
     """An entity that left the map, with the classes it had."""
 
     name: str

@@ -1,4 +1,8 @@
-"""Entities of the map: poses, sizes, names, references and provenance."""
+"""Entities of the map: poses, sizes, names, references and provenance.
+
+What a map has very many of is not looked through for garbage (`gc=False`): it is frozen, so there is no cycle
+of such alone, and a collection that passes a hundred thousand of them takes longer than reading them.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +63,7 @@ def require_unit(quaternion: Quaternion) -> None:
         raise ValueError(f"the quaternion {quaternion} has length {norm:.4g}; it must be 1")
 
 
-class Pose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Pose(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
     """Where a thing stands in the map frame (z up): its bottom centre [m] and its orientation.
 
     Raises ValueError for a quaternion that is not of unit length (to one in a thousand).
@@ -154,7 +158,7 @@ def angle_rad(a: Pose, b: Pose) -> float:
     return 2.0 * math.acos(min(1.0, dot))
 
 
-class Provenance(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Provenance(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
     """The commit that last changed something, and who made it."""
 
     commit: int
@@ -188,7 +192,7 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The entity's size is that of its model, because the map states none."""
 
 
-class Entity(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
     """One individual of the map that is somewhere: an object, a person, a wall, or a place.
 
     Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.

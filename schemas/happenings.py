@@ -1,4 +1,4 @@
-"""What happened to a map: what is otherwise than it was, and when something was so."""
+"""What happened to a map: what changed between two commits, and when something was where."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
 
 
 class Related(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A relation that holds now and did not (`came`), or the other way round; as measured."""
+    """A relation, as measured, that holds after the later commit only (`came`), or after the earlier only."""
 
     subject: str
     relation: KeptRelation
@@ -24,18 +24,23 @@ class Related(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Difference(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What is otherwise after commit `last` than it was after commit `first`, in the order of names."""
+    """What changed between the map after commit `first` and the map after commit `last`, ordered by name.
+
+    Stamps are those of the two commits, in nanoseconds since 1970.
+    """
 
     first: int
     last: int
+    first_ns: int
+    last_ns: int
     changes: tuple[Change, ...]
     relations: tuple[Related, ...]
 
 
 class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A time during which something was so: from a commit until before another, or until now.
+    """A time during which a relation held: from one commit until just before another, or until now.
 
-    `since` is 0 where it was so before the history begins. Stamps are nanoseconds since 1970.
+    `since` is 0 where it held before the history begins. Stamps are nanoseconds since 1970.
     """
 
     since: int
@@ -45,12 +50,12 @@ class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Spells(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """When it was so that one thing was on, in or at another, as measured: in order, without overlap."""
+    """When one thing was on, inside, in or attached to another, as measured: in order, without overlap."""
 
     subject: str
     relation: KeptRelation
     object: str
     spells: tuple[Spell, ...]
     total_s: float
-    """How long all in all [s], by the stamps of the commits."""
+    """How long in all [s], by the stamps of the commits."""
     text: str

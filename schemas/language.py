@@ -1,10 +1,10 @@
-"""What a command in words means: frames, what fills their roles, and which entities those are."""
+"""What words mean: commands as frames, roles and entities, and descriptions as the entities that fit them."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from msgspec import Struct
+from msgspec import Struct, field
 
 Language = Literal["english", "italian"]
 """The languages in which commands are understood."""
@@ -67,3 +67,34 @@ class Understood(Struct, frozen=True):
     unknown: tuple[str, ...] = ()
     language: Language = "english"
     mood: Mood = "command"
+
+
+class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An entity that a description may mean, and what of the description fits it, a clause each."""
+
+    entity: str
+    class_: str = field(name="class")
+    called: str
+    reasons: tuple[str, ...] = ()
+
+
+Outcome = Literal["one", "several", "ambiguous", "none"]
+
+
+class Found(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a description means in the map, as of commit `seq`.
+
+    `candidates` are what is meant (*one*, *several*) or may be (*ambiguous*, with the `question` to ask
+    back), the best first; *none* has none. `text` says the outcome in a sentence. `nearest` fit all but one
+    part of the description; `gone` says when such a thing was last there. `read_as` pairs each word that was
+    taken for another, mistyped or misheard, with that.
+    """
+
+    outcome: Outcome
+    candidates: tuple[Candidate, ...] = ()
+    text: str = ""
+    question: str = ""
+    nearest: tuple[Candidate, ...] = ()
+    gone: tuple[str, ...] = ()
+    read_as: tuple[tuple[str, str], ...] = ()
+    seq: int = 0

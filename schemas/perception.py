@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from msgspec import Struct, field
 
 from schemas.entities import Pose, Probability, Size
+
+MISSING: Final = "not seen where it should stand"
+DISPLACED: Final = "something else is in its place"
+"""The conflicts of an entity that perception has seen to be gone, and may not remove or is to mark only."""
 
 
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -144,12 +144,21 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity was last, and by whose word. `removed` is the commit that took it out since."""
+    """Where an entity was last, and by whose word; and whether it is known to be gone from there.
+
+    `removed` is the commit that took it out of the map since. `gone` is the commit by which perception said
+    that the place was looked at and the entity was not there; None where nobody has seen that. `seen_ns` is
+    when a camera last saw it [ns since 1970], as long as the knowledge base has been running; None if none
+    has. `text` says all this in one sentence.
+    """
 
     name: str
     pose: Pose | None
     provenance: Provenance
     removed: Provenance | None
+    gone: Provenance | None = None
+    seen_ns: int | None = None
+    text: str = ""
 
 
 class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -30,7 +30,7 @@ from schemas.entities import (
 from schemas.errors import BadFile, BadRequest
 
 
-class Described(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """One entity of a scene file.
 
     `at` is the bottom centre [m] in the map frame; `yaw` [rad] or `orientation` (unit quaternion wxyz) turns

@@ -41,7 +41,8 @@ settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCh
 settings.load_profile("busy")
 
 _BIN = Path(sys.executable).parent
-_START_S = 90.0
+_START_S = 120.0
+_END_S = 30.0
 PATIENCE_S = 30.0
 
 
@@ -76,7 +77,9 @@ class System:
         self.endpoint = endpoint
         self.process = process
         self.said: list[str] = []
-        """What it said until it was ready."""
+        """What it has said so far."""
+        self.is_ready = threading.Event()
+        """It has said that it is ready, or ended."""
 
     def cli(self, *words: str | Path, status: int = 0) -> str:
         """What `semmap WORDS` prints; it must end with `status`, and with an error say one line."""
@@ -106,6 +109,7 @@ class System:
                 yield process
             finally:
                 process.send_signal(signal.SIGINT)
+                _await_end(process)
 
     def client(self) -> contextlib.AbstractContextManager[Client]:
         """A client of this system."""
@@ -121,7 +125,7 @@ class System:
         """Press Ctrl-C; how long the end took [s]."""
         start = time.monotonic()
         self.process.send_signal(signal.SIGINT)
-        self.process.wait(timeout=30)
+        _await_end(self.process)
         return time.monotonic() - start
 
 
@@ -138,14 +142,15 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
     command = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *said]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     system = System(data, endpoint, process)
+    reader = threading.Thread(target=_read, args=(system,), daemon=True)
+    reader.start()
     try:
         _await_ready(system)
         yield system
     finally:
         if process.poll() is None:
             system.stop()
-        assert process.stdout is not None
-        process.stdout.close()
+        reader.join(PATIENCE_S)  # what holds the pipe still open is left to whoever looks for leftovers
 
 
 def _begins_with(data: Path, words: list[str]) -> str | None:
@@ -166,10 +171,33 @@ def _begun(abox: str) -> Path:
     return folder
 
 
-def _await_ready(system: System) -> None:
+def _read(system: System) -> None:
+    """Keep what it says until its end: a pipe that nobody reads fills up, and would hold it up."""
     assert system.process.stdout is not None
-    for line in system.process.stdout:
-        system.said.append(line)
-        if line.startswith("stop "):
-            return
-    pytest.fail("the system did not start:\n" + "".join(system.said))
+    with system.process.stdout as said:
+        for line in said:
+            system.said.append(line)
+            if line.startswith("stop "):
+                system.is_ready.set()
+    system.is_ready.set()
+
+
+def _await_ready(system: System) -> None:
+    in_time = system.is_ready.wait(_START_S)
+    if not in_time or system.process.poll() is not None or not _says_ready(system):
+        why = "did not start" if in_time else f"did not start within {_START_S:g} s"
+        pytest.fail(f"the system {why}:\n" + "".join(system.said))
+
+
+def _says_ready(system: System) -> bool:
+    return any(line.startswith("stop ") for line in system.said)
+
+
+def _await_end(process: subprocess.Popen[str]) -> None:
+    """Wait for a process that was told to end; one that does not is killed, and the test fails."""
+    try:
+        process.wait(_END_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        pytest.fail(f"{process.args} did not end within {_END_S:g} s of Ctrl-C")

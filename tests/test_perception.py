@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import signal
 
 import pytest
@@ -64,9 +65,14 @@ def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, mon
         moved = until(lambda: there(client, -0.3, -0.15), "the map follows")
         assert moved.name == bottle.name
         assert there(client, 0.1, 0.05) is None
+        until(lambda: client.last_seen(bottle.name).seen_ns, "it is seen again after that commit")
+        assert client.last_seen(bottle.name).text == "in sight of a camera just now"
 
         bus.ask(client.session, keys.SIM, "delete", Delete(names=("a_bottle",)), Deleted)
         until(lambda: bottle.name not in {e.name for e in client.list()}, "it leaves the map")
+        sighting = client.last_seen(bottle.name)
+        assert sighting.gone == sighting.removed
+        assert re.match(r"seen to be gone at commit \d+, \d+ s ago: bottle1 is gone: ", sighting.text)
 
         status = client.status()
         assert status.truth == "perceived"

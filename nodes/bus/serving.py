@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import threading
 from collections.abc import Callable
@@ -21,6 +22,8 @@ from schemas.replies import Ack, Document, Done
 _JSON = "application/json"
 _ACKS = 20_000
 """Acknowledgements that wait to be published; then the next put is read when there are fewer."""
+_LOOK_S = 0.5
+"""How often one who waits for room looks for itself, in seconds."""
 
 
 def _send_nowhere(message: Any, ok: bool) -> None:
@@ -215,10 +218,10 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
 
 
 class _Acks:
-    """Publishes acknowledgements in their order, on a thread of its own.
+    """Publishes acknowledgements in order, on a thread of its own.
 
-    Whoever follows them slowly holds up this thread, and beyond some of them the puts that come in, but never
-    the thread that owns a node's state.
+    A slow follower holds up this thread and, once `_ACKS` of them wait, the puts that come in; never the
+    thread that owns a node's state.
     """
 
     def __init__(self, session: zenoh.Session) -> None:
@@ -226,32 +229,41 @@ class _Acks:
         self._waiting: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._has_room = threading.Event()
         self._has_room.set()
+        self._has_ended = False
         threading.Thread(target=self._publish, name="acks", daemon=True).start()
 
     def put(self, ack: bytes) -> None:
-        """Publish it soon. Any thread may do so; it never waits."""
+        """Publish it soon. Any thread may call this; it never waits."""
+        if self._has_ended:
+            return
         self._waiting.put(ack)
         if self._waiting.qsize() >= _ACKS:
             self._has_room.clear()
-            if self._waiting.qsize() < _ACKS // 2:  # they went meanwhile, and nobody is left to say so
-                self._has_room.set()
 
     def wait_for_room(self) -> None:
-        """Return when few acknowledgements wait."""
-        self._has_room.wait()
+        """Return when fewer than half of `_ACKS` wait, or none will be published any more.
+
+        It looks for itself now and then. The queue may have drained between the two lines of `put` that find
+        it full and say so, and then nobody would say otherwise.
+        """
+        while not self._has_room.wait(_LOOK_S):
+            if self._has_ended or self._waiting.qsize() < _ACKS // 2:
+                self._has_room.set()
 
     def end(self) -> None:
-        """Publish no more."""
+        """Publish no more, after those that wait."""
         self._waiting.put(None)
 
     def _publish(self) -> None:
-        while (ack := self._waiting.get()) is not None:
-            if self._waiting.qsize() < _ACKS // 2:
-                self._has_room.set()
-            try:
-                self._publisher.put(ack)
-            except zenoh.ZError:  # the session is closed
-                self._has_room.set()
+        try:
+            while (ack := self._waiting.get()) is not None:
+                if self._waiting.qsize() < _ACKS // 2:
+                    self._has_room.set()
+                with contextlib.suppress(zenoh.ZError):  # the session is closed; the rest goes nowhere, too
+                    self._publisher.put(ack)
+        finally:
+            self._has_ended = True
+            self._has_room.set()
 
 
 class _Envelope(Struct):

@@ -86,6 +86,7 @@ class Coordinator:
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
             c.Understand.answered_by(relay),
+            c.Find.answered_by(relay),
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),
@@ -184,6 +185,9 @@ class Coordinator:
 
     def _once_there_is_a_body(self, changed: Changed) -> Future[Changed]:
         future: Future[Changed] = OwnFuture()
+        if not changed.names:  # the id is that of an earlier change, which named nothing
+            future.set_result(changed)
+            return future
         self._waiting.append((changed.names[0], time.monotonic() + _WAIT_S, changed, future))
         return future
 

@@ -19,7 +19,7 @@ import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
 from nodes.extern.client import LONG_S, Client
 from nodes.extern.client import connect as connect_blocking
@@ -46,10 +46,13 @@ async def connect(
     agent: str = "",
     namespace: str | None = None,
     identity: str | None = None,
+    mode: Literal["peer", "client"] | None = None,
 ) -> AsyncIterator[AsyncClient]:
     """A client of the system at `where`; see `semmap.connect`. Raises NoAnswer when nothing answers there."""
     threads = ThreadPoolExecutor(_CALLS_AT_ONCE, thread_name_prefix="semmap")
-    connection = connect_blocking(where, source=source, agent=agent, namespace=namespace, identity=identity)
+    connection = connect_blocking(
+        where, source=source, agent=agent, namespace=namespace, identity=identity, mode=mode
+    )
     loop = asyncio.get_running_loop()
     try:
         client = await loop.run_in_executor(threads, connection.__enter__)

@@ -19,7 +19,7 @@ import queue
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
@@ -57,6 +57,7 @@ def connect(
     agent: str = "",
     namespace: str | None = None,
     identity: str | None = None,
+    mode: Literal["peer", "client"] | None = None,
 ) -> Iterator[Client]:
     """A client of the system at `where`. Raises NoAnswer when nothing answers there.
 
@@ -66,10 +67,14 @@ def connect(
 
     `namespace` is the name of one robot of several (`semmap up --namespace`): by default what
     `SEMMAP_NAMESPACE` says, or else that of the system at `where`, if it runs on this machine.
+
+    `mode` is how the session joins, in Zenoh's words. A "peer" has a link to each node, so its questions
+    travel the shortest way; a "client" has one link, to whoever listens at `where`, and has joined at once,
+    where a peer may take 0.1 s. By default it is a peer on the system's own machine, unless that is secure.
     """
     who = identify(identity)
     where = where or endpoint(robot(namespace))
-    with open_session(where, robot(namespace, where), who) as session:
+    with open_session(where, robot(namespace, where), who, mode=mode) as session:
         yield Client(session, source=source, agent=agent, identity=who)
 
 

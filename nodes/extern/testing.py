@@ -15,6 +15,8 @@ from nodes.extern.client import Client, connect
 
 _READY = "stop "
 """How the last line of the greeting begins."""
+_END_S = 60.0
+"""Seconds: longer than a system takes to stop; one that has not is killed, and its nodes end after it."""
 _FIRST_PORT, _AFTER_PORTS = 20_000, 32_000
 _dice = random.SystemRandom()
 
@@ -47,6 +49,10 @@ def own_system(
                 yield client
         finally:
             process.terminate()
+            try:
+                process.wait(_END_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
 
 
 def free_endpoint() -> str:

@@ -7,7 +7,6 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import gc_pause
 from nodes.kb_node.beliefs import Beliefs, Believed
 from nodes.kb_node.entities import entity_changes, entity_reading
 from nodes.kb_node.entities.class_table import ClassTable
@@ -16,6 +15,7 @@ from nodes.kb_node.progress import parts, steadily
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.facts.place_facts import Facts
 from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.runtime import gc_pause
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Commit, Snapshot, Star, Transaction

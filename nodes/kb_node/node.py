@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 
-from nodes.kb_node import gc_pause
 from nodes.kb_node.announcing import Announcer
 from nodes.kb_node.answers import whereabouts
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -25,7 +24,7 @@ from nodes.kb_node.sparql.standing_queries.news import NewsStand
 from nodes.kb_node.sparql.triples.large_map import LargeMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
 from nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from nodes.runtime import heap
+from nodes.runtime import gc_pause, heap
 from nodes.runtime.loop import Node, open_node
 from schemas import errors, keys, wording
 from schemas.commits import Commit
@@ -76,6 +75,7 @@ class KnowledgeBase:
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
+        node.follow(keys.OBSERVATIONS, self._asking.sightings.see)
         node.every(CHECKPOINT_PERIOD_S, self._checkpointing.if_due)
         node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
         node.note(self._notes())

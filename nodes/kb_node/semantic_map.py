@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 
 from msgspec import structs
 
-from nodes.kb_node import gc_pause, planning
+from nodes.kb_node import planning
 from nodes.kb_node.applier import Applier
 from nodes.kb_node.beliefs import UNCHANGED, Believed
 from nodes.kb_node.documents import rdf
@@ -22,6 +22,7 @@ from nodes.kb_node.storage.encoding import commit_encoding
 from nodes.kb_node.storage.journal import Checkpoint, Journal
 from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from nodes.kb_node.storage.journal.verification import verify
+from nodes.runtime import gc_pause
 from schemas import errors
 from schemas.commits import Commit, Transaction
 from schemas.entities import Entity

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from itertools import chain
 
-from nodes.kb_node import gc_pause, preconditions
+from nodes.kb_node import preconditions
 from nodes.kb_node.documents.tbox import tbox_validation
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import Journal
+from nodes.runtime import gc_pause
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.bridge import TakeBack

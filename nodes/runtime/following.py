@@ -102,8 +102,11 @@ class Follower(Generic[C]):
             replica.doubt()
 
     def _notice(self, commit: int | None) -> None:
-        """What the knowledge base had at its last beat and is not here by now has been missed."""
-        missed = 0 <= self._replica.seq < self._there
+        """What the knowledge base had at its last beat and is not here by now has been missed.
+
+        Unless somebody is fetching it just now, which takes several beats of a large map.
+        """
+        missed = 0 <= self._replica.seq < self._there and not self._replica.is_being_fetched
         self._there = -1 if commit is None else commit
         if missed:
             self._fetch()

@@ -8,13 +8,16 @@ import time
 
 import msgpack
 import pytest
+import zenoh
 
 from nodes import bus
+from nodes.bus import serving
 from schemas import codec, commands, errors, keys, replies
 from tests.bus.conftest import PREFIX, answer
-from tests.conftest import until
+from tests.conftest import PATIENCE_S, until
 
 MANY = 500
+SLOWLY = 3000
 
 
 def test_parameters_of_a_selector_are_fields_and_format_json_answers_in_json(pair):
@@ -44,20 +47,23 @@ def test_a_malformed_message_is_a_bad_request(pair, payload):
 
 def test_a_put_is_executed_and_acknowledged(pair):
     server, client = pair
-    acks = client.declare_subscriber(keys.ACK.key)
+    acks = []
+    client.declare_subscriber(keys.ACK.key, lambda sample: acks.append(sample.payload.to_bytes()))
     bus.serve_puts(server, PREFIX, answer(lambda request: replies.Done(text=request.verb)))
     time.sleep(0.3)
     client.put(PREFIX, msgpack.packb({"verb": "get", "name": "chair1", "id": "7"}))
-    ack = msgpack.unpackb(acks.recv().payload.to_bytes())
+    assert until(lambda: acks, "the put is acknowledged")
+    ack = msgpack.unpackb(acks[0])
     assert (ack["id"], ack["verb"], ack["ok"], ack["reply"]["text"]) == ("7", "get", True, "get")
     client.put(f"{PREFIX}/add", b'{"class": "Chair"}')
-    assert json.loads(acks.recv().payload.to_bytes())["verb"] == "add"
+    assert until(lambda: len(acks) == 2, "the put of JSON is acknowledged")
+    assert json.loads(acks[1])["verb"] == "add"
 
 
 def test_one_who_answers_puts_does_not_wait_for_those_who_read_the_acknowledgements_slowly(pair):
     server, client = pair
     requests, acks, reading = [], [], threading.Event()
-    client.declare_subscriber(keys.ACK.key, lambda ack: reading.wait() and acks.append(ack))
+    client.declare_subscriber(keys.ACK.key, lambda ack: reading.wait(PATIENCE_S) and acks.append(ack))
     bus.serve_puts(server, PREFIX, requests.append)
     time.sleep(0.3)
     for number in range(MANY):
@@ -72,3 +78,80 @@ def test_one_who_answers_puts_does_not_wait_for_those_who_read_the_acknowledgeme
     ids = [codec.decode(ack.payload.to_bytes(), replies.Ack).id for ack in acks]
     assert ids == [str(number) for number in range(MANY)]
     assert took_s < 1.0  # waiting for the reader would last until Zenoh gives it up, after seconds
+
+
+class Gate:
+    """A publisher that lets nothing through until it is opened, and counts what came through."""
+
+    def __init__(self) -> None:
+        self.opened = threading.Event()
+        self.passed = 0
+
+    def put(self, _: bytes) -> None:
+        """Publish it."""
+        assert self.opened.wait(PATIENCE_S)
+        self.passed += 1
+
+
+class ClearedTooLate(threading.Event):
+    """Everything that waits is published between the decision to clear it and its being cleared."""
+
+    def __init__(self, gate: Gate, expected: int) -> None:
+        super().__init__()
+        self.set()
+        self._gate, self._expected = gate, expected
+
+    def clear(self) -> None:
+        """Clear it when the publisher has nothing more to say."""
+        self._gate.opened.set()
+        until(lambda: self._gate.passed == self._expected, "all are published")
+        super().clear()
+
+
+def in_time(function):
+    """Does it return? On a thread of its own, so that a test may say no."""
+    thread = threading.Thread(target=function, daemon=True)
+    thread.start()
+    thread.join(PATIENCE_S / 3)
+    return not thread.is_alive()
+
+
+def test_room_that_was_made_while_the_queue_was_declared_full_is_found(pair, monkeypatch):
+    monkeypatch.setattr(serving, "_ACKS", 2)
+    server, _ = pair
+    acks = serving._Acks(server)
+    acks._publisher = gate = Gate()
+    acks._has_room = ClearedTooLate(gate, 3)
+    acks.put(b"1")
+    assert until(acks._waiting.empty, "the first is at the gate")
+    acks.put(b"2")
+    acks.put(b"3")
+    assert in_time(acks.wait_for_room)
+    acks.end()
+
+
+def test_nobody_waits_for_room_after_the_end(pair, monkeypatch):
+    monkeypatch.setattr(serving, "_ACKS", 1)
+    server, _ = pair
+    acks = serving._Acks(server)
+    acks.end()
+    for _ in range(20):
+        acks.put(b"x")
+    assert in_time(acks.wait_for_room)
+
+
+def test_each_put_of_a_sender_that_stays_is_answered_by_one_who_is_slow(pair):
+    """One that closed its session at once would lose most: Zenoh gives what waits half a second."""
+    server, client = pair
+    acks = []
+    client.declare_subscriber(keys.ACK.key, acks.append)
+    slow = answer(lambda request: time.sleep(0.001) or replies.Done(text=""))
+    bus.serve_puts(server, PREFIX, slow)
+    time.sleep(0.3)
+    for number in range(SLOWLY):
+        client.put(
+            f"{PREFIX}/get",
+            codec.encode({"id": str(number), "ref": "x" * 1000}),
+            congestion_control=zenoh.CongestionControl.BLOCK,
+        )
+    assert until(lambda: len(acks) == SLOWLY, "each is answered")

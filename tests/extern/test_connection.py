@@ -11,6 +11,7 @@ import pytest
 
 from nodes import bus
 from nodes.extern import connection
+from nodes.extern.client import connect
 from nodes.extern.connection import open_session
 from nodes.supervisor import presence, registry
 from schemas import errors
@@ -88,3 +89,15 @@ def test_a_system_that_does_not_come_is_said_to_be_starting(monkeypatch):
         open_session(endpoint, ""),
     ):
         pass
+
+
+@pytest.mark.parametrize(("mode", "is_peer"), [("client", False), ("peer", True), (None, True)])
+def test_a_session_joins_as_it_is_told(mode, is_peer):
+    where = free_endpoint()
+    there = bus.Network(connect=(), listen=(where,), mode="peer")
+    with bus.open_session(there) as listening, connect(where, mode=mode) as client:
+        zid = client.session.info.zid()
+        deadline_s = time.monotonic() + 5.0
+        while (zid in listening.info.peers_zid()) != is_peer and time.monotonic() < deadline_s:
+            time.sleep(0.01)
+        assert (zid in listening.info.peers_zid()) == is_peer

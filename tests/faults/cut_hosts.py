@@ -9,8 +9,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import os
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -30,6 +33,7 @@ _PARTS = {"lab": "kb,coordinator", "robot": "sim,perception", "desk": "recorder"
 _SMALL_PARTS = {"lab": "kb,coordinator", "robot": "sim"}
 _SITE_PARTS = {"lab": "kb,coordinator", "site": _ZENOHD, "robot": "sim,recorder"}
 _WHOLE_S = 5.0
+_PATIENCE_S = 900.0
 
 
 @dataclass(frozen=True)
@@ -45,12 +49,21 @@ class Cuts:
         if missing := hosts.missing():
             return [Row(self.name, skipped=missing)]
         module = [sys.executable, "-m", "tests.faults.cut_hosts", str(self.seconds)]
-        ended = subprocess.run(
-            ["unshare", "-rn", *module, *self.words], capture_output=True, text=True, timeout=900
-        )
-        rows = [Row(**json.loads(line)) for line in ended.stdout.splitlines()]
-        if ended.returncode != 0:
-            rows.append(Row(self.name, failed=ended.stderr.strip().rpartition("\n")[2]))
+        # Into files: what it has started, and leaves behind when it hangs, would keep pipes open for ever.
+        with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+            command = ["unshare", "-rn", *module, *self.words]
+            process = subprocess.Popen(command, stdout=out, stderr=err, start_new_session=True)
+            try:
+                process.wait(timeout=_PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+            out.seek(0)
+            err.seek(0)
+            rows = [Row(**json.loads(line)) for line in out]
+            if process.returncode != 0:
+                why = err.read().strip().rpartition("\n")[2]
+                rows.append(Row(self.name, failed=why or f"ended with status {process.returncode}"))
         return rows
 
 

@@ -174,7 +174,9 @@ def test_a_follower_leaves_pages_to_whoever_fetches_them_already(both):
     left_out = Extent(inserted=9, retracted=0, changed=3, removed=0)
     follower.map.take(msgspec.structs.replace(commit(2), abridged=left_out))
     asked = kb.asked
-    time.sleep(0.5)
+    for _ in range(3):
+        kb.beat(0, commit=2)
+        time.sleep(0.2)
     assert kb.asked == asked
     kb.snapshot = Snapshot(seq=2, entities=(entity("sink1"),))
     follower.map.give_up_pages()

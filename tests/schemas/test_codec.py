@@ -1,4 +1,5 @@
 import contextlib
+import gc
 import math
 import zlib
 from typing import Any
@@ -30,6 +31,22 @@ def test_the_wire_is_plain_messagepack():
     assert msgpack.unpackb(codec.encode(sent)) == {"verb": "add", "class": "Chair", "at": [1, 2, 0.5]}
     assert codec.decode(msgpack.packb({"class": "Chair", "at": [1, 2, 0.5]}), Add) == sent
     assert codec.encoding_of(sent) == "application/msgpack;semmap.Add.v1"
+
+
+def test_no_garbage_is_collected_while_a_large_message_is_read():
+    triples = tuple(("<a>", "<b>", f"<c{i}>") for i in range(20_000))
+    large = codec.encode(Transaction(id="1", source="file", insert=triples))
+    began = []
+    gc.callbacks.append(lambda phase, info: began.append(phase))
+    try:
+        read = codec.decode(large, Transaction)
+        count = len(began)
+    finally:
+        gc.callbacks.pop()
+    assert (count, gc.isenabled(), len(read.insert)) == (0, True, 20_000)
+    with pytest.raises(errors.BadRequest):
+        codec.decode(large + b"!", Transaction)
+    assert gc.isenabled()
 
 
 def test_nothing_is_unpacked():

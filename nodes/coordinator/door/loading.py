@@ -15,6 +15,7 @@ from nodes.coordinator.door.known_map import KnownMap
 from nodes.coordinator.files import huric
 from nodes.coordinator.files.content import kind_of
 from nodes.coordinator.free_names import FreeNames
+from nodes.runtime import gc_pause
 from nodes.runtime.class_names import AmbiguousClass, ClassNames
 from schemas import errors, scene_files, wording
 from schemas.bridge import LoadDocument, LoadTBox
@@ -58,24 +59,27 @@ def load(view: KnownMap, command: Load) -> Talk[Changed]:
 
 
 def _load_described(view: KnownMap, command: Load, described: Iterable[Described]) -> Talk[Changed]:
-    known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
-    taken_names = set() if command.replace else set(view.entities)
-    free = FreeNames()
-    new: list[NewEntity] = []
-    names: dict[str, None] = {}
-    for item, found in known:
-        name = item.name or free.name(found.name, taken_names)
-        if name in names:
-            raise errors.NameTaken(f"the name '{name}' is given twice in {command.filename or 'the file'}")
-        if name in taken_names:
-            raise errors.NameTaken(
-                f"the name '{name}' is already taken; --replace clears the present map first"
-            )
-        taken_names.add(name)
-        names[name] = None
-        new.append(transactions.described(name, found, item))
-    leaving = tuple(view.entities) if command.replace else ()
-    change = transactions.transaction(command, f"load {command.filename}", remove=leaving, add=new)
+    with gc_pause.uncollected():
+        known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
+        taken_names = set() if command.replace else set(view.entities)
+        free = FreeNames()
+        new: list[NewEntity] = []
+        names: dict[str, None] = {}
+        for item, found in known:
+            name = item.name or free.name(found.name, taken_names)
+            if name in names:
+                raise errors.NameTaken(
+                    f"the name '{name}' is given twice in {command.filename or 'the file'}"
+                )
+            if name in taken_names:
+                raise errors.NameTaken(
+                    f"the name '{name}' is already taken; --replace clears the present map first"
+                )
+            taken_names.add(name)
+            names[name] = None
+            new.append(transactions.described(name, found, item))
+        leaving = tuple(view.entities) if command.replace else ()
+        change = transactions.transaction(command, f"load {command.filename}", remove=leaving, add=new)
     if command.parts:
         made = yield from _commit_parts(view, change)
     else:

@@ -73,7 +73,9 @@ def talks(function: Callable[..., None]) -> Callable[..., None]:
             return
         from nodes.extern.client import connect  # not needed for what only prints help or completes a word
 
-        with connect(where, agent=_agent(), identity=identity, namespace=namespace) as client:
+        # For one question a peer's shorter way saves less time than joining as one takes.
+        joining = connect(where, agent=_agent(), identity=identity, namespace=namespace, mode="client")
+        with joining as client:
             try:
                 function(client, **arguments)
             except errors.NoAnswer as error:

@@ -37,7 +37,6 @@ def _ask(where: str | None, verb: str, command: Any, kind: Any) -> Any:
     here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
         connect=(where if who is None else bus.over_tls(where),),
-        mode="peer" if here and who is None else "client",
         namespace=namespace(None, where),
         patience_s=0.0 if here else _MEET_S,
         identity=who,

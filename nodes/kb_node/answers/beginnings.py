@@ -16,6 +16,8 @@ from msgspec import Struct
 from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.facts.rules import RULES
 from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.storage.history import Past
@@ -87,16 +89,22 @@ def beginnings(
 
 
 def spells(
-    history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+    history: Iterable[Moves],
+    first: Iterable[Entity],
+    facts: Collection[Fact],
+    limits: Thresholds,
+    *,
+    in_any_place: bool = False,
 ) -> dict[Fact, list[tuple[int, int | None]]]:
     """From which commit until before which each fact held, in order; None for what holds at the end.
 
     `history` are the commits in order, `first` the entities before them; what held before the first of
-    them begins with 0. All is measured with the thresholds given.
+    them begins with 0. All is measured with the thresholds given. A thing is located in the smallest place
+    that it is in; with `in_any_place` also in all that this is a part of.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
-    spots = [_Spot(name, frozenset(about), limits, there) for name, about in by_name]
+    spots = [_Spot(name, frozenset(about), limits, there, in_any_place) for name, about in by_name]
     found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
@@ -126,9 +134,15 @@ class _Spot:
     """A thing and what is near it."""
 
     def __init__(
-        self, name: str, facts: frozenset[Fact], limits: Thresholds, there: dict[str, Placed]
+        self,
+        name: str,
+        facts: frozenset[Fact],
+        limits: Thresholds,
+        there: dict[str, Placed],
+        in_any_place: bool,
     ) -> None:
         """`facts` are about the thing; `there` is everybody, as they are at first."""
+        self._in_any_place = in_any_place
         self.facts = facts
         self._name = name
         self._limits = limits
@@ -162,7 +176,18 @@ class _Spot:
         if solid is None or solid.is_place:
             return frozenset()
         found = {(self._name, *about) for rule in RULES for about in rule.facts(self._space, solid)}
+        if self._in_any_place:
+            found.update(fact for fact in self.facts if self._is_within(solid, fact))
         return self.facts & found
+
+    def _is_within(self, solid: Solid, fact: Fact) -> bool:
+        """Whether the fact says that the thing is in a place, and it is."""
+        _, relation, other = fact
+        place = self._space.solids.get(other) if relation == "isLocatedIn" else None
+        if place is None or not place.is_place:
+            return False
+        made = measures.within(solid, place, self._space.limits)
+        return made is not None and made.holds
 
     def _is_near(self, placed: Placed | None) -> bool:
         own = self._own

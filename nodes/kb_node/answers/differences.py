@@ -1,9 +1,9 @@
-"""What happened to the map between two commits, and when a spatial relation held: read off the journal."""
+"""What changed in the map between two commits, and when a spatial relation held: read from the journal."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
 from nodes.kb_node.answers.beginnings import Moves
@@ -23,11 +23,11 @@ from schemas.relations import RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}
 _LONGEST = 10
-"""Spells that are told one by one in words."""
+"""How many spells are told one by one in words."""
 
 
-def difference(past: Past, query: Diff, limits: Thresholds) -> Difference:
-    """What is otherwise after `query.until` than after `query.since`. Raises Refused, BadRequest."""
+def difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) -> Difference:
+    """What changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
     first = past.commit_at(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
     if first > last:
@@ -45,7 +45,20 @@ def difference(past: Past, query: Diff, limits: Thresholds) -> Difference:
         Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_said(relation, came, o))
         for (s, relation, o), came in differing
     )
-    return Difference(first=first, last=last, changes=tuple(changes), relations=relations)
+    return Difference(
+        first=first,
+        last=last,
+        first_ns=_stamp_ns(journal, first),
+        last_ns=_stamp_ns(journal, last),
+        changes=tuple(changes),
+        relations=relations,
+    )
+
+
+def _stamp_ns(journal: Journal, seq: int) -> int:
+    """When a commit was made; what the history begins with, and what is older, has the stamp of that."""
+    begins = journal.beginning
+    return begins.stamp_ns if begins.seq and seq <= begins.seq else journal.stamps.of(max(seq, 1))
 
 
 def _said(relation: RelationName, came: bool, other: str) -> str:
@@ -65,25 +78,26 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
     fact = (one, query.relation, other)
-    found = spells_of(journal.outlines(Moves), past.at_the_beginning().values(), [fact], limits)[fact]
+    first = past.at_the_beginning().values()
+    found = spells_of(journal.outlines(Moves), first, [fact], limits, in_any_place=True)[fact]
     told = tuple(
         Spell(
             since=since,
-            since_ns=journal.stamps.of(max(since, journal.first)),
+            since_ns=_stamp_ns(journal, since),
             until=until,
-            until_ns=None if until is None else journal.stamps.of(until),
+            until_ns=None if until is None else _stamp_ns(journal, until),
         )
         for since, until in found
     )
     now_ns = time.time_ns()
-    total_s = sum(((spell.until_ns or now_ns) - spell.since_ns) / 1e9 for spell in told)
+    total_s = sum(_lasted_s(spell, now_ns) for spell in told)
     return Spells(
         subject=one,
         relation=query.relation,
         object=other,
         spells=told,
         total_s=total_s,
-        text=_in_words(f"{one} {SPOKEN[query.relation]} {other}", told, total_s),
+        text=_in_words(one, f"{SPOKEN[query.relation].removeprefix('is ')} {other}", told, now_ns),
     )
 
 
@@ -94,20 +108,34 @@ def _name(word: str, there: Mapping[str, Entity], past: Past) -> str:
     return only_meant(tuple(there.values()), word)
 
 
-def _in_words(said: str, told: tuple[Spell, ...], total_s: float) -> str:
-    """`cup1 is on table1 since commit 4; before, from commit 1 until commit 3; 2 times, 4 min in all`."""
+def _in_words(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
+    """`cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until commit 3 ...`."""
     if not told:
-        return f"it was never so that {said}"
-    *before, last = told
-    spans = [f"from {_commit(spell)} until commit {spell.until}" for spell in told if spell.until is not None]
-    shown = spans if len(spans) <= _LONGEST else [*spans[:3], f"{len(spans) - 6} more", *spans[-3:]]
-    times = "once" if len(told) == 1 else f"{len(told)} times"
-    length = f"{times}, for {wording.duration(total_s)} in all"
-    if last.until is None:
-        earlier = f"; before that {', '.join(shown)}" if before else ""
-        return f"{said} since {_commit(last)}{earlier}; {length}"
-    return f"{said} no longer; it was so {', '.join(shown)}; {length}"
+        return f"{name} was never {where}"
+    spans = [_span(spell, now_ns) for spell in told if spell.until is not None]
+    shown = spans if len(spans) <= _LONGEST else [*spans[:3], f"{len(spans) - 6} more times", *spans[-3:]]
+    total_s = sum(_lasted_s(spell, now_ns) for spell in told)
+    often = f"; {len(told)} times, {wording.duration(total_s)} in all" if len(told) > 1 else ""
+    if (last := told[-1]).until is None:
+        earlier = f"; before that {', '.join(shown)}" if shown else ""
+        return f"{name} has been {where} since {_beginning(last)} ({_length(last, now_ns)}){earlier}{often}"
+    return f"{name} is no longer {where}; it was {', '.join(shown)}{often}"
 
 
-def _commit(spell: Spell) -> str:
+def _span(spell: Spell, now_ns: int) -> str:
+    """`from commit 1 until commit 3 (for 20 s, until 5 min ago)`."""
+    ago = wording.duration((now_ns - (spell.until_ns or now_ns)) / 1e9)
+    return f"from {_beginning(spell)} until commit {spell.until} ({_length(spell, now_ns)}, until {ago} ago)"
+
+
+def _beginning(spell: Spell) -> str:
     return f"commit {spell.since}" if spell.since else "before the history begins"
+
+
+def _length(spell: Spell, now_ns: int) -> str:
+    at_least = "" if spell.since else "at least "
+    return f"for {at_least}{wording.duration(_lasted_s(spell, now_ns))}"
+
+
+def _lasted_s(spell: Spell, now_ns: int) -> float:
+    return ((spell.until_ns or now_ns) - spell.since_ns) / 1e9

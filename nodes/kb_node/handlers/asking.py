@@ -10,7 +10,9 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.pages import Pages
+from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
 from nodes.kb_node.answers.understanding import Understanding
 from nodes.kb_node.reasoner import Held
@@ -31,6 +33,7 @@ from schemas.commands import (
     Diff,
     Explain,
     Export,
+    Find,
     Get,
     History,
     Infer,
@@ -75,7 +78,10 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._understanding = Understanding(semantic_map)
+        self._finding = Finding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
+        self.sightings = Sightings(self._past)
+        """To be told of what perception sees."""
         self._aside = FairPool(2, asker)
 
     def handlers(self) -> dict[str, Handler]:
@@ -97,6 +103,7 @@ class Asking:
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
+            Find.answered_by(self._finding.find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -191,8 +198,9 @@ class Asking:
         return self._aside.submit(found.dated, look_up)
 
     def on_diff(self, query: Diff) -> Future[Difference]:
-        """What is otherwise than it was."""
-        return self._aside.submit(differences.difference, self._past, query, self._map.classes.limits)
+        """What changed between two commits or times."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.difference, self._journal, self._past, query, limits)
 
     def on_when(self, query: WasWhen) -> Future[Spells]:
         """When one thing was on, in or at another."""
@@ -232,9 +240,10 @@ class Asking:
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
         """Where an entity was last; where it is, if it is there."""
-        if (entity := self._map.find(query.name)) is not None:
-            return history.sighting(entity, None)
-        return self._aside.submit(self._past.last_seen, query.name)
+        entity = self._map.find(query.name)
+        if entity is not None and not self.sightings.is_gone(entity):
+            return self.sightings.there(entity)
+        return self._aside.submit(self.sightings.gone, query.name, entity)
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

@@ -131,6 +131,17 @@ class Past:
             removed = commit.provenance
         return sighting(self.at_the_beginning()[name], removed)
 
+    def in_conflict_since(self, entity: Entity) -> Provenance:
+        """The commit by which the conflict that an entity has was stated."""
+        stated = entity.pose_provenance
+        for seq in reversed(self._journal.touching(entity.name)):
+            commit = self._journal.commit(seq)
+            then = _entities_after(commit).get(entity.name)
+            if then is None or then.conflict != entity.conflict:
+                break
+            stated = commit.provenance
+        return stated
+
     @property
     def last(self) -> int:
         """The number of the last commit, 0 before the first."""
@@ -171,7 +182,7 @@ class Past:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > max(time.time_ns(), self._journal.stamps.latest() if moment.first_ns else 0):
-            raise errors.Refused("that is in the future; ask about the present without --as-of")
+            raise errors.Refused(f"that is in the future; the last commit so far is {last}")
         seq = self._journal.stamps.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")

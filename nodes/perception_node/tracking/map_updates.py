@@ -13,11 +13,9 @@ from nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from nodes.perception_node.tracking.tracks import Track, slack_m, turn_between
 from schemas.commands import Add, Command, Remove, Update
 from schemas.entities import Entity, Size, distance_m, free_name, rounded
+from schemas.perception import DISPLACED, MISSING
 
 AGENT = "perception_node"
-MISSING = "not seen where it should stand"
-DISPLACED = "something else is in its place"
-"""The conflicts of an entity that is gone."""
 
 _SURE, _UNSURE = 0.6, 0.25
 """What one class has more and another has less of the votes than, if the one contradicts the other."""
@@ -124,7 +122,11 @@ def _extent(entity: Entity) -> tuple[float, float]:
 
 def _gone(entity: Entity, track: Track, own: bool, config: TrackingConfig) -> Update | Remove | None:
     if own and config.when_gone == "remove":
-        reason = f"{entity.name} is no longer where it was"
+        looks = f"{track.odd or track.unseen} looks in a row"
+        found = (
+            f"something else was in its place in {looks}" if track.odd else f"its place was empty in {looks}"
+        )
+        reason = f"{entity.name} is gone: {found}"
         return Remove(source="perception", agent=AGENT, reason=reason, names=(entity.name,))
     conflict = DISPLACED if track.odd else MISSING
     if entity.conflict == conflict:

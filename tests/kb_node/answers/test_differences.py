@@ -1,5 +1,7 @@
 """What happened between two commits, and when something was on something."""
 
+import re
+
 import pytest
 
 from schemas import errors
@@ -28,7 +30,7 @@ def told(system):
         yield client
 
 
-def test_what_is_otherwise_is_told_by_entity(told):
+def test_what_changed_is_told_by_entity(told):
     found = told.diff("5", "6")
     assert [(change.name, change.kind) for change in found.changes] == [("cup1", "pose")]
     assert [(r.subject, r.text) for r in found.relations] == [
@@ -63,23 +65,37 @@ def test_every_diff_takes_the_one_map_to_the_other(told):
 def test_when_it_was_there(told):
     found = told.when("cup1", "isOn", "table1")
     assert [(spell.since, spell.until) for spell in found.spells] == [(5, 6), (7, None)]
-    assert found.text.startswith(
-        "cup1 is on table1 since commit 7; before that from commit 5 until commit 6;"
+    assert re.fullmatch(
+        r"cup1 has been on table1 since commit 7 \(for \d+ s\); before that from commit 5 until commit 6"
+        r" \(for \d+ s, until \d+ s ago\); 2 times, \d+ s in all",
+        found.text,
     )
     assert found.total_s >= 0
     gone = told.when("cup1", "isOn", "table2")
     assert [(spell.since, spell.until) for spell in gone.spells] == [(6, 7)]
-    assert gone.text.startswith(
-        "cup1 is on table2 no longer; it was so from commit 6 until commit 7; once, for"
+    assert re.fullmatch(
+        r"cup1 is no longer on table2; it was from commit 6 until commit 7 \(for \d+ s, until \d+ s ago\)",
+        gone.text,
     )
     assert told.when("your cup", "isLocatedIn", "kitchen").spells[0].since == 5
-    assert told.when("table1", "isOn", "cup1").text == "it was never so that table1 is on cup1"
+    assert told.when("table1", "isOn", "cup1").text == "table1 was never on cup1"
+
+
+def test_what_is_in_a_corner_is_in_the_room_too(told):
+    told.add("Corner", "corner1", at=(1, 1, 0), size=(1, 1, 2))  # 9
+    assert [(spell.since, spell.until) for spell in told.when("cup1", "isLocatedIn", "kitchen1").spells] == [
+        (5, None)
+    ]
+    assert [(spell.since, spell.until) for spell in told.when("cup1", "isLocatedIn", "corner1").spells] == [
+        (9, None)
+    ]
+    told.undo(9)
 
 
 def test_what_cannot_be_asked_is_said(told):
     with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
         told.diff("6", "5")
-    with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 8"):
+    with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 10"):
         told.diff("99")
     with pytest.raises(errors.UnknownName):
         told.when("nothing1", "isOn", "table1")

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from nodes.perception_node.tracking.association import renamed
-from nodes.perception_node.tracking.map_updates import DISPLACED, MISSING
 from nodes.perception_node.tracking.tracks import Tracks
 from schemas.commands import Add, Remove, Update
+from schemas.perception import DISPLACED, MISSING
 from tests.perception_node.things import CONFIG, SIZES, Table, at, entity, seen
 
 

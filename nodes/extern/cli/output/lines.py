@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from datetime import date, datetime
 
 from schemas import wording
 from schemas.explanations import Explanation
 from schemas.happenings import Difference
+from schemas.language import Found
 from schemas.relations import Relation
 from schemas.replies import Changed, Inferred
 
@@ -26,15 +28,25 @@ def changed(reply: Changed) -> Iterable[str]:
 
 
 def difference(found: Difference) -> Iterable[str]:
-    """What is otherwise, one line an entity."""
+    """What changed, one line an entity; then how much did, and between which commits and times."""
     about: dict[str, list[str]] = {}
     for change in found.changes:
         about.setdefault(change.name, []).append(change.text)
     for related in found.relations:
         about.setdefault(related.subject, []).append(related.text)
     yield from (f"{name}: {'; '.join(texts)}" for name, texts in sorted(about.items()))
-    same = "nothing is otherwise" if not about else f"{wording.entities(len(about))} otherwise"
-    yield f"{same} (commit {found.last} against {found.first})"
+    if found.first == found.last:
+        yield f"nothing has changed since commit {found.last} ({_clock(found.last_ns)})"
+        return
+    count = wording.entities(len(about)) if about else "nothing"
+    times = f"{_clock(found.first_ns)} and {_clock(found.last_ns)}"
+    yield f"{count} changed between commits {found.first} and {found.last} ({times})"
+
+
+def _clock(stamp_ns: int) -> str:
+    """A local time; of another day than today with its date."""
+    then = datetime.fromtimestamp(stamp_ns / 1e9)
+    return f"{then:%H:%M:%S}" if then.date() == date.today() else f"{then:%Y-%m-%d %H:%M:%S}"
 
 
 def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
@@ -62,6 +74,22 @@ def relations(found: Sequence[Relation]) -> Iterable[str]:
             yield relation.text
         elif relation.subject == names[0]:
             yield f"{relation.object} {_BEARS[relation.relation]} {wording.few(names, _MOST)}"
+
+
+def found(answer: Found) -> Iterable[str]:
+    """What a description means: a line a thing with its reasons; what to ask back, or what is nearest."""
+    for said, meant in answer.read_as:
+        yield f"'{said}' is read as '{meant}'"
+    if answer.outcome == "none":
+        yield answer.text
+        if answer.nearest:
+            yield "nearest:"
+    for candidate in (*answer.candidates, *answer.nearest):
+        indent = "  " if answer.outcome == "none" else ""
+        yield f"{indent}{candidate.entity}: {', '.join(candidate.reasons) or candidate.called}"
+    yield from answer.gone
+    if answer.question:
+        yield answer.question
 
 
 def explanation(e: Explanation) -> Iterable[str]:

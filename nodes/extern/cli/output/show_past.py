@@ -51,4 +51,6 @@ def sighting_card(s: Sighting) -> Table:
     rows = {"name": s.name, "where": pose_text(s.pose), "last change": provenance_text(s.provenance)}
     if s.removed is not None:
         rows["removed"] = provenance_text(s.removed)
-    return card(rows)
+    if s.seen_ns is not None:
+        rows["last in sight"] = moment(s.seen_ns)
+    return card({**rows, "status": s.text} if s.text else rows)

@@ -1,4 +1,4 @@
-"""The verbs about the past: `history`, `last-seen`, `undo`."""
+"""The verbs about the past: `history`, `last-seen`, `diff`, `when`, `undo`."""
 
 from __future__ import annotations
 
@@ -57,7 +57,8 @@ def history(
 def last_seen(client: Client, name: str, format: str) -> None:
     """Show where and when an entity was last seen or placed.
 
-    It may have been removed since.
+    It may have been removed since. What was seen to be gone is told from what
+    has merely not been seen since.
     """
     sighting = client.last_seen(name)
     if format == "json":
@@ -72,9 +73,9 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @_text_or_json
 @talks
 def diff(client: Client, since: str, until: str | None, format: str) -> None:
-    """Show what is otherwise than it was.
+    """Show what changed between two commits or times.
 
-    Between two commits or times, or from one until now.
+    Without a second one: what has changed since the first.
     """
     found = client.diff(since, until)
     if format == "json":
@@ -85,14 +86,15 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
 
 @click.command()
 @click.argument("name", shell_complete=entity_names)
-@click.argument("relation", type=click.Choice(get_args(KeptRelation)))
+@click.argument("relation", metavar="RELATION", type=click.Choice(get_args(KeptRelation)))
 @click.argument("other", shell_complete=entity_names)
 @_text_or_json
 @talks
 def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
     """Show when one thing was on, in or attached to another.
 
-    For example: semmap when cup1 isOn table1. The exit status is 1 if it never was.
+    RELATION is isOn, isInside, isLocatedIn or isAttachedTo: semmap when cup1
+    isOn table1. The exit status is 1 if it never was.
     """
     found = client.when(name, relation, other)
     if format == "json":

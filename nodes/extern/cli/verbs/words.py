@@ -1,14 +1,15 @@
-"""The verbs that take words as people say them: `understand`."""
+"""The verbs that take words as people say them: `find` and `understand`."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from nodes.extern.cli.angles import ANGLE
 from nodes.extern.cli.calling import complain, print_json, print_lines, talks
-from nodes.extern.cli.output import lu4r
+from nodes.extern.cli.output import lines, lu4r
 from schemas import errors
 
 if TYPE_CHECKING:
@@ -20,6 +21,36 @@ _WHY: Final[dict[Mood, str]] = {
     "question": "'{text}' asks something, and there is no command in it; try: take the cup from the table",
     "past": "'{text}' tells what was done, and there is no command in it; try: take the cup from the table",
 }
+
+
+@click.command()
+@click.argument("text")
+@click.option(
+    "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
+)
+@click.option(
+    "--from-pose",
+    "viewpoint",
+    type=(float, float, float, ANGLE),
+    metavar="X Y Z YAW",
+    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
+)
+@click.option("--for", "asker", metavar="NAME", help="Who asks: whose things *my* means.")
+@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def find(client: Client, text: str, format: str, **fields: Any) -> None:
+    """Find the entities that words describe, in English or Italian.
+
+    For example: semmap find "the red cup on the kitchen table". Where several may be meant, there is the
+    question to ask back. The exit status is 1 if nothing fits.
+    """
+    found = client.find(text=text, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(list(lines.found(found)))
+    if found.outcome == "none":
+        sys.exit(errors.Refused.exit_status)
 
 
 @click.command()

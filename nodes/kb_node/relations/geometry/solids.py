@@ -70,10 +70,9 @@ class Solid:
         """Its highest point [m], that of its box."""
 
     def _extent(self) -> Extent:
-        form, (x, y, z) = self.form, self.position
-        low_x, low_y, high_x, high_y = form.bounds
-        bounds = (x + low_x, y + low_y, x + high_x, y + high_y)
-        return bounds, z + (form.bottom if self.has_parts else form.lowest_corner), z + form.top
+        form, z = self.form, self.position[2]
+        bottom = form.bottom if self.has_parts else form.lowest_corner
+        return _bounds(form, self.position), z + bottom, z + form.top
 
     @property
     def has_parts(self) -> bool:
@@ -197,19 +196,29 @@ class Solid:
 def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | None:
     """The solid of an entity; None without a position.
 
-    `before` is the one that it replaces: what only moved keeps its form.
+    `before` is the one that it replaces: what only moved keeps its form, and what stays at its height keeps
+    its bottom and top, for which the form's parts would have to be worked out.
     """
     pose = entity.pose
     if pose is None:
         return None
     model, size = shape_of(entity)
     extent, turn = size or UNMEASURED, pose.orientation_wxyz
-    if before is not None and before.form.is_of(model, extent, turn):
-        form = before.form
-        form.users -= 1
-    else:
+    if before is None or not before.form.is_of(model, extent, turn):
         form = form_of(model, extent, turn)
-    return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
+        return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
+    form = before.form
+    form.users -= 1
+    stays = before.position[2] == pose.position_m[2]
+    is_alike = stays and (before.is_place, before.is_measured) == (entity.place, size is not None)
+    known = (_bounds(form, pose.position_m), before.bottom, before.top) if is_alike else None
+    return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
+
+
+def _bounds(form: Form, position: Vector) -> Bounds:
+    x, y, _ = position
+    low_x, low_y, high_x, high_y = form.bounds
+    return x + low_x, y + low_y, x + high_x, y + high_y
 
 
 def shape_of(entity: Entity | Placed) -> tuple[str | None, Size | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -33,16 +34,18 @@ def system(tmp_path_factory):
         yield system
 
 
-def test_what_is_otherwise_and_when_it_was_so(system):
-    assert system.cli("diff", "2", "3").splitlines() == [
-        "chair1: moved from (1, 1, 0) to (2, 1, 0)",
-        "1 entity otherwise (commit 3 against 2)",
-    ]
-    assert system.cli("diff", "3", "5") == "nothing is otherwise (commit 5 against 3)\n"
+def test_what_changed_and_when_a_relation_held(system):
+    moved, counted = system.cli("diff", "2", "3").splitlines()
+    assert moved == "chair1: moved from (1, 1, 0) to (2, 1, 0)"
+    assert re.fullmatch(
+        r"1 entity changed between commits 2 and 3 \(\d\d:\d\d:\d\d and \d\d:\d\d:\d\d\)", counted
+    )
+    assert system.cli("diff", "3", "5").startswith("nothing changed between commits 3 and 5 (")
+    assert system.cli("diff", "5", "5").startswith("nothing has changed since commit 5 (")
     found = json.loads(system.cli("diff", "3", "4", "--format", "json"))
     assert [(change["name"], change["kind"]) for change in found["changes"]] == [("chair2", "added")]
     with system.client() as client:
-        assert client.when("chair1", "isOn", "chair2").text == "it was never so that chair1 is on chair2"
+        assert client.when("chair1", "isOn", "chair2").text == "chair1 was never on chair2"
 
 
 def test_history(system):
@@ -86,7 +89,11 @@ def test_last_seen(system):
     assert "commit 4" in said
     assert "removed" in said
     seen = json.loads(system.cli("last-seen", "chair1", "--format", "json"))
-    assert (seen["provenance"]["source"], seen["removed"]) == ("perception", None)
+    assert (seen["provenance"]["source"], seen["removed"], seen["gone"]) == ("perception", None, None)
+    assert re.fullmatch(
+        r"last seen at commit 3, \d+ s ago; not seen since, nor seen to be gone", seen["text"]
+    )
+    assert re.search(r"removed at commit 5, \d+ s ago by operator/ann", said)
 
 
 def test_get_shows_who_when_why_and_how_sure(system):

@@ -2,7 +2,7 @@ import gc
 
 import pytest
 
-from nodes.kb_node import gc_pause
+from nodes.runtime import gc_pause
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""When no garbage is collected: a change of the map makes many objects and drops few."""
+"""When no garbage is collected: a large change of the map makes many objects, and drops few."""
 
 from __future__ import annotations
 

@@ -1,0 +1,90 @@
+"""What has merely not been seen since is told from what was seen to be gone."""
+
+import re
+import time
+
+import pytest
+
+from nodes.kb_node.answers.sightings import Sightings
+from nodes.kb_node.storage.history import Past
+from schemas import errors
+from schemas.commits import Edit
+from schemas.entities import Pose
+from schemas.perception import MISSING, Observation, Observations
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction
+
+
+@pytest.fixture
+def semantic_map(tmp_path):
+    """Commits: 1 two chairs by ann, 2 chair1 misses, 3 something else about chair1, 4 and 5 removals."""
+    made = home.new_map(tmp_path)
+    eyes = {"source": "perception", "agent": "camera"}
+    for step in (
+        transaction(1, [*chair(), *chair("chair2"), *chair("chair3"), *chair("chair4")], agent="ann"),
+        transaction(2, edit=(Edit(name="chair1", conflict=MISSING),), **eyes),
+        transaction(3, edit=(Edit(name="chair1", ref="throne"),), agent="ann"),
+        transaction(4, (), chair("chair2"), reason="chair2 is gone: its place was empty in 10 looks", **eyes),
+        transaction(5, (), chair("chair3"), reason="tidy", agent="ann"),
+    ):
+        made.commit(step)
+    yield made
+    home.close(made)
+
+
+@pytest.fixture
+def sightings(semantic_map):
+    return Sightings(Past(semantic_map._journal))
+
+
+def look(name, stamp_ns):
+    one = Observation(
+        class_="Chair",
+        probability=0.9,
+        pose=Pose(position_m=(1, 2, 0)),
+        size_m=(1, 1, 1),
+        points=9,
+        entity=name,
+    )
+    return Observations(stamp_ns=stamp_ns, views=(), observations=(one,))
+
+
+def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sightings, semantic_map):
+    entity = semantic_map.entity("chair1")
+    assert sightings.is_gone(entity)
+    told = sightings.gone("chair1", entity)
+    assert (told.gone.commit, told.removed, told.provenance.commit) == (2, None, 1)
+    assert re.fullmatch(r"seen to be gone at commit 2, \d+ s ago: not seen where it should stand", told.text)
+
+
+def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_not(sightings):
+    seen, tidied = sightings.gone("chair2", None), sightings.gone("chair3", None)
+    assert seen.gone == seen.removed
+    assert seen.text.endswith("ago: chair2 is gone: its place was empty in 10 looks")
+    assert (tidied.gone, tidied.removed.commit) == (None, 5)
+    assert re.fullmatch(r"removed at commit 5, \d+ s ago by operator/ann", tidied.text)
+    with pytest.raises(errors.UnknownName):
+        sightings.gone("chair9", None)
+
+
+def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semantic_map):
+    entity = semantic_map.entity("chair4")
+    assert not sightings.is_gone(entity)
+    assert re.fullmatch(
+        r"placed by operator/ann at commit 1, \d+ s ago; not seen since, nor seen to be gone",
+        sightings.there(entity).text,
+    )
+    sightings.see(look("chair4", entity.pose_provenance.stamp_ns - 1))
+    assert sightings.there(entity).seen_ns is None  # before it came there
+    now_ns = time.time_ns()
+    sightings.see(look("chair4", now_ns))
+    told = sightings.there(entity)
+    assert (told.seen_ns, told.text) == (now_ns, "in sight of a camera just now")
+
+
+def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypatch):
+    entity = semantic_map.entity("chair4")
+    sightings.see(look("chair4", time.time_ns()))
+    later_ns = time.time_ns() + 180 * 10**9
+    monkeypatch.setattr("time.time_ns", lambda: later_ns)
+    assert sightings.there(entity).text == "last in sight 3 min ago; not seen since, nor seen to be gone"

@@ -1,0 +1,59 @@
+"""A solid that replaces another is what it would be without that one."""
+
+from __future__ import annotations
+
+import pytest
+
+from nodes.kb_node.relations.geometry.forms import form_of
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import solid_of
+from schemas.entities import Pose, Size
+
+TURNED = (0.9238795325112867, 0.0, 0.0, 0.3826834323650898)
+LEANING = (0.9961946980917455, 0.08715574274765817, 0.0, 0.0)
+HERE = (1.0, 2.0, 0.3)
+
+
+def _placed(
+    at: tuple[float, float, float],
+    turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0),
+    size: Size | None = (0.4, 0.3, 0.7),
+    model: str = "chair",
+    *,
+    place: bool = False,
+) -> Placed:
+    pose = Pose(position_m=at, orientation_wxyz=turn)
+    return Placed(name="a", iri="http://example.org/a", pose=pose, size_m=size, place=place, model=model)
+
+
+@pytest.mark.parametrize(
+    "now",
+    [
+        _placed((4.1, -2.7, 0.3)),
+        _placed((4.1, -2.7, 1.9)),
+        _placed((4.1, -2.7, 0.3), TURNED),
+        _placed((4.1, -2.7, 0.3), size=(0.4, 0.3, 0.8)),
+        _placed((4.1, -2.7, 0.3), size=None),
+        _placed((4.1, -2.7, 0.3), model=""),
+        _placed((4.1, -2.7, 0.3), place=True),
+        _placed((4.1, -2.7, 0.3), LEANING),
+    ],
+)
+@pytest.mark.parametrize("turn", [(1.0, 0.0, 0.0, 0.0), LEANING])
+def test_bounds_bottom_and_top_after_a_change(now: Placed, turn: tuple[float, float, float, float]) -> None:
+    before = solid_of(_placed(HERE, turn))
+    fresh, moved = solid_of(now), solid_of(now, before)
+    assert fresh is not None
+    assert moved is not None
+    assert (moved.bounds, moved.bottom, moved.top) == (fresh.bounds, fresh.bottom, fresh.top)
+    assert (moved.is_place, moved.is_measured) == (fresh.is_place, fresh.is_measured)
+
+
+def test_what_stays_at_its_height_needs_no_parts() -> None:
+    before = solid_of(_placed(HERE, size=(0.41, 0.31, 0.71)))
+    assert before is not None
+    before.form.forget()
+    now = solid_of(_placed((5.0, 5.0, 0.3), size=(0.41, 0.31, 0.71)), before)
+    assert now is not None
+    assert now.bottom == before.bottom
+    assert "parts" not in form_of("chair", (0.41, 0.31, 0.71), (1.0, 0.0, 0.0, 0.0)).__dict__
