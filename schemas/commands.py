@@ -32,7 +32,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Account, Found, Understood
+from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -333,9 +333,13 @@ class Tell(Command[Account], frozen=True, tag="tell"):
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):
-    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+    """What a command in words asks for: frames, and which entities of the map fill their roles.
+
+    Without a `language` its words tell which one it is in.
+    """
 
     text: Text
+    language: Language | None = None
 
 
 class Find(Command[Found], frozen=True, tag="find"):

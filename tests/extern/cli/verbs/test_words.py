@@ -59,6 +59,33 @@ def test_what_is_there_is_told_in_few_words(system, monkeypatch, capsys):
         assert sentence in capsys.readouterr().err
 
 
+def test_italian_needs_no_flag(system, monkeypatch):
+    text, status = said(system, monkeypatch, "understand", "Portami la bottiglia, per favore!")
+    assert (text, status) == ('Bringing(Beneficiary="mi", Theme=bottle1)\n', 0)
+    text, _ = said(
+        system, monkeypatch, "understand", "prendi bottle1", "--language", "italian", "--format", "json"
+    )
+    document = json.loads(text)
+    assert (document["language"], document["frames"][0]["arguments"][0]["entity"]) == ("italian", "bottle1")
+    with system.client() as client:
+        assert client.understand("prendi la bottiglia").language == "italian"
+        with pytest.raises(errors.BadRequest, match="one of english, italian"):
+            client.understand("prendi la bottiglia", language="klingon")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("how are you", "asks something"),
+        ("i took the lemonade", "tells what was done"),
+        ("hi", "try: take the cup"),
+    ],
+)
+def test_what_is_no_command_says_why(system, monkeypatch, capsys, text, why):
+    assert said(system, monkeypatch, "understand", text) == ("", 1)
+    assert why in capsys.readouterr().err
+
+
 def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "understand", "frobnicate the lemonade")
     assert (text, status) == ("", 1)
