@@ -147,6 +147,8 @@ class SemanticMap(MapState):
                 return self._taken(apply(commit, lambda whole: self._write(whole, begun=begun), noted))
             except BaseException:
                 give_up()
+                if begun is not None:
+                    begun.give_up()
                 raise
 
     def _with_doubts(self, commit: Commit) -> Commit:
