@@ -253,6 +253,7 @@ class Verbs:
     could = Verb(commands.Could)
     relations = Verb(commands.Relations)
     understand = Verb(commands.Understand)
+    find = Verb(commands.Find)
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
     export = Verb(commands.Export)

@@ -34,6 +34,7 @@ PARSED = {
     "backup",
     "restore",
     "fleet",
+    "mcp",
 }
 """Verbs that start, stop or need something else than one running system."""
 BUSY_S = 300.0

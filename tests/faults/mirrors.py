@@ -74,10 +74,16 @@ def _require_same(ground: Ground, server: Oxigraph) -> None:
         assert there == expected, (sorted(there - expected)[:3], sorted(expected - there)[:3])
 
 
+FLEET = (*SMALL, "--namespace", _ROBOT)
+
 MIRRORS: tuple[Fault, ...] = tuple(
-    Fault(name, strike, often=2, words=(*SMALL, "--namespace", _ROBOT))
-    for name, strike in (
-        ("fleet mirror killed, 3 times", partial(_kill_again_and_again, server_too=False)),
-        ("fleet mirror and SPARQL server killed, 3 times", partial(_kill_again_and_again, server_too=True)),
+    Fault(name, strike, often=2, in_short=in_short, words=FLEET)
+    for name, strike, in_short in (
+        ("fleet mirror killed, 3 times", partial(_kill_again_and_again, server_too=False), 0),
+        (
+            "fleet mirror and SPARQL server killed, 3 times",
+            partial(_kill_again_and_again, server_too=True),
+            1,
+        ),
     )
 )

@@ -8,13 +8,14 @@ import pytest
 
 from tests.faults.all_faults import FAULTS
 from tests.faults.ground import Ground
+from tests.faults.mirrors import FLEET
 from tests.faults.processes import ALL
 from tests.faults.table import SMALL, done_to
 
 SHORT = [fault for fault in FAULTS if fault.in_short]
 
 
-@pytest.mark.parametrize("words", [SMALL, ALL], ids=["map", "scene"])
+@pytest.mark.parametrize("words", [SMALL, ALL, FLEET], ids=["map", "scene", "fleet"])
 def test_nothing_is_lost_or_done_twice(tmp_path, subtests, words):
     """One system bears all of them in turn: starting one for each takes most of the time."""
     faults = [fault for fault in SHORT if fault.words == words and not fault.missing()]
@@ -28,4 +29,4 @@ def test_nothing_is_lost_or_done_twice(tmp_path, subtests, words):
 
 
 def test_every_short_one_is_done():
-    assert {fault.words for fault in SHORT} == {SMALL, ALL}
+    assert {fault.words for fault in SHORT} == {SMALL, ALL, FLEET}

@@ -17,11 +17,16 @@ _DEEPEST = 20
 
 
 def require_readable(path: Path, roots: Sequence[Path]) -> None:
-    """Raises ModelError for a file that is, by whatever links, outside of all `roots`."""
+    """Raises ModelError for a path that leads outside all `roots`, by whatever links, or to a pipe or device.
+
+    Reading those might never end.
+    """
     real = path.resolve()
     if not any(real.is_relative_to(root.resolve()) for root in roots):
         where = " or ".join(map(str, roots)) or "the folder given by `semmap up --models DIR`"
         raise ModelError(f"the model file {path} is not read: only files in {where} may be read")
+    if real.exists() and not (real.is_file() or real.is_dir()):
+        raise ModelError(f"the model file {path} is not read: it is a pipe or a device, not a file")
 
 
 def require_references(path: Path, roots: Sequence[Path]) -> None:

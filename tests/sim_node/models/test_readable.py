@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from nodes.sim_node.models.library import ModelError
@@ -72,3 +74,12 @@ def test_what_it_refers_to_within_is_read(folders, models):
         "<mujocoinclude><option gravity='0 0 0'/></mujocoinclude>"
     )
     assert models("whole.xml", None).size_m == pytest.approx((0.2, 0.2, 0.2))
+
+
+@pytest.mark.parametrize("inside", ["", '<asset><mesh name="m" file="pipe.stl"/></asset>'])
+def test_a_pipe_is_not_waited_for(folders, models, inside):
+    for name in ("pipe.xml", "pipe.stl"):
+        os.mkfifo(folders / "models" / name)
+    (folders / "models" / "whole.xml").write_text(BOX.format(inside))
+    with pytest.raises(ModelError, match="a pipe or a device"):
+        models("whole.xml" if inside else "pipe.xml", None)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from nodes.kb_node.relations.geometry.lazily import lazily
 from nodes.kb_node.relations.geometry.polygons import Point, contains, hull
+from nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
 from schemas.entities import Vector
 
 Floats = NDArray[np.float64]
@@ -69,6 +70,13 @@ class Convex:
         if len(upright) != 1 or self.points or any(abs(v[2]) > _LEVEL for v in self.round):
             return False
         return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
+
+    @lazily
+    def upright_shadow(self) -> Shadow | None:
+        """What is seen of it from above, if it is a box or a cylinder that stands upright."""
+        if not self.has_flat_top:
+            return None
+        return shadow_of([v for v in self.straight if abs(v[2]) <= _LEVEL], self.round)
 
     @lazily
     def is_square(self) -> bool:
@@ -136,6 +144,10 @@ class _Moved(Convex):
         return self.like.has_flat_top
 
     @property
+    def upright_shadow(self) -> Shadow | None:
+        return self.like.upright_shadow
+
+    @property
     def is_square(self) -> bool:
         return self.like.is_square
 
@@ -179,6 +191,9 @@ class Contact(NamedTuple):
 
 
 UP: Vector = (0.0, 0.0, 1.0)
+DOWN: Vector = (0.0, 0.0, -1.0)
+_SURE_M = 1e-6
+"""Depths that differ by less are taken for the same."""
 
 
 def convex(
@@ -225,10 +240,27 @@ def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
     """
     if one.is_square and other.is_square:
         return _between_boxes(one, other)
+    if (upright := _one_above_the_other(one, other)) is not None:
+        return upright
     known = one.met.get((other, most))
     if known is None:
         known = one.met[other, most] = _searched(one, other, most)
     return known
+
+
+def _one_above_the_other(one: Convex, other: Convex) -> Contact | None:
+    """The same of two that stand upright, where up is the way: the shadows are deeper in one another.
+
+    Along a normal that leans, prisms are apart by no more than a mean of what they are upright and level.
+    """
+    its, their = one.upright_shadow, other.upright_shadow
+    if its is None or their is None:
+        return None
+    (x, y, z), (a, b, c) = one.centre, other.centre
+    gap = one.low[2] - other.high[2] if z >= c else other.low[2] - one.high[2]
+    if depth(x - a, y - b, its, their) < max(-gap, 0.0) + _SURE_M:
+        return None
+    return Contact(gap, UP if z >= c else DOWN)
 
 
 def _searched(one: Convex, other: Convex, most: float) -> Contact:

@@ -1,4 +1,4 @@
-"""The distance of two boxes along the axes is that which the search finds for the same two, turned."""
+"""Distances of boxes along the axes, and of what stands upright, are those that the search finds."""
 
 import math
 
@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nodes.kb_node.relations.geometry.convex import contact
+from nodes.kb_node.relations.geometry.convex import _searched, contact, convex
 from nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.made import thing
 
@@ -38,6 +38,38 @@ def test_boxes_along_the_axes(at, size, other_at, other_size):
     assert math.hypot(*found.normal) == pytest.approx(1.0)
 
 
+LENGTH = st.sampled_from([0.05, 0.1, 0.2, 0.35])
+TURN = st.sampled_from([0.0, 0.3, YAW, 1.2])
+
+
+@st.composite
+def upright(draw):
+    """A box, a cylinder or a cylinder with an oval base."""
+    a, b, c = draw(LENGTH), draw(LENGTH), draw(LENGTH)
+    cos, sin = math.cos(turn := draw(TURN)), math.sin(turn)
+    level = ((a * cos, a * sin, 0.0), (-b * sin, b * cos, 0.0))
+    up = (0.0, 0.0, c)
+    return convex(draw(AT), (up,), level) if draw(st.booleans()) else convex(draw(AT), (*level, up), ())
+
+
+@settings(deadline=None, max_examples=300)
+@given(upright(), upright())
+def test_what_stands_upright_is_as_far_apart_as_the_search_finds(one, other):
+    if one.is_square and other.is_square:
+        return
+    found, searched = contact(one, other), _searched(one, other, math.inf)
+    assert found.distance == pytest.approx(searched.distance, abs=1e-12)
+    assert found.normal == pytest.approx(searched.normal, abs=1e-12)
+
+
+def test_one_that_is_deep_beside_another_is_not_above_it():
+    post = convex((0.0, 0.0, 0.5), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+    beside = convex((0.19, 0.0, 0.55), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+    found = contact(beside, post)
+    assert found.distance == pytest.approx(-0.01, abs=1e-6)
+    assert found.normal == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
+
+
 def test_the_normal_points_from_the_other_to_the_one():
     found = contact(box((0.0, 0.0, 1.0), (0.2, 0.2, 0.2), 0.0), box((0.0, 0.0, 0.5), (0.4, 0.4, 0.4), 0.0))
     assert found.distance == pytest.approx(0.1)
@@ -50,6 +82,6 @@ def test_what_just_meets_is_not_apart():
 
 
 def test_a_contact_is_worked_out_once():
-    one, other = box((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), YAW), box((0.0, 0.0, 0.29), (0.3, 0.3, 0.3), 0.0)
+    one, other = box((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), YAW), box((0.34, 0.0, 0.0), (0.3, 0.3, 0.3), 0.0)
     assert contact(one, other) is contact(one, other)
     assert contact(one, other, -0.1) is not contact(one, other)
