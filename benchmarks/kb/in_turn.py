@@ -8,11 +8,12 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import chain
 from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
-from benchmarks.kb import university
+from benchmarks.kb import floor, university
 
 CORE = ("add", "move", "refuse", "remove")
 WIRE = ("add", "move", "reference", "remove")
@@ -64,11 +65,20 @@ def core(before: Path, size: int, count: int) -> dict[str, Pair]:
     return {what: _pair([(old[what], new[what]) for old, new in rounds]) for what in CORE}
 
 
+class Least(NamedTuple):
+    """The median of what a chain of bare processes takes, and what the processors spend on it [ms]."""
+
+    took_ms: float
+    cpu_ms: float
+
+
 class Wired(NamedTuple):
     """Of commands by their names: how long one takes, and what the processors spend on it [ms]."""
 
     took: dict[str, Pair]
     """Medians [ms]; of `sustained` the moves a second."""
+    floor: dict[str, Least]
+    """Of some, the least that this machine and its libraries would take (`floor.py`)."""
     cpu: dict[str, Pair]
     """Means, in all processes together, the client's too [ms]: a busy machine disturbs it less."""
 
@@ -79,10 +89,14 @@ def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = 
     words[1] += [] if tbox is None else [str(tbox)]
     took: dict[str, tuple[list[float], list[float]]] = {what: ([], []) for what in WIRE}
     cpu: dict[str, list[tuple[float, float]]] = {what: [] for what in (*WIRE, SUSTAINED)}
-    with _sides(before, *words) as sides:
+    least: dict[str, list[tuple[list[float], float]]] = {what: [] for what in floor.SIZES}
+    with _sides(before, *words) as sides, floor.chain(str(folder)) as bare:
         for i in range(_SHORT_ROUNDS + 1):
             for what in WIRE:
                 old, new = sides.ask(what, count // _SHORT_ROUNDS if i else 20, i)
+                if what in least:
+                    found = bare(what, count // _SHORT_ROUNDS)
+                    least[what] += [(found.took_ms, found.cpu_ms)] if i else []
                 if i:
                     took[what][0].extend(old["found"])
                     took[what][1].extend(new["found"])
@@ -92,7 +106,11 @@ def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = 
     rates = _pair([(old["found"], new["found"]) for old, new in rounds])
     pairs = {what: Pair(*map(median, both)) for what, both in took.items()}
     spent = {what: Pair(*map(mean, zip(*rows, strict=True))) for what, rows in cpu.items()}
-    return Wired({**pairs, SUSTAINED: rates}, spent)
+    bottom = {
+        what: Least(median(chain.from_iterable(one for one, _ in rows)), mean(spent for _, spent in rows))
+        for what, rows in least.items()
+    }
+    return Wired({**pairs, SUSTAINED: rates}, bottom, spent)
 
 
 def of_university(before: Path, triples: int, turns: int) -> Pair:
