@@ -32,7 +32,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Found, Language, Understood
+from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -320,6 +320,16 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
     name: Word
     relation: KeptRelation
     other: Word
+
+
+class Tell(Command[Account], frozen=True, tag="tell"):
+    """What is there, in a text of at most so many `words`: in the map, in a place, or of a thing.
+
+    What matters most is said first, like things are counted together, and what is left out is said to be.
+    """
+
+    name: Word | None = None
+    words: Annotated[int, Meta(ge=20, le=5000)] = 150
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):
