@@ -19,6 +19,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     "perception": ("PIL", "numpy", "scipy"),  # and Open3D, where there is one
     "record": ("PIL", "numpy", "rerun"),
     "keys": ("cryptography",),
+    "mcp": ("anyio", "mcp", "uvicorn"),
 }
 """What each extra installs, as it is imported."""
 

@@ -87,7 +87,7 @@ def test_all_is_every_extra():
 
 def test_every_node_has_an_extra():
     assert set(extras.OF_NODE) == {*NODES, ROUTER}
-    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys"}
+    assert set(extras.OF_NODE.values()) == set(extras.MODULES) - {"keys", "mcp"}
 
 
 def test_with_everything_nothing_is_missing():
@@ -129,6 +129,7 @@ def test_without_the_knowledge_base_there_is_no_way_around(without):
         (["perceive", "x.pcd"], "scipy", "perception"),
         (["repair"], "pyoxigraph", "kb"),
         (["down"], "supervisor", "kb"),
+        (["mcp"], "uvicorn", "mcp"),
     ],
 )
 def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp_path, words, module, extra):

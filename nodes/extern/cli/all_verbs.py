@@ -17,7 +17,7 @@ _MODULES = {
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
     ),
-    "words": ("understand",),
+    "words": ("find", "tell", "understand"),
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
@@ -27,6 +27,7 @@ _MODULES = {
     "tbox": ("tbox",),
     "keys": ("keys",),
     "fleet": ("fleet",),
+    "mcp": ("mcp",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

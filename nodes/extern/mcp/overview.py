@@ -1,0 +1,69 @@
+"""The overview: how much there is of what and where, in less than 2 000 characters for a map of any size."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from nodes.extern.mcp.answers import said
+from schemas.entities import Entity
+from schemas.replies import SystemStatus
+
+BUDGET: Final = 1800
+"""Characters that this takes, so that the whole answer stays below 2 000."""
+_LONGEST_REFERENCE: Final = 40
+
+
+def overview(
+    status: SystemStatus, entities: Sequence[Entity], where: Mapping[str, Mapping[str, Sequence[str]]]
+) -> dict[str, Any]:
+    """The places with what they hold, the rest, and what is wrong. `where` has the places under `in`.
+
+    A thing in several places counts for the smallest of them. Where it is too much, the rarest classes and
+    then the emptiest places go.
+    """
+    places = {e.name: e for e in entities if e.place}
+    things = [e for e in entities if not e.place]
+    held: dict[str, Counter[str]] = {name: Counter() for name in places}
+    elsewhere: Counter[str] = Counter()
+    for thing in things:
+        inside = [places[name] for name in where.get(thing.name, {}).get("in", ()) if name in places]
+        smallest = min(inside, key=_area_m2, default=None)
+        (elsewhere if smallest is None else held[smallest.name])[thing.class_] += 1
+    fullest = sorted(held, key=lambda name: (-held[name].total(), name))
+    for classes, most in ((12, 40), (8, 20), (5, 14), (3, 10), (2, 6), (1, 4), (0, 3)):
+        shown = {
+            "entities": len(entities),
+            "things": len(things),
+            "places": [_place(places[name], held[name], classes) for name in fullest[:most]],
+            **({"more_places": len(fullest) - most} if len(fullest) > most else {}),
+            **({"elsewhere": _counts(elsewhere, classes)} if elsewhere else {}),
+            **({"problems": [text[:120] for text in status.problems[:3]]} if status.problems else {}),
+            "further": "list in=PLACE or class=CLASS, get name=NAME",
+        }
+        if len(json.dumps(shown, ensure_ascii=False, separators=(",", ":"))) <= BUDGET:
+            break
+    return shown
+
+
+def _place(place: Entity, held: Counter[str], classes: int) -> dict[str, Any]:
+    reference = place.preferred_reference or ""
+    is_telling = reference.casefold() not in ("", place.class_.casefold().replace("_", " "))
+    named = said(reference[:_LONGEST_REFERENCE], place.reference_provenance) if is_telling else {}
+    return {"name": place.name, "class": place.class_, **named, "holds": _counts(held, classes)}
+
+
+def _counts(held: Counter[str], most: int) -> str:
+    """`12: 4 Chair, 2 Cup, 6 others`."""
+    ranked = sorted(held.items(), key=lambda item: (-item[1], item[0]))
+    first = ranked if len(ranked) <= most + 1 else ranked[:most]
+    shown = [f"{count} {class_[:40]}" for class_, count in first]
+    if rest := held.total() - sum(count for _, count in first):
+        shown.append(f"{rest} others")
+    return f"{held.total()}: {', '.join(shown)}" if held else "0"
+
+
+def _area_m2(place: Entity) -> float:
+    return float("inf") if place.size_m is None else place.size_m[0] * place.size_m[1]

@@ -1,0 +1,160 @@
+"""Entities, facts and commits as short JSON objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
+
+from nodes.extern.cli.output.sparql_formats import spoken
+from nodes.extern.mcp.answers import metres, said, stands, when, who
+from ontology import vocabulary as v
+from schemas import changes
+from schemas.entities import Entity
+from schemas.explanations import Term
+from schemas.happenings import Difference
+from schemas.relations import Described, Relation
+from schemas.replies import LoggedCommit
+from schemas.sparql import Row
+
+PLACED: Final = {"isOn": "on", "isInside": "inside", "isLocatedIn": "in"}
+"""The relations that say where a thing is, and how a row calls them."""
+_FEW_NAMES: Final = 10
+
+
+def entity(found: Entity, where: Mapping[str, list[str]]) -> dict[str, Any]:
+    """One row of a list. `where` is what it is on, inside and in."""
+    return {
+        "name": found.name,
+        "class": found.class_,
+        **stands(found.pose),
+        **where,
+        **called(found),
+    }
+
+
+def called(found: Entity) -> dict[str, Any]:
+    """What it is called, if it is."""
+    if not found.preferred_reference:
+        return {}
+    return said(found.preferred_reference, found.reference_provenance)
+
+
+def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """An entity: the main facts, and the others one by one."""
+    head: dict[str, Any] = {"name": found.name, "class": found.class_, **stands(found.pose)}
+    if found.size_m is not None:
+        head["size"] = metres(found.size_m)
+    if found.body is not None and found.body.status not in ("present", "none", "unknown"):
+        head["body"] = found.body.status
+    head |= {kind: True for kind in ("place", "fixed") if getattr(found, kind)}
+    head["changed"] = {
+        "commit": found.provenance.commit,
+        "by": who(found.provenance.source, found.provenance.agent),
+        "when": when(found.provenance.stamp_ns),
+    }
+    return head, list(_facts(found))
+
+
+def _facts(found: Described) -> Iterator[dict[str, Any]]:
+    for relation in found.whereabouts:
+        yield {"where": relation.text}
+    for relation in found.denied:
+        yield {"not_so": relation.text}
+    for text in found.withheld:
+        yield {"withheld": text}
+    if found.on_nothing:
+        yield {"where": found.on_nothing}
+    for types in _by_tens(found.types):
+        yield {"types": types}
+    by = found.reference_provenance
+    for reference in (found.preferred_reference, *found.alternative_references):
+        if reference:
+            yield {"called": said(reference, by)}
+    for name, stated in found.properties.items():
+        values = stated if isinstance(stated, tuple) else (stated,)
+        yield {"property": name, "said": [changes.value_in_words(value) for value in values]}
+    if found.conflict:
+        yield {"conflict": said(found.conflict, "perception")}
+
+
+def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    for start in range(0, len(names), _FEW_NAMES):
+        yield names[start : start + _FEW_NAMES]
+
+
+def relation(found: Relation) -> dict[str, Any]:
+    """One measured relation."""
+    row: dict[str, Any] = {"relation": found.relation, "other": found.object, "fact": found.text}
+    if found.and_object is not None:
+        row["and"] = found.and_object
+    return row if found.holds else {**row, "holds": False}
+
+
+def commit(found: LoggedCommit) -> dict[str, Any]:
+    """One commit of the history; its reason and what it changed are its author's words."""
+    by_name: dict[str, list[changes.Change]] = {}
+    for change in found.changes:
+        by_name.setdefault(change.name, []).append(change)
+    told = [f"{name}: {changes.in_words(of)}" for name, of in list(by_name.items())[:_FEW_NAMES]]
+    touched = [*found.changed, *found.removed]
+    rest = len(touched) - len(told)
+    return {
+        "commit": found.seq,
+        "when": when(found.stamp_ns),
+        "by": who(found.source, found.agent),
+        **({"verb": found.verb} if found.verb else {}),
+        **({"undoes": found.undoes} if found.undoes else {}),
+        "said": {"reason": found.reason, "changes": told},
+        **({"and_others": rest} if rest > 0 else {}),
+    }
+
+
+def difference(found: Difference) -> Iterator[dict[str, Any]]:
+    """What is otherwise, entity by entity: what was said of it, and what is measured."""
+    names = dict.fromkeys([*(c.name for c in found.changes), *(r.subject for r in found.relations)])
+    for name in sorted(names):
+        of = [change for change in found.changes if change.name == name]
+        measured = [relation.text for relation in found.relations if relation.subject == name]
+        yield {
+            "name": name,
+            **({"said": changes.in_words(of)} if of else {}),
+            **({"facts": measured} if measured else {}),
+        }
+
+
+def solution(row: Row) -> list[Any]:
+    """A row of a query's answer: IRIs with prefixes, numbers and truth values plain, texts under `said`."""
+    return [_value(term) for term in row]
+
+
+def _value(term: Term | None) -> Any:
+    if term is None:
+        return None
+    if not term.startswith('"'):
+        return spoken(term)
+    kind, lexical = v.local_name(v.datatype_of(term)), v.lexical(term)
+    if kind == "boolean":
+        return lexical in ("true", "1")
+    if kind in ("float", "double", "decimal", "integer", "int", "long", "nonNegativeInteger"):
+        return _number(lexical)
+    return {"said": lexical}
+
+
+def _number(lexical: str) -> Any:
+    for read in (int, float):
+        try:
+            number = read(lexical)
+        except ValueError:
+            continue
+        return number if abs(number) < float("inf") else {"said": lexical}
+    return {"said": lexical}
+
+
+def places_of(rows: Iterable[Row]) -> dict[str, dict[str, list[str]]]:
+    """Of rows entity, relation, other: by entity, what it is `on`, `inside` and `in`, sorted by name."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for subject, predicate, other in sorted((s or "", p or "", o or "") for s, p, o in rows):
+        kind = PLACED.get(v.local_name(predicate))
+        if kind is not None and other:
+            found.setdefault(v.entity_name(subject), {}).setdefault(kind, []).append(v.entity_name(other))
+    return found

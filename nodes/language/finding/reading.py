@@ -1,0 +1,129 @@
+"""The words of a text with what each may be; an unknown one is taken for the nearest that is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from rapidfuzz.distance import OSA
+
+from nodes.language.finding.known import MOST_WORDS, Nouns
+
+_UNKNOWN: Final = 3.0
+"""What a word costs that nobody knows; one that is mended costs as much as it was changed."""
+_VOICED: Final = {
+    "wh": "w",
+    "ph": "f",
+    "ck": "k",
+    "ea": "e",
+    "ee": "i",
+    "kn": "n",
+    "wr": "r",
+    "gh": "g",
+    "ch": "k",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """The words of a text in one language. senses: of each position, kind of word to length and value."""
+
+    nouns: Nouns
+    words: tuple[str, ...]
+    senses: tuple[Mapping[str, tuple[int, Any]], ...]
+    mended: tuple[tuple[str, str], ...]  # what was said, and what it was taken for
+    cost: float  # the less, the rather it is in this language
+
+
+def read(text: str, nouns: Nouns) -> Reading:
+    """A text as words of one language."""
+    words = nouns.describing.split(text)
+    first = _senses(words, nouns)
+    known = [False] * len(words)
+    for i, senses in enumerate(first):
+        for length, _ in senses.values():
+            known[i : i + length] = [True] * length
+    mended: dict[str, str] = {}
+    cost = 0.0
+    for i, word in enumerate(words):
+        if known[i] or word.isdigit():
+            continue
+        better = nearest(word, nouns)
+        if better is None:
+            cost += _UNKNOWN
+        else:
+            mended[word] = better
+            words[i] = better
+            cost += 1.0
+    return Reading(
+        nouns, tuple(words), _senses(words, nouns) if mended else first, tuple(mended.items()), cost
+    )
+
+
+def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any]], ...]:
+    describing, bases = nouns.describing, [nouns.describing.base(word) for word in words]
+    found: list[dict[str, tuple[int, Any]]] = []
+    for i in range(len(words)):
+        senses: dict[str, tuple[int, Any]] = {}
+        for length in range(1, min(max(describing.longest, MOST_WORDS), len(words) - i) + 1):
+            for kind, value in describing.sense(tuple(words[i : i + length])).items():
+                senses[kind] = (length, value)
+            key = " ".join(bases[i : i + length])
+            if key in nouns.qualities:
+                senses["quality"] = (length, frozenset(nouns.qualities[key]))
+            if length == 1 and _affords(found, i) and any(form in nouns.actions for form in forms(words[i])):
+                senses["action"] = (1, None)
+            for form in (key, "".join(bases[i : i + length])):
+                if length <= MOST_WORDS and nouns.is_noun(form):
+                    senses["noun"] = (length, form)
+                    senses[f"noun{length}"] = (length, form)
+                    break
+        if words[i].isdecimal() and len(words[i]) < 4:
+            senses["numbers"] = (1, int(words[i]))
+        found.append(senses)
+    return tuple(found)
+
+
+def nearest(word: str, nouns: Nouns) -> str | None:
+    """The known word that was meant by one that is not: a letter or two off, or one that sounds alike.
+
+    Words that things of the map are called by come before those of the TBox alone.
+    """
+    if len(word) < 3 or not word.isalpha():
+        return None
+    base, sound = nouns.describing.base(word), _sound(word)
+    most = 1 if len(word) < 7 else 2
+    best: tuple[float, int, str] | None = None
+    for known, count in nouns.words.items():
+        if abs(len(known) - len(base)) > most or len(known) < 3:
+            continue
+        off = float(OSA.distance(base, known, score_cutoff=most))
+        if off > most:
+            continue
+        if _sound(known) == sound:
+            off -= 0.5
+        if len(known) < 5 and off >= 1.0 and known[0] != base[0]:
+            continue
+        found = (off, -min(count, 1), known)
+        best = found if best is None else min(best, found)
+    return None if best is None else best[2]
+
+
+def _affords(senses: Sequence[Mapping[str, tuple[int, Any]]], i: int) -> bool:
+    """Whether what is before word i says that it is something to be done: to, for, da."""
+    return any("afford" in before and j + before["afford"][0] == i for j, before in enumerate(senses))
+
+
+def forms(verb: str) -> Iterator[str]:
+    """What a verb may look like in the label of an affordance: itself, or with *-ing*."""
+    yield verb
+    yield f"{verb}ing"
+    yield f"{verb[:-1]}ing"
+    yield f"{verb}{verb[-1]}ing"
+
+
+def _sound(word: str) -> str:
+    for written, voiced in _VOICED.items():
+        word = word.replace(written, voiced)
+    return word

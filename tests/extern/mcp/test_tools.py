@@ -1,0 +1,88 @@
+import json
+
+import pytest
+
+from nodes.extern.mcp import arguments
+from nodes.extern.mcp.answers import Answer
+from nodes.extern.mcp.rate import Rate
+from nodes.extern.mcp.tools import READING, Tool, Tools, complaint
+from schemas import errors
+from schemas.commands import COMMANDS
+
+ECHO = Tool("echo", "Says what it is given.", arguments.Get, lambda _, asked: told(asked))
+
+
+def told(asked):
+    return Answer(first=1, last=1, head={"name": asked.name})
+
+
+def tools(**options):
+    return Tools(None, (ECHO,), **options)
+
+
+def test_a_tool_is_called_by_name_with_its_arguments():
+    assert json.loads(tools().call("echo", {"name": "cup1"}).text)["name"] == "cup1"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({}, "echo: name is missing"),
+        ({"name": "a", "nmae": 1}, "echo: there is no field 'nmae'; did you mean name?"),
+        ({"name": 7}, "echo: name must be a text"),
+        ({"name": "x" * 1001}, "up to 1000 characters"),
+        ({"name": ["a"]}, "echo: name must be a text"),
+        ({"name": None}, "echo: name must be a text"),
+        ({"name": "a", "cursor": "nonsense"}, "no cursor"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_sentence(arguments, sentence):
+    with pytest.raises(errors.BadRequest, match=sentence.replace("?", r"\?")):
+        tools().call("echo", arguments)
+
+
+def test_an_unknown_tool_is_named_with_those_that_there_are():
+    with pytest.raises(errors.UnknownVerb, match="there is no tool 'lst'; did you mean list"):
+        tools().call("lst", {})
+    with pytest.raises(errors.UnknownVerb, match="there are: overview, list"):
+        tools().call("x" * 5000, {})
+
+
+def test_a_thousand_calls_at_once_are_bounded_and_the_rest_told_when_to_come_again():
+    served, refused = 0, []
+    own = tools(rate=Rate(20.0, 60.0))
+    for _ in range(1000):
+        try:
+            own.call("echo", {"name": "a"})
+            served += 1
+        except errors.Busy as error:
+            refused.append(error)
+    assert 60 <= served < 200
+    assert all(0.0 < error.again_s <= 0.06 for error in refused)
+    assert json.loads(complaint(refused[0]))["again_s"] == pytest.approx(refused[0].again_s, abs=0.01)
+
+
+def test_a_complaint_is_short_whatever_was_given():
+    assert len(complaint(errors.BadRequest("no " * 10_000))) < 4000
+
+
+def test_tools_that_read_say_so_and_none_changes():
+    assert not any(tool.changes for tool in READING)
+
+
+def test_every_tool_is_described_and_has_a_schema_without_references():
+    for tool in READING:
+        schema = tool.schema
+        assert schema["type"] == "object"
+        assert schema["additionalProperties"] is False
+        assert "$ref" not in json.dumps(schema)
+        assert 40 < len(tool.description) < 400, tool.name
+        for name, field in schema["properties"].items():
+            assert "description" in field or "enum" in field or "anyOf" in field or name, name
+
+
+@pytest.mark.parametrize("name", ["list", "get", "relations", "explain", "history", "diff", "when"])
+def test_arguments_are_named_as_the_fields_of_the_command(name):
+    tool = next(tool for tool in READING if tool.name == name)
+    fields = set(COMMANDS[name].__struct_encode_fields__)
+    assert set(tool.schema["properties"]) - {"cursor"} <= fields
