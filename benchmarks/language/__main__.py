@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from benchmarks.language import baseline, trials
+from benchmarks.language import baseline, finding, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
 from nodes.language.interpretation import shipped
@@ -56,6 +56,7 @@ def rows(examples: list[Example], ablations: bool) -> list[Row]:
     found += _rows("baseline", scores(baseline.pairs(trials.folds(examples))))
     _, ms = trials.read(examples, shipped())
     found.append(Row("a sentence, p50", ms, "ms", 5, 2))
+    found += finding.rows()
     if ablations:
         found += _ablations(examples)
     return found
@@ -108,12 +109,15 @@ def main() -> None:
     parser.add_argument("--ablations", action="store_true", help="also what each part earns")
     parser.add_argument("--evaluate", type=Path, metavar="DIR", help="read these .hrc files with what ships")
     parser.add_argument("--predictions", type=Path, metavar="FILE", help="where to write what was understood")
+    parser.add_argument("--find", action="store_true", help="only how well things are found")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
     if (given.evaluate is None) != (given.predictions is None):
         parser.error("--evaluate DIR and --predictions FILE belong together")
     if given.evaluate is not None:
         found = _rows(str(given.evaluate), _evaluate(given.evaluate, given.predictions))
+    elif given.find:
+        found = finding.rows()
     else:
         found = rows(corpus.read(given.data), given.ablations)
     print(lines(found))
