@@ -32,7 +32,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Found, Understood
+from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -322,10 +322,24 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
     other: Word
 
 
+class Tell(Command[Account], frozen=True, tag="tell"):
+    """What is there, in a text of at most so many `words`: in the map, in a place, or of a thing.
+
+    What matters most is said first, like things are counted together, and what is left out is said to be.
+    """
+
+    name: Word | None = None
+    words: Annotated[int, Meta(ge=20, le=5000)] = 150
+
+
 class Understand(Command[Understood], frozen=True, tag="understand"):
-    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+    """What a command in words asks for: frames, and which entities of the map fill their roles.
+
+    Without a `language` its words tell which one it is in.
+    """
 
     text: Text
+    language: Language | None = None
 
 
 class Find(Command[Found], frozen=True, tag="find"):

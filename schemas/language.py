@@ -6,6 +6,12 @@ from typing import Literal
 
 from msgspec import Struct, field
 
+Language = Literal["english", "italian"]
+"""The languages in which commands are understood."""
+
+Mood = Literal["command", "question", "past"]
+"""What a sentence is said for; statements of what is (`this is the kitchen`) count as commands."""
+
 
 class Argument(Struct, frozen=True):
     """What fills a role. Words count from 1.
@@ -48,13 +54,28 @@ class Grounded(Struct, frozen=True):
     entity: str
 
 
+class Account(Struct, frozen=True):
+    """What is there after a commit, as a text of so many words, which names all but `left_out` things."""
+
+    text: str
+    words: int
+    left_out: int
+    commit: int
+
+
 class Understood(Struct, frozen=True):
-    """A command as it was understood; `unknown` are words used as verbs that nobody has taught."""
+    """A command as it was understood.
+
+    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
+    `mood` other than "command" says why there are no frames: something is asked, or told of the past.
+    """
 
     words: tuple[str, ...]
     frames: tuple[Frame, ...]
     groundings: tuple[Grounded, ...]
     unknown: tuple[str, ...] = ()
+    language: Language = "english"
+    mood: Mood = "command"
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -10,6 +10,7 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers.accounts import Accounts
 from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
@@ -42,6 +43,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Tell,
     Understand,
     WasWhen,
     Watch,
@@ -82,6 +84,7 @@ class Asking:
         self._then = whereabouts.Then(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""
+        self._accounts = Accounts(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
 
     def handlers(self) -> dict[str, Handler]:
@@ -103,6 +106,7 @@ class Asking:
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
+            Tell.answered_by(self._accounts.tell),
             Find.answered_by(self._finding.find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
