@@ -73,6 +73,9 @@ def of_wire_in_turn(wired: Wired, size: int) -> list[Row]:
         said = f"over Zenoh: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
         rows.append(Row(said, pair.ratio, "times", reach, aim))
         rows.append(Row(f"over Zenoh: {what}, {size}, p50", pair.now, "ms", None, 1.0))
+    for what, least in wired.floor.items():
+        rows.append(Row(f"over Zenoh: {what}: the chain alone, and the disk, p50", least.took_ms, "ms"))
+        rows.append(Row(f"CPU time: {what}: the chain alone, and the disk", least.cpu_ms, "ms"))
     for what, pair in wired.cpu.items():
         said = f"CPU time: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
         rows.append(Row(said, pair.ratio, "times"))
