@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
@@ -86,6 +87,9 @@ class Asking:
         """To be told of what perception sees."""
         self._accounts = Accounts(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
+        self._second_opinions = FairPool(1, asker)
+        """Of owlrl, which take seconds to minutes: nothing else waits behind them."""
+        self._is_over = threading.Event()
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -254,11 +258,12 @@ class Asking:
         self._map.follow_places()
         held, denied = self._map.reasoner.held(), self._now.denied()
         withheld, crowds = tuple(answers.withheld(self._map)), self._map.places.crowds()
-        return self._aside.submit(
-            lambda: structs.replace(
-                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
-            )
-        )
+
+        def check() -> Checked:
+            checked = answers.check(held.asserted, query.engine, self._is_over.is_set)
+            return structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+
+        return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """A query, evaluated beside the node's own work; of the past, in a process of its own."""
@@ -287,4 +292,6 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
+        self._is_over.set()
+        self._second_opinions.close()
         self._aside.close()
