@@ -33,7 +33,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Understood
+from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -338,10 +338,37 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
     other: Word
 
 
+class Tell(Command[Account], frozen=True, tag="tell"):
+    """What is there, in a text of at most so many `words`: in the map, in a place, or of a thing.
+
+    What matters most is said first, like things are counted together, and what is left out is said to be.
+    """
+
+    name: Word | None = None
+    words: Annotated[int, Meta(ge=20, le=5000)] = 150
+
+
 class Understand(Command[Understood], frozen=True, tag="understand"):
-    """What a command in words asks for: frames, and which entities of the map fill their roles."""
+    """What a command in words asks for: frames, and which entities of the map fill their roles.
+
+    Without a `language` its words tell which one it is in.
+    """
 
     text: Text
+    language: Language | None = None
+
+
+class Find(Command[Found], frozen=True, tag="find"):
+    """Which entities a noun phrase describes: "the red cup on the kitchen table".
+
+    `viewer` (a name, reference or class that only one thing has) or `viewpoint` is who sees what is left,
+    right or behind; `asker` is who says "my".
+    """
+
+    text: Text
+    viewer: Word | None = None
+    viewpoint: ViewPoint | None = None
+    asker: Word | None = None
 
 
 class Export(Command[Document], frozen=True, tag="export"):

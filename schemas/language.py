@@ -1,8 +1,16 @@
-"""What a command in words means: frames, what fills their roles, and which entities those are."""
+"""What words mean: commands as frames, roles and entities, and descriptions as the entities that fit them."""
 
 from __future__ import annotations
 
-from msgspec import Struct
+from typing import Literal
+
+from msgspec import Struct, field
+
+Language = Literal["english", "italian"]
+"""The languages in which commands are understood."""
+
+Mood = Literal["command", "question", "past"]
+"""What a sentence is said for; statements of what is (`this is the kitchen`) count as commands."""
 
 
 class Argument(Struct, frozen=True):
@@ -46,10 +54,56 @@ class Grounded(Struct, frozen=True):
     entity: str
 
 
+class Account(Struct, frozen=True):
+    """What is there after a commit, as a text of so many words, which names all but `left_out` things."""
+
+    text: str
+    words: int
+    left_out: int
+    commit: int
+
+
 class Understood(Struct, frozen=True):
-    """A command as it was understood; `unknown` are words used as verbs that nobody has taught."""
+    """A command as it was understood.
+
+    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
+    `mood` other than "command" says why there are no frames: something is asked, or told of the past.
+    """
 
     words: tuple[str, ...]
     frames: tuple[Frame, ...]
     groundings: tuple[Grounded, ...]
     unknown: tuple[str, ...] = ()
+    language: Language = "english"
+    mood: Mood = "command"
+
+
+class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An entity that a description may mean, and what of the description fits it, a clause each."""
+
+    entity: str
+    class_: str = field(name="class")
+    called: str
+    reasons: tuple[str, ...] = ()
+
+
+Outcome = Literal["one", "several", "ambiguous", "none"]
+
+
+class Found(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What a description means in the map, as of commit `seq`.
+
+    `candidates` are what is meant (*one*, *several*) or may be (*ambiguous*, with the `question` to ask
+    back), the best first; *none* has none. `text` says the outcome in a sentence. `nearest` fit all but one
+    part of the description; `gone` says when such a thing was last there. `read_as` pairs each word that was
+    taken for another, mistyped or misheard, with that.
+    """
+
+    outcome: Outcome
+    candidates: tuple[Candidate, ...] = ()
+    text: str = ""
+    question: str = ""
+    nearest: tuple[Candidate, ...] = ()
+    gone: tuple[str, ...] = ()
+    read_as: tuple[tuple[str, str], ...] = ()
+    seq: int = 0

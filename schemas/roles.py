@@ -34,6 +34,8 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "could",
             "relations",
             "understand",
+            "tell",
+            "find",
             "diff",
             "when",
             "export",

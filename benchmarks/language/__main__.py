@@ -1,16 +1,14 @@
-"""`python -m benchmarks.language [--ablations]`, or with `--evaluate DIR --predictions FILE`."""
+"""`python -m benchmarks.language [--ablations | --errors | --find | --evaluate DIR --predictions FILE]`."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import os
-from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from benchmarks.language import baseline, trials
+from benchmarks.language import ablations, baseline, errors, finding, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
 from nodes.language.interpretation import shipped
@@ -49,30 +47,18 @@ def _rows(title: str, found: Scores, reach: tuple[float, ...] | None = None) -> 
     ]
 
 
-def rows(examples: list[Example], ablations: bool) -> list[Row]:
+def rows(examples: list[Example], with_ablations: bool) -> list[Row]:
     """All figures; whatever is read was not learnt from."""
     found = _rows("ten folds", scores(trials.trial(trials.folds(examples))), _REACH["folds"])
     found += _rows("a folder left out", scores(trials.trial(trials.groups(examples))), _REACH["groups"])
     found += _rows("baseline", scores(baseline.pairs(trials.folds(examples))))
     _, ms = trials.read(examples, shipped())
     found.append(Row("a sentence, p50", ms, "ms", 5, 2))
-    if ablations:
-        found += _ablations(examples)
+    found += _rows("Italian", scores(trials.italian(examples)))
+    found += finding.rows()
+    if with_ablations:
+        found += ablations.rows(examples)
     return found
-
-
-def _ablations(examples: list[Example]) -> Iterable[Row]:
-    def without_places(example: Example) -> Example:
-        return replace(example, things=tuple(replace(thing, at=None) for thing in example.things))
-
-    for name, splits in (("ten folds", trials.folds), ("a folder left out", trials.groups)):
-        for title, options in (
-            ("without patterns of ours", {"with_made": False}),
-            ("without the corpus", {"with_corpus": False}),
-            ("without where things are", {"changed": without_places}),
-        ):
-            whole = scores(trials.trial(splits(examples), **options)).whole  # type: ignore[arg-type]
-            yield Row(f"{name}, {title}: whole command", whole, "", more=True)
 
 
 def _evaluate(folder: Path, predictions: Path) -> Scores:
@@ -106,14 +92,22 @@ def main() -> None:
     data = Path(os.environ.get("SEMMAP_DATA", "../shared/data")) / "huric"
     parser.add_argument("--data", type=Path, default=data, help="the corpus: a folder of .hrc files")
     parser.add_argument("--ablations", action="store_true", help="also what each part earns")
+    parser.add_argument("--errors", action="store_true", help="only the commands that went wrong, grouped")
     parser.add_argument("--evaluate", type=Path, metavar="DIR", help="read these .hrc files with what ships")
     parser.add_argument("--predictions", type=Path, metavar="FILE", help="where to write what was understood")
+    parser.add_argument("--find", action="store_true", help="only how well things are found")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
     if (given.evaluate is None) != (given.predictions is None):
         parser.error("--evaluate DIR and --predictions FILE belong together")
+    if given.errors:
+        wrong = errors.groups(trials.trial(trials.groups(corpus.read(given.data))))
+        print(*errors.lines(wrong), sep="\n")
+        return
     if given.evaluate is not None:
         found = _rows(str(given.evaluate), _evaluate(given.evaluate, given.predictions))
+    elif given.find:
+        found = finding.rows()
     else:
         found = rows(corpus.read(given.data), given.ablations)
     print(lines(found))

@@ -32,7 +32,7 @@ def scores(pairs: Iterable[tuple[Example, Understood]]) -> Scores:
     """A frame is right by its name and a word of its verb; its arguments are right by role, and span or head.
 
     A span is right from first to last word, a head if the word is the same; where none was annotated any word
-    A span is right from first to last word, a head if the word is the same; where none was said any word
+    of the argument is right. Groundings are of words whose entity is in the map. A command
     is whole if frames, roles and heads are right, none is too many, and every head's entity is right.
     """
     n: Counter[str] = Counter()
@@ -50,15 +50,15 @@ def scores(pairs: Iterable[tuple[Example, Understood]]) -> Scores:
 
 
 def _count(n: Counter[str], example: Example, understood: Understood) -> None:
-    matched = _matched(example.frames, understood.frames)
-    whole = len(matched) == len(example.frames) == len(understood.frames)
+    pairs = matched(example.frames, understood.frames)
+    whole = len(pairs) == len(example.frames) == len(understood.frames)
     n["commands"] += 1
-    n["frames"] += len(matched)
+    n["frames"] += len(pairs)
     n["frames seen"] += len(example.frames)
     n["frames said"] += len(understood.frames)
     n["arguments seen"] += sum(len(frame.arguments) for frame in example.frames)
     n["arguments said"] += sum(len(frame.arguments) for frame in understood.frames)
-    for seen, said in matched:
+    for seen, said in pairs:
         spans = Counter((role.name, (role.first, role.last)) for role in seen.arguments)
         n["spans"] += sum((spans & Counter((a.role, a.span) for a in said.arguments)).values())
         heads = _heads(seen, said)
@@ -79,7 +79,13 @@ def _count(n: Counter[str], example: Example, understood: Understood) -> None:
     n["whole"] += whole and all(said_of.get(token) == name for token, name in gold.items() if token in wanted)
 
 
-def _matched(seen: Iterable[Filled], said: Iterable[Frame]) -> list[tuple[Filled, Frame]]:
+def is_whole(example: Example, understood: Understood) -> bool:
+    """Whether a command was understood without any error."""
+    return scores([(example, understood)]).whole == 1.0
+
+
+def matched(seen: Iterable[Filled], said: Iterable[Frame]) -> list[tuple[Filled, Frame]]:
+    """The annotated frames that were found, each with what was understood of it."""
     left = list(said)
     pairs = []
     for frame in seen:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import random
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 from nodes.language import lexicon
 from nodes.language.grounding import Scene, Thing, scene
-from nodes.language.interpretation import Interpreter
+from nodes.language.interpretation import Interpreter, Seen, shipped
+from nodes.language.vocabulary import Vocabulary
 from nodes.training.language import made
 from nodes.training.language.__main__ import TIMES_MADE
-from nodes.training.language.corpus import Example
+from nodes.training.language.corpus import Example, Filled, Role
 from nodes.training.language.household import household
 from nodes.training.language.learning import learn
 from schemas.language import Understood
@@ -42,17 +47,24 @@ def trial(
     with_made: bool = True,
     with_corpus: bool = True,
     changed: Callable[[Example], Example] = lambda example: example,
+    seen: Seen = lambda features: features,
+    known: Vocabulary | None = None,
 ) -> Pairs:
-    """What is understood of all that is read. changed: what is done to every example, also while learning."""
-    known = household()
+    """What is understood of all that is read, by what learnt from the rest.
+
+    changed, seen: what is done to every example, and to the features of its words, also while learning.
+    known: what things are called, the household TBox's classes and our synonyms unless said otherwise.
+    """
+    known = known or household()
     own = [changed(e) for e in made.examples(TIMES_MADE, known)] if with_made else []
     pairs: Pairs = []
     with tempfile.TemporaryDirectory() as folder:
         frames, fillers = Path(folder) / "frames", Path(folder) / "roles"
         for learnt_from, kept in splits:
-            learn([*(map(changed, learnt_from) if with_corpus else ()), *own], known, frames, fillers)
-            interpreter = Interpreter(str(frames), str(fillers))
-            pairs += [(e, interpreter.read(e.words, scene_of(changed(e)))) for e in kept]
+            examples = [*(map(changed, learnt_from) if with_corpus else ()), *own]
+            learn(examples, known, frames, fillers, seen=seen)
+            interpreter = Interpreter(str(frames), str(fillers), seen=seen)
+            pairs += [(e, interpreter.read(e.words, scene_of(changed(e), known=known))) for e in kept]
     return pairs
 
 
@@ -69,7 +81,33 @@ def read(examples: Sequence[Example], interpreter: Interpreter) -> tuple[Pairs, 
     return pairs, median(times)
 
 
-def scene_of(example: Example, seed: int = 0) -> Scene:
+def scene_of(example: Example, seed: int = 0, known: Vocabulary | None = None) -> Scene:
     """The map of an example, its entities in no order: that of their names tells which are spoken of."""
     things: list[Thing] = random.Random(f"{seed} {example.name}").sample(example.things, len(example.things))
-    return scene(things, household(), lexicon.load())
+    return scene(things, known or household(), lexicon.load())
+
+
+def italian(corpus: Sequence[Example]) -> Pairs:
+    """What ships of the Italian commands of `italian.json`, each in the map of the corpus's command."""
+    by_name = {example.name: example for example in corpus}
+    text = (resources.files(__package__) / "italian.json").read_text("utf-8")
+    pairs: Pairs = []
+    for row in json.loads(text)["commands"]:
+        example = _italian(row, by_name[row["id"]])
+        pairs.append((example, shipped().understand(row["text"], scene_of(example))))
+    return pairs
+
+
+def _italian(row: dict[str, Any], original: Example) -> Example:
+    frames = tuple(
+        Filled(
+            frame["name"],
+            tuple(frame["verb"]),
+            tuple(Role(a["role"], a["span"][0], a["span"][1], a["head"]) for a in frame["arguments"]),
+        )
+        for frame in row["frames"]
+    )
+    groundings = tuple(
+        (a["head"], a["entity"]) for frame in row["frames"] for a in frame["arguments"] if "entity" in a
+    )
+    return replace(original, words=tuple(row["words"].split()), frames=frames, groundings=groundings)

@@ -87,6 +87,8 @@ class Coordinator:
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
             c.Understand.answered_by(relay),
+            c.Tell.answered_by(relay),
+            c.Find.answered_by(relay),
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
             c.Export.answered_by(relay),

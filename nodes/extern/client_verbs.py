@@ -270,6 +270,8 @@ class Verbs:
     could = Verb(commands.Could)
     relations = Verb(commands.Relations)
     understand = Verb(commands.Understand)
+    tell = Verb(commands.Tell)
+    find = Verb(commands.Find)
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
     export = Verb(commands.Export)

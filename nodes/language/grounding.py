@@ -16,12 +16,13 @@ _TELLING = ("noun", "adj", "pron", "num")
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """An entity as a listener knows it. at: metres, in the map."""
+    """An entity as a listener knows it. at: metres, in the map; types: its inferred classes."""
 
     name: str
     class_name: str
     references: tuple[str, ...] = ()
     at: tuple[float, float, float] | None = None
+    types: tuple[str, ...] = ()
 
 
 Things = tuple[Thing, ...]
@@ -35,14 +36,26 @@ class Scene:
     of_class: Mapping[str, Things]  # class, its subclasses included
     only: Mapping[str, Things]  # class, without its subclasses
     vocabulary: Vocabulary
+    things: Mapping[str, Thing]  # by name
+
+    def kinds_of(self, name: str) -> frozenset[str]:
+        """The classes of the entity of that name, superclasses and inferred ones too; none for no entity."""
+        thing = self.things.get(name)
+        if thing is None:
+            return frozenset()
+        above = self.vocabulary.above
+        classes = (thing.class_name, *thing.types)
+        return frozenset(classes).union(*(above.get(c, ()) for c in classes))
 
 
 def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene:
     """The things of a map, to be looked up. The order in which they come and are named does not matter."""
+    named: dict[str, Thing] = {}
     called: dict[str, dict[Thing, None]] = {}
     of_class: dict[str, list[Thing]] = {}
     only: dict[str, list[Thing]] = {}
     for thing in things:
+        named[thing.name] = thing
         for text in (*thing.references, thing.class_name):
             said = spoken(text)
             for form in (said, based(said, lexicon), said.replace(" ", "")):
@@ -56,6 +69,7 @@ def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene
         {name: tuple(found) for name, found in of_class.items()},
         {name: tuple(found) for name, found in only.items()},
         known,
+        named,
     )
 
 

@@ -4,63 +4,72 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from typing import Final
 
 import pycrfsuite
 
-from nodes.language import grounding, lexicon, predicates, roles, slots
+from nodes.language import grounding, italian, languages, lexicon, moods, predicates, pronouns, roles, slots
 from nodes.language.grounding import Scene, Thing, Things
 from nodes.language.sentence import Sentence, sentence
-from nodes.language.words import split
-from schemas.language import Argument, Frame, Grounded, Understood
+from nodes.language.words import PartOfSpeech, split
+from schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
-_DOERS: Final = ("Agent", "Perceiver", "Cognizer", "Inspector")
-_ACTED_ON: Final = (
-    *("Theme", "Item", "Device", "Entity", "Sought_entity", "Phenomenon", "Containing_object", "Ground"),
-    "Container_portal",
-)
+Seen = Callable[[list[list[str]]], list[list[str]]]
 _Span = tuple[str, int, int]  # slot, index of the first and of the last word
 
 
 class Interpreter:
     """Reads commands with what was learnt of a language. One thread at a time."""
 
-    def __init__(self, frames: str, roles: str, language: str = "english") -> None:
-        """frames, roles: paths of the learnt taggers, as `make train-language` writes them."""
+    def __init__(
+        self, frames: str, roles: str, language: str = "english", seen: Seen = lambda features: features
+    ) -> None:
+        """frames, roles: paths of the learnt taggers, as `make train-language` writes them.
+
+        seen: what is left of the features of each word; the same as was given for learning.
+        """
         self._lexicon = lexicon.load(language)
+        self._seen = seen
         self._frames, self._roles = pycrfsuite.Tagger(), pycrfsuite.Tagger()
         self._frames.open(frames)
         self._roles.open(roles)
 
-    def understand(self, text: str, scene: Scene) -> Understood:
-        """The frames of a command, in the order of their verbs, with their arguments grounded in a map."""
-        return self.read(split(text), scene)
+    def understand(self, text: str, scene: Scene, language: Language | None = None) -> Understood:
+        """The frames of a command, in the order of their verbs, with their arguments grounded in a map.
 
-    def read(self, texts: Sequence[str], scene: Scene) -> Understood:
-        """The same of words that are split already, in lower case."""
-        s = sentence(texts, scene, self._lexicon)
-        calls = self._calls(s) if texts else []
+        language: what it is said in; without one its words tell.
+        """
+        if (language or languages.language_of(text)) == "english":
+            return self.read(split(text), scene)
+        told = italian.gloss(text, scene)
+        return told.told_back(self.read(told.texts, scene, told.kinds), "italian")
+
+    def read(
+        self, texts: Sequence[str], scene: Scene, kinds: Sequence[PartOfSpeech | None] = ()
+    ) -> Understood:
+        """The same of lower-case English words. kinds: the parts of speech that are known."""
+        s = sentence(texts, scene, self._lexicon, kinds)
+        mood = moods.mood(s)
+        calls = self._calls(s) if texts and mood == "command" else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
         frames: list[Frame] = []
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
-            frames.append(_frame(s, name, (first, last), spans, frames))
-        unknown = (
-            word.text for i, word in enumerate(s.words) if word.kind == "verb" and not s.verb_frames(i)
-        )
-        return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown))
+            frames.append(_frame(s, name, (first, last), spans, frames, scene))
+        unknown = (word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
+        return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown), mood=mood)
 
     def _calls(self, s: Sentence) -> list[tuple[int, int, list[tuple[float, str]]]]:
         """Where frames are called for: first and last word, and the frames with their probabilities."""
-        self._frames.set(predicates.features(s))
+        self._frames.set(self._seen(predicates.features(s)))
         labels = self._frames.tag()
         calls: list[tuple[int, int, list[tuple[float, str]]]] = []
         for i, label in enumerate(labels):
-            if label == "O" or _is_unknown_verb(s, i):
+            if label == "O" or _is_unknown_verb(s, i) or moods.is_over(s, i):
                 continue
             if calls and calls[-1][1] == i - 1 and labels[i - 1] == label and not _is_new_verb(s, i):
                 calls[-1] = (calls[-1][0], i, calls[-1][2])
@@ -77,7 +86,7 @@ class Interpreter:
         """The frame that together with its roles is the most probable, and what fills its slots."""
         best: tuple[float, str, list[str]] | None = None
         for probability, name in found:
-            self._roles.set(roles.features(s, verb, name, others))
+            self._roles.set(self._seen(roles.features(s, verb, name, others)))
             labels = self._roles.tag()
             score = math.log(probability) + _WEIGHT_OF_ROLES * math.log(
                 max(self._roles.probability(labels), 1e-300)
@@ -127,7 +136,12 @@ def _spans(labels: Sequence[str]) -> list[_Span]:
 
 
 def _frame(
-    s: Sentence, name: str, verb: tuple[int, int], spans: Sequence[_Span], before: Sequence[Frame]
+    s: Sentence,
+    name: str,
+    verb: tuple[int, int],
+    spans: Sequence[_Span],
+    before: Sequence[Frame],
+    scene: Scene,
 ) -> Frame:
     arguments: list[Argument] = []
     for slot, first, last in spans:
@@ -137,7 +151,8 @@ def _frame(
         things = _chosen(s, first, last, k)
         entity = things[0].name if len(things) == 1 else None
         if s.branches[k] == "pronoun" and entity is None:
-            entity = _said_before(before, arguments, s.words[head].text)
+            phrase, said = s.phrases[k], s.words[head].text
+            entity = pronouns.antecedent(said, phrase.preposition, name, role, before, scene)
         arguments.append(
             Argument(
                 role,
@@ -174,16 +189,6 @@ def _chosen(s: Sentence, first: int, last: int, k: int) -> Things:
         return things
     nearest = min(grounding.distance(thing, beside[0]) for thing in things)
     return tuple(thing for thing in things if grounding.distance(thing, beside[0]) == nearest)
-
-
-def _said_before(frames: Sequence[Frame], arguments: Sequence[Argument], pronoun: str) -> str | None:
-    """What a pronoun stands for: the last thing acted on before it."""
-    if pronoun not in ("it", "them", "they", "one"):
-        return None
-    spoken_of = [*(argument for frame in frames for argument in frame.arguments), *arguments]
-    named = [a for a in reversed(spoken_of) if a.entity and a.role not in _DOERS]
-    acted_on = [a for a in named if a.role in _ACTED_ON]
-    return next((a.entity for a in (*acted_on, *named)), None)
 
 
 def _grounded(s: Sentence, frames: Sequence[Frame]) -> tuple[Grounded, ...]:

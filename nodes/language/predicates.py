@@ -35,8 +35,8 @@ def _of_word(s: Sentence, i: int) -> list[str]:
     return [
         *seen,
         *around,
-        *(f"{word.lemma}|{text}" for text in around),
-        *(f"{among}|{text}" for text in around),
+        *(f"v={word.lemma}|{text}" for text in around),
+        *(f"frames={among}|{text}" for text in around),
     ]
 
 
@@ -49,26 +49,26 @@ def _clause(s: Sentence, i: int) -> list[str]:
     seen = [f"shape={' '.join(shape[:4])}", f"first={shape[0] if shape else ''}"]
     seen += [f"npps={len(places)}", f"nnps={len(things)}"]
     if things:
-        seen.append(f"object={s.branches[things[0]]}")
+        seen.append(f"object kind={s.branches[things[0]]}")
     if len(things) > 1:
-        seen.append(f"object2={s.branches[things[0]]} {s.branches[things[1]]}")
+        seen.append(f"objects kinds={s.branches[things[0]]} {s.branches[things[1]]}")
     for k in places:
         preposition, branch = s.phrases[k].preposition, s.branches[k]
-        seen += [f"pp={preposition}", f"pp={preposition}:{branch}", f"ppb={branch}"]
+        seen += [f"pp={preposition}", f"pp={preposition} kind={branch}", f"pp kind={branch}"]
     if places:
         seen.append(f"lastpp={s.phrases[places[-1]].preposition}")
     if any(s.phrases[k].preposition in _GOALS for k in places):
-        seen.append("goal to")
+        seen.append("pp=goal")
     for k in after:
         for word in s.words[s.phrases[k].first : s.phrases[k].last + 1]:
             for kind in ("direction", "state", "manner", "speaker"):
                 if s.lexicon.is_a(word.text, kind) and word.kind != "prep":
-                    seen.append(f"has {kind}")
+                    seen.append(f"listed {kind}")
     if things and places:
         nearest = s.near(things[0], places[0])
         seen += [
-            f"np-pp {nearest}",
-            f"np-lastpp {s.near(things[0], places[-1])}",
-            f"np-pp {nearest} {len(places)}",
+            f"near={nearest}",
+            f"near last={s.near(things[0], places[-1])}",
+            f"near={nearest} npps={len(places)}",
         ]
     return seen

@@ -34,21 +34,21 @@ def _of_word(s: Sentence, i: int, verb: int, frame: str, others: Sequence[int], 
         f"pos={word.kind}",
         begin,
         f"{begin} prep={preposition}",
-        f"{begin} branch={branch}",
-        f"{begin} {preposition} {branch}",
-        where,
-        f"{begin} {where}",
-        f"{begin} {where} {preposition}",
+        f"{begin} kind={branch}",
+        f"{begin} prep={preposition} kind={branch}",
+        f"at={where}",
+        f"{begin} at={where}",
+        f"{begin} at={where} prep={preposition}",
         f"{begin} in={inside} steps={steps}",
-        f"{begin} in={inside} pps={places_before} nps={things_before} {preposition}",
+        f"{begin} in={inside} pps={places_before} nps={things_before} prep={preposition}",
         f"{begin} left={places_after} pps={places_before} nps={things_before}",
-        f"{begin} last={last} {preposition}",
+        f"{begin} last={last} prep={preposition}",
     ]
     if k:
         previous = s.phrases[k - 1]
         seen += [
-            f"{begin} prev={previous.preposition or previous.kind} {preposition}",
-            f"{begin} prevbranch={s.branches[k - 1]} {preposition}",
+            f"{begin} prevprep={previous.preposition or previous.kind} prep={preposition}",
+            f"{begin} prevkind={s.branches[k - 1]} prep={preposition}",
             f"{begin} prevw={s.words[phrase.first - 1].text}",
         ]
         if phrase.kind == "pp" and previous.names:
@@ -63,9 +63,9 @@ def _of_word(s: Sentence, i: int, verb: int, frame: str, others: Sequence[int], 
         seen.append(f"-1={s.words[i - 1].text}")
     for kind in ("direction", "state", "manner", "unit", "number"):
         if s.lexicon.is_a(word.text, kind):
-            seen.append(f"is {kind} {where}")
+            seen.append(f"listed {kind} at={where}")
     if i in others:
         seen.append("other verb")
     lemma = s.words[verb].lemma
-    with_verb = [f"{lemma}|{text}" for text in seen[2:6]]
+    with_verb = [f"v={lemma}|{text}" for text in seen[2:6]]
     return ["bias", f"frame={frame}", *seen, *(f"{frame}|{text}" for text in seen), *with_verb]

@@ -10,7 +10,7 @@ from nodes.language import grounding
 from nodes.language.grounding import Scene, Things
 from nodes.language.lexicon import Lexicon
 from nodes.language.phrases import Phrase, phrases
-from nodes.language.words import Word, based, tag
+from nodes.language.words import PartOfSpeech, Word, based, tag
 
 _NEAR_M = 1.5  # of what is nearer, one says where it is by the other
 
@@ -57,9 +57,11 @@ class Sentence:
         return self.lexicon.frames.get(lemma, ())
 
 
-def sentence(texts: Sequence[str], scene: Scene, lexicon: Lexicon) -> Sentence:
-    """Read a sentence. texts: its words in lower case."""
-    words = tag(texts, lexicon)
+def sentence(
+    texts: Sequence[str], scene: Scene, lexicon: Lexicon, kinds: Sequence[PartOfSpeech | None] = ()
+) -> Sentence:
+    """Read a sentence. texts: its words in lower case; kinds: their parts of speech where they are known."""
+    words = tag(texts, lexicon, kinds)
     found = phrases(words, lexicon)
     phrase_of = [k for k, phrase in enumerate(found) for _ in range(phrase.first, phrase.last + 1)]
     meant = [grounding.meant(phrase, words, scene, lexicon) if phrase.names else () for phrase in found]

@@ -62,14 +62,22 @@ def based(text: str, lexicon: Lexicon) -> str:
     return " ".join(lemma(word, lexicon) for word in text.split())
 
 
-def tag(texts: Sequence[str], lexicon: Lexicon) -> list[Word]:
-    """Words with their base forms and parts of speech. texts: lower-case words in order."""
+def tag(texts: Sequence[str], lexicon: Lexicon, kinds: Sequence[PartOfSpeech | None] = ()) -> list[Word]:
+    """Words with their base forms and parts of speech.
+
+    texts: lower-case words in order. kinds: the parts of speech that are known, None for each that is not.
+    """
     tagged: list[Word] = []
     for i, text in enumerate(texts):
-        kind = _kind(texts, i, tagged, lexicon)
+        kind = (kinds[i] if kinds else None) or _kind(texts, i, tagged, lexicon)
         base = _verb(text, lexicon) if kind == "verb" else lemma(text, lexicon)
         tagged.append(Word(text, base or text, kind))
     return tagged
+
+
+def is_verb(text: str, lexicon: Lexicon) -> bool:
+    """Whether a word may be a form of a verb of the lexicon."""
+    return bool(_verb(text, lexicon))
 
 
 def _verb(text: str, lexicon: Lexicon) -> str:

@@ -1,13 +1,16 @@
 """Scores of what was understood."""
 
 import json
+import re
 
 import pytest
 
 from benchmarks.language import __main__ as language
-from benchmarks.language import trials
+from benchmarks.language import ablations, errors, trials
 from benchmarks.language.scoring import scores
+from nodes.language import lexicon, predicates, roles
 from nodes.language.grounding import Thing
+from nodes.language.sentence import sentence
 from nodes.training.language import corpus
 from nodes.training.language.corpus import Example, Filled, Role
 from schemas.language import Argument, Frame, Grounded, Understood
@@ -73,3 +76,49 @@ def test_the_order_of_a_map_does_not_tell_what_is_meant():
     for example in examples:
         read = [interpreter.read(example.words, trials.scene_of(example, seed)) for seed in range(3)]
         assert read[0] == read[1] == read[2]
+
+
+def test_italian_commands_are_read_in_the_maps_of_their_originals():
+    pairs = trials.italian(corpus.read(data_folder() / "huric"))
+    assert len(pairs) == 60
+    assert all(example.words == understood.words for example, understood in pairs)
+    found = scores(pairs)
+    assert found.frames >= 0.95
+    assert found.heads >= 0.88
+    assert found.whole >= 0.7
+
+
+def test_errors_are_grouped_by_what_is_wrong_first():
+    wrong = Understood(WORDS, (Frame("Taking", (1,), (THEME,)),), GROUNDED)
+    other_words = Understood(
+        WORDS, (Frame("Bringing", (1,), (Argument("Theme", "book", (3, 3), 3, "book1"), TO_ME)),), GROUNDED
+    )
+    right = Understood(WORDS, (Frame("Bringing", (1,), (THEME, TO_ME)),), GROUNDED)
+    groups = errors.groups(
+        [(EXAMPLE, wrong), (EXAMPLE, right), (EXAMPLE, wrong), (EXAMPLE, Understood(WORDS, (), ()))]
+    )
+    assert [(group.title, len(group.commands)) for group in groups] == [
+        ("Taking or Bringing", 2),
+        ("a frame not found", 1),
+    ]
+    assert [g.title for g in errors.groups([(EXAMPLE, Understood(WORDS, (), GROUNDED))])] == [
+        "a frame not found"
+    ]
+    assert errors.groups([(EXAMPLE, other_words)]) == []  # the head is right, and with it the command
+    assert list(errors.lines(groups))[1] == "       take the book to me: is Bringing"
+
+
+def test_features_of_a_group_can_be_left_out():
+    seen = ablations.without(r"\bw=")
+    assert seen([["bias", "w=take", "Taking|w=take", "pos=verb"]]) == [["bias", "pos=verb"]]
+
+
+def test_every_group_of_features_is_of_some():
+    examples = corpus.read(data_folder() / "huric")[:60]
+    seen = set()
+    for example in examples:
+        s = sentence(example.words, trials.scene_of(example), lexicon.load())
+        for word in predicates.features(s) + roles.features(s, 0, "Taking", []):
+            seen.update(word)
+    for title, pattern in ablations.GROUPS.items():
+        assert any(re.search(pattern, name) for name in seen), title

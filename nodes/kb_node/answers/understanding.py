@@ -34,7 +34,7 @@ class Understanding:
             raise errors.BadRequest("there are no words in the text")
         if len(words) > _MOST_WORDS:
             raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
-        return shipped().read(words, self._there())
+        return shipped().understand(query.text, self._there(), query.language)
 
     def _there(self) -> Scene:
         """What there is to be spoken of, after the last commit."""
@@ -57,4 +57,4 @@ def _named(classes: ClassTable, known: lexicon.Lexicon) -> Vocabulary:
 def _thing(entity: Entity) -> Thing:
     references = filter(None, (entity.preferred_reference, *entity.alternative_references, entity.name))
     at = None if entity.pose is None else entity.pose.position_m
-    return Thing(entity.name, entity.class_, tuple(references), at)
+    return Thing(entity.name, entity.class_, tuple(references), at, entity.types)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
@@ -10,6 +11,8 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers.accounts import Accounts
+from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -32,6 +35,7 @@ from schemas.commands import (
     Diff,
     Explain,
     Export,
+    Find,
     Get,
     History,
     Infer,
@@ -40,6 +44,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Tell,
     Understand,
     WasWhen,
     Watch,
@@ -76,10 +81,15 @@ class Asking:
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self._understanding = Understanding(semantic_map)
+        self._finding = Finding(semantic_map)
         self._then = whereabouts.Then(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""
+        self._accounts = Accounts(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
+        self._second_opinions = FairPool(1, asker)
+        """Of owlrl, which take seconds to minutes: nothing else waits behind them."""
+        self._is_over = threading.Event()
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -100,6 +110,8 @@ class Asking:
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
+            Tell.answered_by(self._accounts.tell),
+            Find.answered_by(self._finding.find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -246,11 +258,12 @@ class Asking:
         self._map.follow_places()
         held, denied = self._map.reasoner.held(), self._now.denied()
         withheld, crowds = tuple(answers.withheld(self._map)), self._map.places.crowds()
-        return self._aside.submit(
-            lambda: structs.replace(
-                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
-            )
-        )
+
+        def check() -> Checked:
+            checked = answers.check(held.asserted, query.engine, self._is_over.is_set)
+            return structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+
+        return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """A query, evaluated beside the node's own work; of the past, in a process of its own."""
@@ -279,4 +292,6 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
+        self._is_over.set()
+        self._second_opinions.close()
         self._aside.close()

@@ -120,10 +120,10 @@ def chosen(
     found = [entity for entity in entities if entity.name in space.solids]
     if those.on is not None:
         carriers = those.on
-        found = [e for e in found if _is_on(space, space.solids[e.name], carriers, left_out)]
+        found = [e for e in found if is_on(space, space.solids[e.name], carriers, left_out)]
     if those.in_ is not None:
         holders = those.in_
-        found = [e for e in found if _is_in(space, space.solids[e.name], holders, left_out)]
+        found = [e for e in found if is_in(space, space.solids[e.name], holders, left_out)]
     if those.near is not None:
         others = [space.solids[name] for name in those.near if name in space.solids]
         is_near = _within(where.within) if where.within is not None else partial(are_near, space)
@@ -150,7 +150,7 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
     folded = word.casefold().replace("_", " ")
     for called in (
         lambda e: (e.name,),
-        lambda e: (e.preferred_reference or "", *e.alternative_references),
+        lambda e: tuple(filter(None, (e.preferred_reference, *e.alternative_references))),
         lambda e: e.types,
     ):
         names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
@@ -169,7 +169,7 @@ def only_meant(everyone: Sequence[Entity], word: str) -> str:
     return names[0]
 
 
-def _is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:
+def is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:
     """On one of them, or on or inside what is on one of them, and so on: SPARQL's (isOn|isInside)*/isOn."""
     seen, waiting = {solid}, [solid]
     while waiting:
@@ -187,7 +187,7 @@ def _is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) 
     return False
 
 
-def _is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) -> bool:
+def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) -> bool:
     """In one of these places, or inside one of these containers, or inside what is inside one."""
     for name in holders:
         other = space.solids.get(name)

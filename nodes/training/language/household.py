@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 from importlib import resources
 
 import rdflib
@@ -13,8 +14,8 @@ from nodes.language.vocabulary import Vocabulary, vocabulary
 
 
 @functools.cache
-def household(language: str = "english") -> Vocabulary:
-    """The classes of `household.ttl`, by their labels in all of its languages."""
+def household(language: str = "english", *, synonyms: bool = True) -> Vocabulary:
+    """The classes of `household.ttl`, by their labels in all of its languages and by our synonyms."""
     graph = rdflib.Graph().parse(str(resources.files("ontology") / "household.ttl"))
     classes = sorted(c for c in graph.subjects(RDF.type, OWL.Class) if isinstance(c, rdflib.URIRef))
     labels = [
@@ -27,7 +28,8 @@ def household(language: str = "english") -> Vocabulary:
         for superclass in graph.objects(c, RDFS.subClassOf)
         if isinstance(superclass, rdflib.URIRef)
     ]
-    return vocabulary([*labels, *named], above, lexicon.load(language))
+    words = lexicon.load(language)
+    return vocabulary([*labels, *named], above, words if synonyms else replace(words, synonyms={}))
 
 
 def _local(term: object) -> str:

@@ -9,6 +9,7 @@ from typing import Final
 import pycrfsuite
 
 from nodes.language import grounding, lexicon, predicates, roles, slots
+from nodes.language.interpretation import Seen
 from nodes.language.sentence import Sentence, sentence
 from nodes.language.vocabulary import Vocabulary
 from nodes.training.language.corpus import Example, Filled
@@ -17,18 +18,27 @@ _PARAMETERS: Final = {"c1": 0.05, "c2": 0.05, "max_iterations": 80, "feature.pos
 
 
 def learn(
-    examples: Iterable[Example], known: Vocabulary, frames: Path, fillers: Path, language: str = "english"
+    examples: Iterable[Example],
+    known: Vocabulary,
+    frames: Path,
+    fillers: Path,
+    language: str = "english",
+    seen: Seen = lambda features: features,
 ) -> None:
-    """Write what tells frames and what tells roles; the same files for the same examples."""
+    """Write what tells frames and what tells roles; the same files for the same examples.
+
+    seen: what is left of the features of each word (to measure what the others are worth).
+    """
     words = lexicon.load(language)
     of_frames, of_roles = pycrfsuite.Trainer(verbose=False), pycrfsuite.Trainer(verbose=False)
     for example in examples:
         s = sentence(example.words, grounding.scene(example.things, known, words), words)
-        of_frames.append(predicates.features(s), _frame_labels(example))
+        of_frames.append(seen(predicates.features(s)), _frame_labels(example))
         verbs = [_verb(s, frame) for frame in example.frames]
         for frame, verb in zip(example.frames, verbs, strict=True):
             others = [other for other in verbs if other != verb]
-            of_roles.append(roles.features(s, verb, frame.name, others), _role_labels(len(s.words), frame))
+            features = seen(roles.features(s, verb, frame.name, others))
+            of_roles.append(features, _role_labels(len(s.words), frame))
     for trainer, path in ((of_frames, frames), (of_roles, fillers)):
         trainer.set_params(_PARAMETERS)
         trainer.train(str(path))

@@ -8,6 +8,7 @@ from datetime import date, datetime
 from schemas import wording
 from schemas.explanations import Explanation
 from schemas.happenings import Difference
+from schemas.language import Found
 from schemas.relations import Relation
 from schemas.replies import Changed, Inferred
 
@@ -73,6 +74,22 @@ def relations(found: Sequence[Relation]) -> Iterable[str]:
             yield relation.text
         elif relation.subject == names[0]:
             yield f"{relation.object} {_BEARS[relation.relation]} {wording.few(names, _MOST)}"
+
+
+def found(answer: Found) -> Iterable[str]:
+    """What a description means: a line a thing with its reasons; what to ask back, or what is nearest."""
+    for said, meant in answer.read_as:
+        yield f"'{said}' is read as '{meant}'"
+    if answer.outcome == "none":
+        yield answer.text
+        if answer.nearest:
+            yield "nearest:"
+    for candidate in (*answer.candidates, *answer.nearest):
+        indent = "  " if answer.outcome == "none" else ""
+        yield f"{indent}{candidate.entity}: {', '.join(candidate.reasons) or candidate.called}"
+    yield from answer.gone
+    if answer.question:
+        yield answer.question
 
 
 def explanation(e: Explanation) -> Iterable[str]:

@@ -1,18 +1,80 @@
-"""The verbs that take words as people say them: `understand`."""
+"""The verbs that take words as people say them, `find` and `understand`; and `tell`, which says some."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from nodes.extern.cli.angles import ANGLE
 from nodes.extern.cli.calling import complain, print_json, print_lines, talks
-from nodes.extern.cli.output import lu4r
+from nodes.extern.cli.completing import entity_names
+from nodes.extern.cli.output import lines, lu4r
 from schemas import errors
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
+    from schemas.language import Language, Mood
+
+_WHY: Final[dict[Mood, str]] = {
+    "command": "no command is understood in '{text}'; try: take the cup from the table",
+    "question": "'{text}' asks something, and there is no command in it; try: take the cup from the table",
+    "past": "'{text}' tells what was done, and there is no command in it; try: take the cup from the table",
+}
+
+
+@click.command()
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option(
+    "--words",
+    type=click.IntRange(20, 5000),
+    default=150,
+    show_default=True,
+    help="Most words of the text.",
+)
+@click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def tell(client: Client, name: str | None, words: int, format: str) -> None:
+    """Tell in a few words what is there.
+
+    In the map, or in a place, or of a thing: by its name, or a reference or class that only one has.
+    """
+    found = client.tell(name, words=words)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines([found.text])
+
+
+@click.command()
+@click.argument("text")
+@click.option(
+    "--from", "viewer", metavar="VIEWER", help="Who looks: for left of, behind, the second from the left ..."
+)
+@click.option(
+    "--from-pose",
+    "viewpoint",
+    type=(float, float, float, ANGLE),
+    metavar="X Y Z YAW",
+    help="The same, from a position [m] and a direction: radians, or degrees as in 90deg.",
+)
+@click.option("--for", "asker", metavar="NAME", help="Who asks: whose things *my* means.")
+@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def find(client: Client, text: str, format: str, **fields: Any) -> None:
+    """Find the entities that words describe, in English or Italian.
+
+    For example: semmap find "the red cup on the kitchen table". Where several may be meant, there is the
+    question to ask back. The exit status is 1 if nothing fits.
+    """
+    found = client.find(text=text, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        print_lines(list(lines.found(found)))
+    if found.outcome == "none":
+        sys.exit(errors.Refused.exit_status)
 
 
 @click.command()
@@ -25,14 +87,15 @@ if TYPE_CHECKING:
     show_default=True,
     help="lu4r: as the LU4R interpreter writes frames.",
 )
+@click.option("--language", type=click.Choice(["english", "italian"]), help="Unless the words tell.")
 @talks
-def understand(client: Client, text: str, format: str) -> None:
-    """Show what a command in words asks for, and of what.
+def understand(client: Client, text: str, format: str, language: Language | None) -> None:
+    """Show what a command in English or Italian asks for, and which entities it is about.
 
     For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
     exit status is 1 if no frame is understood.
     """
-    found = client.understand(text)
+    found = client.understand(text, language=language)
     if format == "json":
         print_json(found)
     elif format == "lu4r":
@@ -43,5 +106,5 @@ def understand(client: Client, text: str, format: str) -> None:
         complain(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
     if not found.frames:
         if not found.unknown:
-            complain(f"no command is understood in '{text}'; try: take the cup from the table")
+            complain(_WHY[found.mood].format(text=text))
         sys.exit(errors.Refused.exit_status)

@@ -61,12 +61,21 @@ def sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
     for other in space.around(solid, reach):
         if other.is_place or measures.gap(solid, other) > reach:
             continue
-        fx, fy = other.centre[0] - view.eyes[0], other.centre[1] - view.eyes[1]
-        length = math.hypot(fx, fy)
-        if length < 1e-6:
-            continue
-        for relation, by_m in _directions(solid, other, (-fx / length, -fy / length), mirrored=True):
+        for relation, by_m in _as_faced(solid, other, view):
             yield Side(relation, other, by_m)
+
+
+def on_side(relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
+    """Whether a thing is left of, right of, in front of or behind another, as a viewer sees the two."""
+    return any(side == relation for side, _ in _as_faced(solid, other, view))
+
+
+def _as_faced(solid: Solid, other: Solid, view: View) -> Iterator[tuple[RelationName, float]]:
+    """The front of the other one is its side towards the viewer."""
+    fx, fy = other.centre[0] - view.eyes[0], other.centre[1] - view.eyes[1]
+    length = math.hypot(fx, fy)
+    if length >= 1e-6:
+        yield from _directions(solid, other, (-fx / length, -fy / length), mirrored=True)
 
 
 def own_sides(solid: Solid, viewer: Solid) -> Iterator[Side]:

@@ -1,4 +1,4 @@
-"""Commands in words, from the command line and the client."""
+"""Commands in words, and words on what is there, from the command line and the client."""
 
 import json
 
@@ -36,6 +36,56 @@ def test_other_forms(system, monkeypatch):
     assert json.loads(text)["frames"][0]["arguments"][0]["span"] == [2, 3]
 
 
+def test_what_is_there_is_told_in_few_words(system, monkeypatch, capsys):
+    text, status = said(system, monkeypatch, "tell")
+    assert (text, status) == ("The map has one place and one thing. The kitchen has a lemonade.\n", 0)
+    text, _ = said(system, monkeypatch, "tell", "kitchen", "--words", "20", "--format", "json")
+    told = json.loads(text)
+    assert told["text"] == "The kitchen (kitchen1) has one thing. It has a lemonade."
+    assert (told["words"], told["left_out"]) == (10, 0)
+    with system.client() as client:
+        assert client.tell("lemonade", words=20).text.startswith(
+            "bottle1 is a lemonade in the kitchen (kitchen1)."
+        )
+        with pytest.raises(errors.BadRequest, match="words must be"):
+            client.tell(words=3)
+    for words, wrong, sentence in (
+        (("tell", "teapot"), 1, "nothing is named or called 'teapot'"),
+        (("tell", "--words", "0"), 2, "0 is not in the range"),
+        (("tell", ""), 1, ""),
+    ):
+        text, status = said(system, monkeypatch, *words)
+        assert (text, status) == ("", wrong)
+        assert sentence in capsys.readouterr().err
+
+
+def test_italian_needs_no_flag(system, monkeypatch):
+    text, status = said(system, monkeypatch, "understand", "Portami la bottiglia, per favore!")
+    assert (text, status) == ('Bringing(Beneficiary="mi", Theme=bottle1)\n', 0)
+    text, _ = said(
+        system, monkeypatch, "understand", "prendi bottle1", "--language", "italian", "--format", "json"
+    )
+    document = json.loads(text)
+    assert (document["language"], document["frames"][0]["arguments"][0]["entity"]) == ("italian", "bottle1")
+    with system.client() as client:
+        assert client.understand("prendi la bottiglia").language == "italian"
+        with pytest.raises(errors.BadRequest, match="one of english, italian"):
+            client.understand("prendi la bottiglia", language="klingon")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("how are you", "asks something"),
+        ("i took the lemonade", "tells what was done"),
+        ("hi", "try: take the cup"),
+    ],
+)
+def test_what_is_no_command_says_why(system, monkeypatch, capsys, text, why):
+    assert said(system, monkeypatch, "understand", text) == ("", 1)
+    assert why in capsys.readouterr().err
+
+
 def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "understand", "frobnicate the lemonade")
     assert (text, status) == ("", 1)
@@ -45,3 +95,50 @@ def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     assert "there are no words" in capsys.readouterr().err
     with system.client() as client, pytest.raises(errors.BadRequest, match="at most 200 words"):
         client.understand("go " * 300)
+
+
+@pytest.fixture(scope="module")
+def kitchen(system):
+    with system.client() as client:
+        client.add("Table", "table1", at=(0, 0, 0), size=(0.8, 1.2, 0.75))
+        client.add("Cup", "cup1", at=(0, 0.3, 0.75))
+        client.set("cup1", "hasColor", "red")
+        client.add("Cup", "cup2", at=(1, -1, 0))
+        client.set("cup2", "hasColor", "blue")
+    return system
+
+
+def test_a_thing_is_found_by_what_is_said_of_it(kitchen, monkeypatch):
+    text, status = said(kitchen, monkeypatch, "find", "the red cup on the kitchen table")
+    assert (text, status) == ("cup1: a cup, red, on table1\n", 0)
+    text, status = said(kitchen, monkeypatch, "find", "la tazza blu", "--format", "json")
+    found = json.loads(text)
+    assert (found["outcome"], found["candidates"][0]["entity"], status) == ("one", "cup2", 0)
+    with kitchen.client() as client:
+        found = client.find("the cup left of the table", viewpoint=(-2.0, -0.5, 1.0, 0.0))
+        assert (found.outcome, found.seq) == ("none", client.status().commit)
+
+
+def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_told(kitchen, monkeypatch):
+    text, status = said(kitchen, monkeypatch, "find", "the cup")
+    assert text.splitlines()[-1] == "Which one: the red cup or the blue one?"
+    assert status == 0
+    text, status = said(kitchen, monkeypatch, "find", "the green cup")
+    assert text.startswith("none of the 2 things called 'cup' fits 'green'\nnearest:\n")
+    assert status == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "because"),
+    [
+        ("🤖", "there are no words"),
+        ("", "1 to 1000 characters"),
+        ("cup " * 100, "at most 60 words"),
+        ("the cup that was on the table", "asks about the past"),
+        ("the second cup from the left", "depend on who looks"),
+    ],
+)
+def test_what_cannot_be_found_by_says_what_can(kitchen, monkeypatch, capsys, text, because):
+    printed, status = said(kitchen, monkeypatch, "find", text)
+    assert (printed, status) == ("", 2)
+    assert because in capsys.readouterr().err

@@ -1,0 +1,176 @@
+"""What there is to be described, by what it is called: kept up to date entity by entity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from nodes.language.lexicon import describing
+from nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing, Language
+from nodes.language.vocabulary import spoken
+
+_PURPOSE: Final = ("da", "of", "di")
+"""An Italian noun keeps its name before it says what it is for; before *of* comes what it is in both."""
+MOST_WORDS: Final = 5
+"""Of a noun."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """An entity as one speaks of it. values: what its properties say, names of individuals, or booleans."""
+
+    name: str
+    class_name: str
+    types: frozenset[str]
+    references: tuple[str, ...]
+    values: Mapping[str, frozenset[object]]
+    is_place: bool = False
+
+    @property
+    def all_values(self) -> frozenset[object]:
+        """Those of all of its properties."""
+        return frozenset[object]().union(*self.values.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What a TBox has words for. Labels are of language tag, name and text; `""` is no language's.
+
+    classes: of its classes; qualities: of the individuals that describe things (colours, materials);
+    affordances: of those; affords: class to what its instances afford.
+    """
+
+    classes: tuple[tuple[str, str, str], ...]
+    qualities: tuple[tuple[str, str, str], ...] = ()
+    affordances: tuple[tuple[str, str, str], ...] = ()
+    affords: Mapping[str, frozenset[str]] = field(default_factory=dict)
+
+
+class Nouns:
+    """The nouns of one language: classes and entities by what they are called."""
+
+    def __init__(self, language: Language, terms: Terms) -> None:
+        self.describing: Final[Describing] = describing.load(language)
+        self.classes: Final[dict[str, set[str]]] = {}
+        self.entities: Final[dict[str, dict[str, None]]] = {}
+        self.qualities: Final[dict[str, set[str]]] = {}
+        self.actions: Final[dict[str, set[str]]] = {}
+        self.words: Final[dict[str, int]] = {}
+        """In base form; how many things of the map are called with it, at least by their class's label."""
+        tag, known = TAGS[language], {name for _, name, _ in terms.classes}
+        labels = [(name, text) for said, name, text in terms.classes if said in (tag, "")]
+        for name, text in (*labels, *((c, w) for c, ws in self.describing.synonyms.items() for w in ws)):
+            if name in known:
+                for key in self.keys(text):
+                    self.classes.setdefault(key, set()).add(name)
+        for said, name, text in terms.qualities:
+            if said in (tag, ""):
+                for word in (text, *self.describing.qualities.get(spoken(text), ())):
+                    key = self.describing.key(self.describing.split(word))
+                    self.qualities.setdefault(key, set()).add(name)
+        for said, name, text in terms.affordances:
+            if said in (tag, ""):
+                self.actions.setdefault(_action(text), set()).add(name)
+        for key in (*self.classes, *self.qualities):
+            for word in key.split():
+                self.words.setdefault(word, 0)
+
+    def keys(self, text: str) -> Iterator[str]:
+        """What a thing of that label may be called: by the whole, or by its head alone."""
+        words = self.describing.split(spoken(text))
+        if not words:
+            return
+        yield self.describing.key(words)
+        head = next((words[:i] for i, word in enumerate(words) if i and word in _PURPOSE), None)
+        if head is None and self.describing.head_is_last:
+            head = words[-1:]
+        if head is not None and head != words:
+            yield self.describing.key(head)
+
+    def put(self, item: Item) -> None:
+        """Index what an entity is called."""
+        for text in {*item.references, item.name}:
+            for key in self.keys(text):
+                self.entities.setdefault(key, {})[item.name] = None
+                for word in key.split():
+                    self.words[word] = self.words.get(word, 0) + 1
+
+    def take(self, item: Item) -> None:
+        """The entity is gone, or is called something else."""
+        for text in {*item.references, item.name}:
+            for key in self.keys(text):
+                if (there := self.entities.get(key)) is not None:
+                    there.pop(item.name, None)
+                    if not there:
+                        del self.entities[key]
+
+    def is_noun(self, key: str) -> bool:
+        """Whether anything may be called so."""
+        return key in self.classes or key in self.entities
+
+
+class Known:
+    """The entities of a map and the terms of its TBox."""
+
+    def __init__(self, terms: Terms) -> None:
+        self.terms: Final = terms
+        labels = (*terms.classes, *terms.qualities)
+        self._labels: Final = {(tag, name): text for tag, name, text in reversed(labels)}
+        self.items: Final[dict[str, Item]] = {}
+        self.members: Final[dict[str, dict[str, None]]] = {}
+        self.nouns: Final[dict[Language, Nouns]] = {name: Nouns(name, terms) for name in LANGUAGES}
+
+    def update(self, changed: Iterable[Item], removed: Iterable[str] = ()) -> None:
+        """Some entities came or are otherwise now, others went."""
+        for name in removed:
+            self._take(name)
+        for item in changed:
+            self._take(item.name)
+            self.items[item.name] = item
+            for name in item.types:
+                self.members.setdefault(name, {})[item.name] = None
+            for nouns in self.nouns.values():
+                nouns.put(item)
+
+    def _take(self, name: str) -> None:
+        if (item := self.items.pop(name, None)) is None:
+            return
+        for class_name in item.types:
+            self.members[class_name].pop(name, None)
+        for nouns in self.nouns.values():
+            nouns.take(item)
+
+    def called(self, key: str, language: Language) -> dict[str, None]:
+        """The entities that a noun, in base form, may mean; in no order that means anything."""
+        nouns = self.nouns[language]
+        found = dict(nouns.entities.get(key, {}))
+        for class_name in nouns.classes.get(key, ()):
+            found.update(self.members.get(class_name, {}))
+        return found
+
+    def spoken(self, item: Item, language: Language) -> str:
+        """What an entity is called in a language: by a reference, or by its class's label.
+
+        References are taken for English; of those that are not, the label says in which language.
+        """
+        nouns = self.nouns[language]
+        for reference in item.references:
+            key = nouns.describing.key(nouns.describing.split(reference))
+            if language == "english" or reference[:1].isupper() or key in nouns.classes:
+                return reference
+        return self.label(item.class_name, language)
+
+    def label(self, class_name: str, language: Language) -> str:
+        """What a class is called."""
+        return self._labels.get((TAGS[language], class_name), spoken(class_name))
+
+    def affords(self, item: Item) -> frozenset[object]:
+        """What can be done with an entity, by its classes and by what is said of it."""
+        own = item.values.get("hasAffordance", frozenset())
+        return own.union(*(self.terms.affords.get(name, frozenset()) for name in item.types))
+
+
+def _action(label: str) -> str:
+    """What is done, without *it*: `drinking it` is `drinking`, `drinking from it` is `drinking from`."""
+    return " ".join(word for word in spoken(label).split() if word != "it")

@@ -1,0 +1,487 @@
+"""A small grammar of noun phrases, one for all languages; what is a language's own is in its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import Any, Final
+
+from nodes.language.finding.description import (
+    Affords,
+    Among,
+    AnyOf,
+    Axis,
+    Description,
+    Has,
+    Head,
+    Not,
+    Of,
+    Order,
+    Owned,
+    Quality,
+    Related,
+    Restriction,
+    Sized,
+    State,
+    Unknown,
+)
+from nodes.language.finding.reading import Reading, forms
+
+_BOUNDS: Final = (
+    *("relations", "relative", "be", "have", "lack", "not", "and", "or", "of", "possessive", "afford"),
+    "from",
+)
+"""Kinds of words that end the words around a noun."""
+_BEFORE_A_NOUN: Final = (
+    *("quality", "states", "sizes", "sides", "ordinals", "numbers", "mine", "he", "filler", "every"),
+)
+_DETERMINERS: Final = (
+    *("every", "pair", "definite", "indefinite", "mine", "he", "filler", "numbers", "plural_determiner"),
+)
+_BEGINS: Final = (
+    *("definite", "indefinite", "noun", "it", "one", "mine", "quality", "numbers", "sizes"),
+    *("plural_determiner", "anything", "ordinals", "sides", "every", "he"),
+)
+"""Kinds of words that a noun phrase may begin with."""
+_SKIPPED: Final = ("definite", "indefinite", "relative", "be", "to", "possibly")
+_OPENING: Final = ("relations", "relative", "have", "lack", "of", "sides", "not")
+_MOST_ATTACHMENTS: Final = 6
+"""Of so many phrases it is tried what else they may belong to."""
+
+
+def parses(reading: Reading) -> Iterator[tuple[Description, ...]]:
+    """What a text may say, the likeliest first: each is the things that are named together.
+
+    They differ in what a phrase belongs to: of the cup on the table near the door either may be near it.
+    """
+    first = _Parser(reading)
+    yield first.all()
+    inner = first.inner[:_MOST_ATTACHMENTS]
+    for number in range(1, len(inner) + 1):
+        for high in combinations(inner, number):
+            yield _Parser(reading, frozenset(high)).all()
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A description as it is being read."""
+
+    first: int
+    head: Head = "one"
+    key: str = ""
+    noun: str = ""
+    is_definite: bool = True
+    is_plural: bool = False
+    number: int | None = None
+    restrictions: list[Restriction] = field(default_factory=list)
+    place: int | None = None
+    axis: tuple[Axis, int] | None = None
+    said_order: str = ""
+    to: Description | None = None
+
+
+class _Parser:
+    def __init__(self, reading: Reading, high: frozenset[int] = frozenset()) -> None:
+        self._r = reading
+        self._words = reading.words
+        self._high = high
+        self.inner: list[int] = []
+        """Where phrases begin that may belong to what was named before."""
+
+    # What stands where
+
+    def _sense(self, kind: str, i: int) -> tuple[int, Any] | None:
+        return self._r.senses[i].get(kind) if i < len(self._words) else None
+
+    def _length(self, kind: str, i: int) -> int:
+        found = self._sense(kind, i)
+        return 0 if found is None else found[0]
+
+    def _said(self, first: int, end: int) -> str:
+        return " ".join(self._words[first:end])
+
+    # Phrases
+
+    def all(self) -> tuple[Description, ...]:
+        """The things that are named together."""
+        i, found = self._length("opening", 0), list[Description]()
+        while i < len(self._words):
+            made, j = self._phrase(i, 0)
+            found.append(made)
+            i = max(j, i + 1)
+            i += self._length("and", i)
+        return tuple(found)
+
+    def _phrase(self, i: int, depth: int, owner: Restriction | None = None) -> tuple[Description, int]:
+        draft = _Draft(i)
+        if owner is not None:
+            draft.restrictions.append(owner)
+        if (it := self._length("it", i)) and not self._length("noun", i) > it:
+            draft.head = "it"
+            return self._done(draft, i + it), i + it
+        i = self._determiners(draft, i)
+        i = self._around_the_noun(draft, i)
+        if (possessive := self._length("possessive", i)) and draft.head == "noun":
+            by = Owned(self._said(draft.first, i), self._done(draft, i))
+            made, j = self._phrase(i + possessive, depth, by)
+            return replace(made, said=self._said(draft.first, j)), j
+        i = self._after_the_noun(draft, i, depth)
+        return self._done(draft, i), i
+
+    def _done(self, draft: _Draft, end: int) -> Description:
+        order = None
+        if draft.axis is not None or draft.place is not None:
+            axis, sign = draft.axis or ("", 1)
+            order = Order(draft.said_order, axis, sign, draft.place or 1, draft.number or 1, draft.to)
+        return Description(
+            self._said(draft.first, end), draft.head, draft.key, draft.noun, draft.is_definite,
+            draft.is_plural, draft.number, tuple(draft.restrictions), order,
+        )  # fmt: skip
+
+    def _determiners(self, draft: _Draft, i: int) -> int:
+        while i < len(self._words):
+            best = max(_DETERMINERS, key=lambda kind: self._length(kind, i))
+            length, value = self._sense(best, i) or (0, None)
+            if not length or self._length("noun", i) > length or self._length("anything", i) > length:
+                break
+            if self._length("ordinals", i) > length or self._length("sides", i) > length:
+                break
+            if self._length("plural_determiner", i) == length or self._length("every", i) == length:
+                draft.is_plural = True
+            if self._length("pair", i) == length:
+                draft.number, draft.is_plural = 2, True
+            if best == "indefinite":
+                draft.is_definite = False
+            elif best == "mine":
+                draft.restrictions.append(Owned(self._said(i, i + length)))
+            elif best == "he":
+                draft.restrictions.append(Owned(self._said(i, i + length), Description("it", "it")))
+            elif best == "numbers" and value:
+                draft.is_definite = draft.is_definite and draft.first != i
+                self._number(draft, value)
+            i += length
+        return i
+
+    def _number(self, draft: _Draft, value: int) -> None:
+        draft.number = value
+        draft.is_plural = value > 1
+
+    def _run_end(self, i: int) -> int:
+        """Behind the words around a noun that begin at i."""
+        seen_noun = False
+        while i < len(self._words):
+            noun = self._length("noun", i)
+            bound = max(self._length(kind, i) for kind in _BOUNDS)
+            beside = max(self._length(kind, i) for kind in _BEFORE_A_NOUN)
+            if noun > 1 and noun >= bound:
+                i, seen_noun = i + noun, True
+            elif self._joins_qualities(i) and not seen_noun:
+                i += 1
+            elif (bound and (bound >= beside or self._length("states", i) == beside)) or (
+                beside and self._length("sides", i) == beside and seen_noun and beside > 1
+            ):
+                break
+            else:
+                seen_noun = seen_noun or (bool(noun) and not self._followed_by_noun(i + noun))
+                i += 1 if not beside or noun else beside
+        return i
+
+    def _joins_qualities(self, i: int) -> bool:
+        """Whether an *and* or *or* is between two adjectives before a noun."""
+        if not (self._length("and", i) or self._length("or", i)):
+            return False
+        adjectives = ("quality", "states", "sizes")
+        following = any(self._length(kind, i + 1) for kind in adjectives)
+        before = i > 0 and any(self._length(kind, i - 1) for kind in adjectives)
+        return following and before and self._r.nouns.describing.head_is_last
+
+    def _followed_by_noun(self, i: int) -> bool:
+        return bool(self._length("noun", i))
+
+    def _around_the_noun(self, draft: _Draft, i: int) -> int:
+        end = self._run_end(i)
+        head = self._head(draft, i, end)
+        if head is None:
+            self._modifiers(draft, i, end)
+            return end
+        first, last = head
+        self._modifiers(draft, i, first)
+        self._modifiers(draft, last, end)
+        return end
+
+    def _head(self, draft: _Draft, first: int, end: int) -> tuple[int, int] | None:
+        """Where the noun is; the last one, or the first, as the language has it."""
+        is_last = self._r.nouns.describing.head_is_last
+        spans = [
+            (i, i + length)
+            for i in range(first, end)
+            for length in range(1, end - i + 1)
+            if self._sense(f"noun{length}", i) is not None
+        ]
+        if spans:
+            if is_last:
+                start, stop = max(spans, key=lambda span: (span[1], span[1] - span[0]))
+            else:
+                start, stop = min(spans, key=lambda span: (span[0], span[0] - span[1]))
+            sense = self._sense(f"noun{stop - start}", start)
+            assert sense is not None
+            draft.head, draft.key, draft.noun = "noun", sense[1], self._said(start, stop)
+            self._say_number(draft, stop - 1 if is_last else start)
+            return start, stop
+        for kind in ("anything", "one"):
+            for i in range(first, end):
+                if length := self._length(kind, i):
+                    draft.head = "anything" if kind == "anything" else "one"
+                    if kind == "anything":
+                        draft.is_definite = False
+                    if self._words[i] in ("ones", "things", "objects"):
+                        draft.is_plural = True
+                    return i, i + length
+        return None
+
+    def _say_number(self, draft: _Draft, i: int) -> None:
+        describing, word = self._r.nouns.describing, self._words[i]
+        if word in describing.pluralia:
+            if draft.number is None:
+                draft.is_plural = draft.is_plural and not self._only_agrees(draft)
+        elif describing.head_is_last and describing.base(word) != word and word.endswith(("s", "ves", "men")):
+            draft.is_plural = True
+
+    def _only_agrees(self, draft: _Draft) -> bool:
+        """Whether it is plural in its article alone: le chiavi."""
+        return not any(self._length("every", i) for i in range(draft.first, len(self._words)))
+
+    def _modifiers(self, draft: _Draft, i: int, end: int) -> None:
+        either: Restriction | None = None
+        while i < end:
+            if self._length("and", i) or self._length("or", i):
+                either = draft.restrictions.pop() if draft.restrictions else None
+                i += 1
+                continue
+            i = self._modifier(draft, i, end)
+            if either is not None and draft.restrictions:
+                draft.restrictions.append(AnyOf((either, draft.restrictions.pop())))
+                either = None
+
+    def _modifier(self, draft: _Draft, i: int, end: int) -> int:
+        """One word, or several, beside the noun; where the next one is."""
+        kinds = [kind for kind in _BEFORE_A_NOUN if 0 < self._length(kind, i) <= end - i]
+        noun = self._sense("noun", i)
+        best = max(kinds, key=lambda kind: self._length(kind, i), default="")
+        if noun is not None and noun[0] <= end - i and noun[0] > (self._length(best, i) if best else 0):
+            said = self._said(i, i + noun[0])
+            draft.restrictions.append(Of(said, Description(said, "noun", noun[1], said, is_definite=False)))
+            return i + noun[0]
+        if not best:
+            if any(
+                self._length(kind, i)
+                for kind in ("definite", "indefinite", "relative", "be", "to", "possibly")
+            ):
+                return i + 1
+            draft.restrictions.append(Unknown(self._words[i]))
+            return i + 1
+        sense = self._sense(best, i)
+        assert sense is not None
+        length, value = sense
+        said = self._said(i, i + length)
+        match best:
+            case "quality" | "states" | "sizes":
+                draft.restrictions.append(self._adjective(best, said, value))
+            case "sides":
+                draft.axis, draft.said_order = value, f"{draft.said_order} {said}".strip()
+            case "ordinals":
+                draft.place, draft.said_order = value, f"{draft.said_order} {said}".strip()
+            case "numbers" if value:
+                self._number(draft, value)
+            case "mine":
+                draft.restrictions.append(Owned(said))
+            case "every":
+                draft.is_plural = True
+        return i + length
+
+    def _adjective(self, kind: str, said: str, value: Any) -> Restriction:
+        if kind == "quality":
+            return Quality(said, value)
+        if kind == "sizes":
+            return Sized(said, value[0], value[1])
+        return State(said, value[0], value[1])
+
+    # What follows a noun
+
+    def _after_the_noun(self, draft: _Draft, i: int, depth: int) -> int:
+        negated = False
+        either = False
+        while i < len(self._words):
+            if depth and self._opens(i):
+                self.inner.append(i)
+                if i in self._high:
+                    return i
+            if (length := self._length("or", i)) and self._goes_on(i + length):
+                either, i = True, i + length
+                continue
+            if (length := self._length("and", i)) and self._length("lack", i) < 2:
+                if not self._goes_on(i + length):
+                    return i
+                i += length
+                continue
+            if (length := self._length("not", i)) and length >= self._length("relations", i):
+                negated, i = True, i + length
+                continue
+            before = len(draft.restrictions)
+            j = self._one_after(draft, i, depth)
+            if j == i and negated and not self._ends(i):
+                other, j = self._phrase(i, depth + 1)
+                draft.restrictions.append(Among(self._said(i, j), other))
+            if j == i:
+                return i
+            if len(draft.restrictions) > before:
+                made = draft.restrictions.pop()
+                if negated:
+                    made, negated = Not(made), False
+                if either and draft.restrictions:
+                    made, either = AnyOf((draft.restrictions.pop(), made)), False
+                draft.restrictions.append(made)
+            i = j
+        return i
+
+    def _opens(self, i: int) -> bool:
+        """Whether a phrase begins here that says more of something."""
+        return any(self._length(kind, i) for kind in _OPENING)
+
+    def _goes_on(self, i: int) -> bool:
+        """Whether it goes on saying something of the same thing."""
+        kinds = ("relations", "relative", "not", "be", "have", "lack", "states", "quality", "sizes", "afford")
+        return any(self._length(kind, i) for kind in kinds) and not (
+            self._length("noun", i) and not self._length("quality", i)
+        )
+
+    def _one_after(self, draft: _Draft, i: int, depth: int) -> int:
+        """One thing that is said behind the noun; where the next one is, or i if there is none."""
+        if (action := self._action(i)) is not None:
+            length, affordances = action
+            draft.restrictions.append(Affords(self._said(i, i + length), affordances))
+            return i + length
+        ordering = self._ordering(draft, i, depth)
+        if ordering != i:
+            return ordering
+        relation, side = self._sense("relations", i), self._sense("sides", i)
+        if side is not None and (relation is None or side[0] > relation[0] or self._ends(i + relation[0])):
+            draft.axis, draft.said_order = side[1], f"{draft.said_order} {self._said(i, i + side[0])}".strip()
+            end = i + side[0]
+            if side[1][0] == "distance" and (to := self._length("to", end)):
+                draft.to, end = self._phrase(end + to, depth + 1)
+            return end
+        state = self._sense("states", i)
+        if state is not None and (relation is None or self._ends(i + state[0]) or state[0] > relation[0]):
+            draft.restrictions.append(self._adjective("states", self._said(i, i + state[0]), state[1]))
+            return i + state[0]
+        of = self._length("of", i)
+        if of and of >= self._length("relations", i) and (made := self._of(draft, i, of, depth)):
+            return made
+        if relation is not None:
+            return self._related(draft, i, relation, depth)
+        if (length := self._length("lack", i)) and length >= self._length("have", i):
+            return self._lacking(draft, i, length, depth)
+        if length := self._length("have", i):
+            other, j = self._phrase(i + length, depth + 1)
+            draft.restrictions.append(Has(self._said(i, j), other))
+            return j
+        for kind in ("quality", "sizes"):
+            if (sense := self._sense(kind, i)) is not None:
+                draft.restrictions.append(self._adjective(kind, self._said(i, i + sense[0]), sense[1]))
+                return i + sense[0]
+        for kind in ("relative", "be", "filler", "possibly"):
+            if length := self._length(kind, i):
+                return i + length
+        if mine := self._length("mine", i):
+            draft.restrictions.append(Owned(self._said(i, i + mine)))
+            return i + mine
+        if not self._r.senses[i]:
+            draft.restrictions.append(Unknown(self._words[i]))
+            return i + 1
+        return i
+
+    def _ends(self, i: int) -> bool:
+        """Whether no noun phrase begins here."""
+        if i >= len(self._words):
+            return True
+        return not any(self._length(kind, i) for kind in _BEGINS)
+
+    def _action(self, i: int) -> tuple[int, frozenset[str]] | None:
+        """Something that can be done with it: words and the affordances that they stand for."""
+        if not (length := self._length("afford", i)):
+            return None
+        actions, j = self._r.nouns.actions, i + length
+        if j >= len(self._words):
+            return None
+        tail = self._length("afford_tail", j + 1)
+        endings = (self._said(j + 1, j + 1 + tail), "") if tail else ("",)
+        for ending in endings:
+            for form in forms(self._words[j]):
+                for text in (f"{form} {ending}".strip(),):
+                    if text in actions:
+                        return length + 1 + tail, frozenset(actions[text])
+        return None
+
+    def _ordering(self, draft: _Draft, i: int, depth: int) -> int:
+        """*From the left*, *from the door*: what an order goes by."""
+        is_distance = draft.axis is not None and draft.axis[0] == "distance" and draft.to is None
+        length = max(self._length("from", i), self._length("to", i) if is_distance else 0)
+        if not length or (draft.place is None and draft.axis is None):
+            return i
+        end = i + length
+        if (place := self._sense("places", end)) is not None:
+            draft.axis = place[1]
+            end += place[0]
+        elif (draft.axis is None or draft.axis[0] == "distance") and not self._ends(end):
+            draft.axis = draft.axis or ("distance", 1)
+            draft.to, end = self._phrase(end, depth + 1)
+        else:
+            return i
+        draft.said_order = f"{draft.said_order} {self._said(i, end)}".strip()
+        return end
+
+    def _of(self, draft: _Draft, i: int, length: int, depth: int) -> int:
+        """*Of wood*, *of the kitchen*, *of Anna*, *of water*; 0 if that is not what follows."""
+        j = i + length
+        article = self._length("definite", j)
+        quality = self._sense("quality", j)
+        if quality is not None and not article and not self._length("noun", j) > quality[0]:
+            draft.restrictions.append(Quality(self._said(i, j + quality[0]), quality[1]))
+            return j + quality[0]
+        if self._sense("relations", i) is not None and self._length("relations", i) >= length:
+            return 0
+        if self._ends(j):
+            return 0
+        other, end = self._phrase(j, depth + 1)
+        is_content = draft.key in self._r.nouns.describing.content
+        draft.restrictions.append(Of(self._said(i, end), other, is_content))
+        return end
+
+    def _related(self, draft: _Draft, i: int, relation: tuple[int, Any], depth: int) -> int:
+        length, name = relation
+        j = i + length
+        if self._ends(j):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
+            if depth:
+                draft.restrictions.append(Related(self._said(i, j), name, (Description("it", "it"),)))
+            return j
+        others: list[Description] = []
+        other, end = self._phrase(j, depth + 1)
+        others.append(other)
+        if name == "isBetween" and not other.is_plural and (joined := self._length("and", end)):
+            other, end = self._phrase(end + joined, depth + 1)
+            others.append(other)
+        draft.restrictions.append(Related(self._said(i, end), name, tuple(others)))
+        return end
+
+    def _lacking(self, draft: _Draft, i: int, length: int, depth: int) -> int:
+        said, j = self._said(i, i + length), i + length
+        if said.endswith(("nothing", "niente")):
+            relation = self._length("relations", j)
+            j += relation + self._length("it", j + relation)
+            draft.restrictions.append(State(self._said(i, j), "holding", False))
+            return j
+        other, end = self._phrase(j, depth + 1)
+        draft.restrictions.append(Not(Has(self._said(i, end), other)))
+        return end

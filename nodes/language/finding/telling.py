@@ -1,0 +1,152 @@
+"""What was found, in words: reasons, the question to ask back, and what is nearest where nothing fits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
+
+from nodes.language.finding import asking_back
+from nodes.language.finding.description import (
+    Description,
+    Owned,
+    Related,
+    Restriction,
+    Unknown,
+)
+from nodes.language.finding.resolving import Resolved, Resolver, Scope
+from schemas.language import Candidate, Found
+
+if TYPE_CHECKING:
+    from nodes.language.finding.finding import Answer
+
+_MOST: Final = 50
+"""Candidates that are told of."""
+_NEAREST: Final = 5
+_SPOKEN: Final = {
+    "isOn": "on", "isInside": "in", "isLocatedIn": "in", "isUnder": "under", "isAbove": "above",
+    "isNear": "near", "isNextTo": "next to", "isLeftOf": "left of", "isRightOf": "right of",
+    "isInFrontOf": "in front of",     "isBehind": "behind", "touches": "touching",
+}  # fmt: skip
+
+
+def told(answer: Answer) -> Found:
+    """An answer with reasons, question and what is nearest."""
+    resolver, names = answer.resolver, answer.names
+    candidates = tuple(_candidates(answer.parts, names[:_MOST], resolver))
+    question, text, nearest = "", "", tuple[Candidate, ...]()
+    match answer.outcome:
+        case "one":
+            text = f"{names[0]} is meant"
+        case "several":
+            text = f"{len(names)} things are meant"
+        case "ambiguous":
+            text = f"any of {len(names)} things may be meant"
+            question = asking_back.question(names, resolver)
+        case "none":
+            part = next((part for part in answer.parts if _is_short(part)), answer.parts[-1])
+            text = _missing(part)
+            nearest = tuple(_nearest(part, resolver))
+    return Found(
+        outcome=answer.outcome, candidates=candidates, text=text, question=question, nearest=nearest,
+        read_as=answer.reading.mended,
+    )  # fmt: skip
+
+
+def _candidates(parts: Iterable[Resolved], names: tuple[str, ...], resolver: Resolver) -> Iterator[Candidate]:
+    of_part = {name: part for part in parts for name in part.names}
+    for name in names:
+        yield _candidate(
+            name, resolver, (_called(name, of_part[name], resolver), *_reasons(name, of_part[name], resolver))
+        )
+
+
+def _candidate(name: str, resolver: Resolver, reasons: Iterable[str]) -> Candidate:
+    item = resolver.known.items[name]
+    return Candidate(
+        entity=name, class_=item.class_name, called=resolver.known.spoken(item, resolver.language),
+        reasons=tuple(filter(None, reasons)),
+    )  # fmt: skip
+
+
+def _called(name: str, part: Resolved, resolver: Resolver) -> str:
+    said, item = part.description, resolver.known.items[name]
+    if said.head != "noun":
+        return ""
+    nouns = resolver.known.nouns[resolver.language]
+    for reference in item.references:
+        if said.key in nouns.keys(reference):
+            return f"called {reference}"
+    label = resolver.known.label(item.class_name, "english")
+    return f"{'an' if label[0] in 'aeiou' else 'a'} {label}"
+
+
+def _reasons(name: str, part: Resolved, resolver: Resolver) -> Iterator[str]:
+    said = part.description
+    for restriction in said.restrictions:
+        if resolver.fits(name, restriction, said, part.kind, Scope()):
+            yield _reason(name, restriction, said, resolver)
+    if said.order is not None:
+        yield (
+            f"{said.order.said} {said.order.to.said}"
+            if said.order.to and said.order.to.said not in said.order.said
+            else said.order.said
+        )
+
+
+def _reason(name: str, restriction: Restriction, said: Description, resolver: Resolver) -> str:
+    match restriction:
+        case Related(relation=relation, others=others) if relation in _SPOKEN:
+            inner = Scope((name,), said)
+            for other in resolver.resolve(others[0], inner).names:
+                if resolver.around.related(relation, name, other):
+                    return f"{_SPOKEN[relation]} {other}"
+        case Owned():
+            owners = resolver.known.items[name].values.get("isOwnedBy", frozenset())
+            return f"of {', '.join(sorted(map(str, owners)))}" if owners else restriction.said
+    return restriction.said
+
+
+def _is_short(part: Resolved) -> bool:
+    return len(part.names) < (part.description.number or 1)
+
+
+def _missing(part: Resolved) -> str:
+    """Which part of a description nothing fits."""
+    said, noun = part.description, part.description.noun or "something"
+    unknown = [r.said for r in said.restrictions if isinstance(r, Unknown)]
+    if unknown and said.head != "noun":
+        return f"nothing is called '{unknown[0]}', and the word is not known"
+    if not part.kind:
+        return f"there is nothing that is called '{noun}'"
+    if part.failed is not None and len(part.kind) == 1:
+        return f"the only thing called '{noun}' does not fit '{part.failed.said}'"
+    if part.failed is not None:
+        return f"none of the {len(part.kind)} things called '{noun}' fits '{part.failed.said}'"
+    if not part.names and said.order is None:
+        return f"none of the {len(part.kind)} things called '{noun}' fits all of '{said.said}'"
+    there = f"only {len(part.names) or len(part.kind)} {'fits' if len(part.names) == 1 else 'fit'}"
+    return f"there are not so many: of '{said.said}' {there}"
+
+
+def _nearest(part: Resolved, resolver: Resolver) -> Iterator[Candidate]:
+    """What fits all but one restriction, the first that leaves anything, with what does not fit."""
+    said = part.description
+    if not part.kind or said.head != "noun":
+        return
+    for dropped in sorted(said.restrictions, key=lambda r: r is not part.failed):
+        others = [r for r in said.restrictions if r is not dropped]
+        names = [n for n in part.kind if all(resolver.fits(n, r, said, part.kind, Scope()) for r in others)]
+        if names:
+            for name in names[:_NEAREST]:
+                fitting = (_reason(name, r, said, resolver) for r in others)
+                against = (f"not: {dropped.said}", *_whereabouts(name, resolver))
+                yield _candidate(name, resolver, (_called(name, part, resolver), *fitting, *against))
+            return
+    if not said.restrictions:
+        for name in part.kind[:_NEAREST]:
+            yield _candidate(name, resolver, (_called(name, part, resolver), *_whereabouts(name, resolver)))
+
+
+def _whereabouts(name: str, resolver: Resolver) -> Iterator[str]:
+    for relation, other in resolver.around.whereabouts(name)[:1]:
+        yield f"{_SPOKEN[relation]} {other}"

@@ -1,0 +1,148 @@
+"""What a language has for describing things: closed classes of words, orders, states, relations, synonyms."""
+
+from __future__ import annotations
+
+import functools
+import re
+import tomllib
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from importlib import resources
+from typing import Any, Final, Literal
+
+from nodes.language import lexicon
+from nodes.language.words import lemma
+
+Language = Literal["english", "italian"]
+LANGUAGES: Final[tuple[Language, ...]] = ("english", "italian")
+TAGS: Final[dict[Language, str]] = {"english": "en", "italian": "it"}
+"""Of the labels of a TBox."""
+
+_TOKENS: Final[dict[Language, re.Pattern[str]]] = {
+    "english": re.compile(r"n't\b|'s?\b|'|[^\W_]+?(?=n't\b)|[^\W_]+"),
+    "italian": re.compile(r"[^\W_]+'|[^\W_]+"),
+}
+_INFLECTED: Final = ("states", "sizes", "sides", "ordinals")
+_Words = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Describing:
+    """The words of a language for describing things."""
+
+    language: Language
+    head_is_last: bool
+    senses: Mapping[_Words, Mapping[str, Any]]  # words as said -> kind of word -> what it stands for
+    stems: Mapping[_Words, Mapping[str, Any]]  # the same of words that agree with the noun, in base forms
+    longest: int  # words of one entry
+    qualities: Mapping[str, tuple[str, ...]]  # label -> other words
+    synonyms: Mapping[str, tuple[str, ...]]  # class -> other words
+    pluralia: frozenset[str]
+    content: frozenset[str]
+    wording: Mapping[str, str]
+    lemmas: Mapping[str, str]
+    articles: Mapping[str, str]  # how a noun is written, as a regular expression -> its definite article
+    those: Mapping[str, str]  # the same -> what stands for such a thing: the one, quello, quella
+    feminine: str  # how feminine nouns are written, as a regular expression
+    contractions: Mapping[str, str]  # a preposition with an article -> how the two are said
+
+    def split(self, text: str) -> list[str]:
+        """The words of a text in lower case, without punctuation; hyphens and elisions separate words."""
+        return _TOKENS[self.language].findall(_plain(text))
+
+    def base(self, word: str) -> str:
+        """A word without the ending that its number and gender give it."""
+        if word in self.pluralia:
+            return word
+        word = self.lemmas.get(word, word)
+        return _stem(word) if self.language == "italian" else lemma(word, lexicon.load())
+
+    def key(self, words: Iterator[str] | list[str] | _Words) -> str:
+        """Words in their base forms, by which a noun is looked up."""
+        return " ".join([self.base(word) for word in words])
+
+    def the(self, noun: str) -> str:
+        """A noun with its definite article; a proper name has none."""
+        if noun[:1].isupper():
+            return noun
+        return next(article for form, article in self.articles.items() if re.search(form, noun)) + noun
+
+    def that(self, noun: str) -> str:
+        """What stands for a thing of that noun: the one, quello, quella."""
+        return next(said for form, said in self.those.items() if re.search(form, noun))
+
+    def agreeing(self, adjective: str, noun: str) -> str:
+        """An adjective as it is beside a noun."""
+        ends_anew = adjective.endswith("o") and re.search(self.feminine, noun) is not None
+        return adjective[:-1] + "a" if ends_anew else adjective
+
+    def contracted(self, text: str) -> str:
+        """A text as it is said: sul tavolo for su il tavolo."""
+        for apart, together in self.contractions.items():
+            text = text.replace(apart, together)
+        return text
+
+    def sense(self, words: _Words) -> Mapping[str, Any]:
+        """What words together may be: kind of word to what it stands for."""
+        exact = self.senses.get(words, {})
+        return {**self.stems.get(tuple(map(self.base, words)), {}), **exact}
+
+
+def _plain(text: str) -> str:
+    return unicodedata.normalize("NFC", text).lower().replace("’", "'").replace("`", "'")
+
+
+def _stem(word: str) -> str:
+    """An Italian word without its last vowel: tazza and tazze, bianco and bianche, grigio and grigi."""
+    if len(word) <= 3 or word[-1] not in "aeio":
+        return word
+    stem = word[:-1]
+    return stem[:-1] if stem[-1] in "ih" and len(stem) > 3 else stem
+
+
+@functools.cache
+def load(language: Language) -> Describing:
+    """The words of a language."""
+    table = tomllib.loads((resources.files(__package__) / f"{language}.toml").read_text("utf-8"))
+    made = Describing(
+        language=language,
+        head_is_last=table["reading_order"] == "modifiers first",
+        senses={},
+        stems={},
+        longest=0,
+        qualities={label: tuple(words) for label, words in table["qualities"].items()},
+        synonyms={name: tuple(words) for name, words in table["synonyms"].items()},
+        pluralia=frozenset(table["pluralia"]["words"]),
+        content=frozenset(),
+        wording=table["wording"],
+        lemmas=table["lemmas"],
+        articles=table["articles"],
+        those=table["that"],
+        feminine=table["feminine"]["nouns"],
+        contractions=table["contractions"],
+    )
+    senses: dict[_Words, dict[str, Any]] = {}
+    stems: dict[_Words, dict[str, Any]] = {}
+    for text, kind, value in _entries(table):
+        words = tuple(made.split(text))
+        senses.setdefault(words, {})[kind] = value
+        if kind in _INFLECTED:
+            stems.setdefault(tuple(map(made.base, words)), {}).setdefault(kind, value)
+    return replace(
+        made,
+        senses=senses,
+        stems=stems,
+        longest=max(map(len, senses)),
+        content=frozenset(map(made.base, table["words"]["content"])),
+    )
+
+
+def _entries(table: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
+    for kind, words in table["words"].items():
+        if kind != "content":
+            yield from ((text, kind, True) for text in words)
+    for kind in ("ordinals", "numbers", "places", "sides", "sizes", "states"):
+        yield from ((text, kind, value) for text, value in table[kind].items())
+    for relation, phrases in table["relations"].items():
+        yield from ((text, "relations", relation) for text in phrases)
