@@ -70,6 +70,14 @@ READING: Final = (
         reading.overview,
     ),
     Tool(
+        "find",
+        "Which entities a noun phrase describes, in English or Italian, ranked and with reasons: the second"
+        " drawer from the left, something to drink, la tazza sul tavolo. Where it is ambiguous it gives the"
+        " question to ask back, where nothing fits what is nearest.",
+        a.Find,
+        reading.find,
+    ),
+    Tool(
         "list",
         "The entities of a class (with its subclasses), or those on, in, near or nearest to something, with"
         " positions [m] and what each is on, inside and in. Without arguments: all, in pages.",
