@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -64,8 +63,9 @@ def _read(text: str, known: Known) -> Reading:
     """A text in the language that it is in, as it seems."""
     if (number := len(text.split())) > MOST_WORDS:
         raise errors.BadRequest(f"a description has at most {MOST_WORDS} words; these are {number}")
-    readings = [reading.read(text, known.nouns[language]) for language in LANGUAGES]
-    best = min(readings, key=lambda read: read.cost)
+    readings = sorted((reading.read(text, known.nouns[name]) for name in LANGUAGES), key=_cost)
+    likely = [read for read in readings if read.cost == readings[0].cost]
+    best = readings[0] if readings[0].cost == 0.0 else min(map(reading.mended, likely), key=_cost)
     if not best.words:
         raise errors.BadRequest(
             "there are no words in the text; describe a thing, such as: the red cup on the table"
@@ -78,6 +78,10 @@ def _read(text: str, known: Known) -> Reading:
                 " the past tell: semmap when, last-seen, and list --as-of"
             )
     return best
+
+
+def _cost(read: Reading) -> float:
+    return read.cost
 
 
 def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) -> Answer:
@@ -116,8 +120,3 @@ def _outcome(part: Resolved, resolver: Resolver) -> Outcome:
     if said.head == "it" or said.is_plural or not said.is_definite:
         return "several"
     return "ambiguous"
-
-
-def spoken(parts: tuple[Resolved, ...]) -> Iterator[str]:
-    """What was described, part by part."""
-    return (part.description.said for part in parts)
