@@ -23,7 +23,7 @@ class Pace:
         self._took_s.append(time_s)
 
     def is_slow(self) -> bool:
-        """Does it take so long that it is worth working meanwhile? Now and then not, to see how long it is."""
+        """Does it take so long that one should work meanwhile? Now and then not, to see how long that is."""
         self._asked += 1
         if not self._took_s or self._asked % _LOOK_EACH == 0:
             return False
