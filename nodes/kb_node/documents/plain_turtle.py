@@ -113,7 +113,7 @@ class _Reader:
         return list(zip(each, each, each, strict=True))
 
     def forget(self) -> None:
-        """Part with what was read. Words refer to their reader, so it would stay until garbage is collected."""
+        """Part with what was read: words refer to their reader, a cycle, and cycles may stay for long."""
         for words in (self._subjects, self._predicates, self._tails, self._known, self._shared):
             words.clear()
         self._terms = []
