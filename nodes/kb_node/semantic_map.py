@@ -149,6 +149,8 @@ class SemanticMap(MapState):
                 return self._taken(apply(commit, write, noted, beside))
             except BaseException:
                 give_up()
+                if begun is not None:
+                    begun.give_up()
                 raise
 
     def _with_doubts(self, commit: Commit) -> Commit:
