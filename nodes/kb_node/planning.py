@@ -35,6 +35,8 @@ def of(state: MapState, transaction: Transaction) -> Plan | None:
     Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
     what makes no sense; Refused when it takes away from the TBox.
     """
+    if transaction.unchanged:
+        preconditions.require_unchanged(transaction, state.by_name)
     retract, insert, notes = _spelled_out(state, transaction)
     held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
     preconditions.require(transaction, held)

@@ -15,6 +15,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.bridge import TakeBack
 from schemas.commits import Commit, Transaction
+from schemas.entities import LESSER
 from schemas.explanations import Triple
 
 
@@ -127,7 +128,7 @@ def _named(journal: Journal, seq: int) -> Commit:
 
 
 def _require_authority(command: TakeBack, target: Commit) -> None:
-    if command.source in ("scene", "perception") and target.source in ("operator", "file"):
+    if command.source in LESSER and target.source not in LESSER:
         raise errors.Refused(f"commit {target.seq} was made by an operator, so only an operator may undo it")
 
 

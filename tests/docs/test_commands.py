@@ -16,7 +16,8 @@ import pytest
 
 from nodes.extern.cli.all_verbs import app
 from nodes.extern.cli.app import execute
-from tests.conftest import running
+from ontology import FLAT_TTL
+from tests.conftest import running, until
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -98,11 +99,15 @@ def flat(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def tidied(flat):
-    """What one page's programs add does not stand in the way of another's."""
+    """What one page's programs add does not stand in the way of another's, nor is what they remove missed."""
     with flat.client() as client:
         before = {entity.name for entity in client.list()}
         yield
-        if added := sorted({entity.name for entity in client.list()} - before):
+        after = {entity.name for entity in client.list()}
+        if before - after:
+            client.load(FLAT_TTL, replace=True)
+            until(lambda: client.status().in_agreement, "every body stands again")
+        elif added := sorted(after - before):
             client.remove(*added)
 
 

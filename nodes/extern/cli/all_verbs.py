@@ -28,6 +28,7 @@ _MODULES = {
     "keys": ("keys",),
     "fleet": ("fleet",),
     "mcp": ("mcp",),
+    "approve": ("approve",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

@@ -99,6 +99,22 @@ def test_the_text_is_of_the_newest_commit(accounts, room):
     assert "Not as" not in accounts.tell(Tell(name="cup2")).text
 
 
+def test_chairs_are_round_a_table_that_is_in_no_place(accounts, semantic_map):
+    things = [entity for entity in ROOM if entity.name in ("table1", "chair1", "chair2", "cup1")]
+    semantic_map.commit(Transaction(id="1", source="operator", reason="so", add=tuple(things)))
+    assert accounts.tell(Tell(name="table1")).text.startswith(
+        "table1 is a kitchen table. Round it are 2 chairs. On it is a cup."
+    )
+    assert accounts.tell(Tell(name="cup1")).text.startswith("cup1 is a cup on the kitchen table (table1).")
+
+
+def test_of_a_large_map_only_numbers_are_told(accounts, room, monkeypatch):
+    monkeypatch.setattr("nodes.kb_node.answers.accounts.LARGEST", 3)
+    assert accounts.tell(Tell()).text == (
+        "The map has one place and 7 things. There are 3 chairs, 2 cups, a kitchen table and a lamp."
+    )
+
+
 def test_the_empty_map_and_who_is_not_there(accounts, semantic_map):
     told = accounts.tell(Tell())
     assert structs.asdict(told) == {"text": "The map is empty.", "words": 4, "left_out": 0, "commit": 0}
