@@ -66,7 +66,7 @@ def _try(finding: Finding, index: int, asked: Mapping[str, Any]) -> Tried:
         asker=asked["for"],
     )
     try:
-        found = finding.find(query)
+        found = finding.find(query).found
     except errors.SemmapError as error:
         return Tried(index, asked, str(error), False)
     names = {candidate.entity for candidate in found.candidates}

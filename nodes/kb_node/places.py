@@ -72,6 +72,11 @@ class Places:
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
+    def upward(self, names: Iterable[str]) -> Collection[str]:
+        """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
+        facts = self._facts()
+        return self._entities.keys() if facts is None else facts.upward(names)
+
     def about(self, name: str) -> Iterator[About]:
         """What a thing is inside, on, in and attached to, what counts most first; nothing of a place."""
         facts = self._facts()

@@ -27,15 +27,18 @@ class Account(NamedTuple):
 
 def of_map(inventory: Inventory, troubles: Sequence[str], most_words: int) -> Account:
     """What a map has."""
-    things, places = len(inventory.things), len(inventory.places)
-    if not things and not places:
+    if not inventory.things and not inventory.places:
         return Account("The map is empty.", 0)
-    has = nouns.listed([nouns.number(n, noun) for n, noun in ((places, "place"), (things, "thing")) if n])
     paragraphs = [_paragraph(inventory, name) for name in inventory.places_in_order()]
-    elsewhere = "In no place {be}" if places else "There {be}"
+    elsewhere = "In no place {be}" if inventory.places else "There {be}"
     paragraphs.append(Paragraph(elsewhere, inventory.standing_in(None)))
     in_sum = inventory.in_sum(inventory.things.values())
-    return _fitted(f"The map has {has}.", troubles, paragraphs, in_sum, most_words)
+    return _fitted(_of_all(inventory), troubles, paragraphs, in_sum, most_words)
+
+
+def of_large_map(inventory: Inventory, troubles: Sequence[str], most_words: int) -> Account:
+    """What a map has, wherever it is."""
+    return _fitted(_of_all(inventory), troubles, (), inventory.in_sum(inventory.things.values()), most_words)
 
 
 def of_place(inventory: Inventory, name: str, troubles: Sequence[str], most_words: int) -> Account:
@@ -78,6 +81,12 @@ def of_thing(
     return Account(told, left)
 
 
+def _of_all(inventory: Inventory) -> str:
+    """`The map has 9 places and 69 things.`."""
+    counts = ((len(inventory.places), "place"), (len(inventory.things), "thing"))
+    return f"The map has {nouns.listed([nouns.number(n, noun) for n, noun in counts if n])}."
+
+
 def _paragraph(inventory: Inventory, name: str) -> Paragraph:
     """What a place has itself: `The dining corner of the kitchen has`."""
     within = inventory.places.get(inventory.places[name].within or "")
@@ -112,7 +121,7 @@ def _fitted(
         return _words(account.text) <= most_words
 
     full = [paragraph for paragraph in paragraphs if paragraph.groups]
-    if len(full) > most_words or not fits(with_(full, ())):
+    if (in_sum and not full) or len(full) > most_words or not fits(with_(full, ())):
         full = [Paragraph("There {be}", tuple(in_sum))]
         if not fits(with_(full, ())):
             return Account(" ".join(first), full[0].all)

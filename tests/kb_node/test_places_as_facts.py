@@ -12,6 +12,7 @@ from nodes.kb_node.documents import rdf
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.journal.pace import Pace
 from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from nodes.kb_node.storage.journal.verification import verify
 from ontology import FLAT_TTL, HOUSEHOLD_TTL
@@ -153,6 +154,7 @@ def test_a_commit_is_in_the_journal_as_it_is_answered_whatever_it_did_to_places(
     dice = random.Random(7)
     movable = [name for name in flat.names if not flat.entity(name).place]
     spots = [flat.entity(name).pose.position_m for name in movable]
+    monkeypatch.setattr(Pace, "is_slow", lambda _: True)
     replaced = []
     replace = flat._journal._replace
     monkeypatch.setattr(

@@ -13,6 +13,7 @@ from msgspec import structs
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
 from nodes.kb_node.answers.accounts import Accounts
 from nodes.kb_node.answers.finding import Finding
+from nodes.kb_node.answers.gone import gone
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -53,6 +54,7 @@ from schemas.commits import Commit, Snapshot, Star
 from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, Spells
+from schemas.language import Found
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -111,7 +113,7 @@ class Asking:
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
             Tell.answered_by(self._accounts.tell),
-            Find.answered_by(self._finding.find),
+            Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -252,6 +254,16 @@ class Asking:
         if entity is not None and not self.sightings.is_gone(entity):
             return self.sightings.there(entity)
         return self._aside.submit(self.sightings.gone, query.name, entity)
+
+    def on_find(self, query: Find) -> Found | Future[Found]:
+        """What a description means; where nothing fits, also when it was last there."""
+        sought = self._finding.find(query)
+        if sought.missing is None:
+            return sought.found
+        missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
+        return self._aside.submit(
+            lambda: sought.with_the_past(gone(self._journal, self._past, missing, there, limits))
+        )
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""

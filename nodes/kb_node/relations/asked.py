@@ -49,7 +49,9 @@ class Asked:
                 self._known[key] = measured(self._space, one, two, self._left_out)
             else:
                 view = self._seen()
-                self._known[key] = not self._is_borne(one, two) and on_side(relation, one, two, view)
+                self._known[key] = not self._is_borne(one, two) and on_side(
+                    self._space, relation, one, two, view
+                )
         return self._known[key]
 
     def _is_borne(self, one: Solid, two: Solid) -> bool:

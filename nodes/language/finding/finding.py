@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from nodes.language.finding import reading, telling
+from nodes.language.finding import reading
 from nodes.language.finding.description import Description
 from nodes.language.finding.known import Known
 from nodes.language.finding.parsing import parses
@@ -14,7 +14,7 @@ from nodes.language.finding.resolving import Resolved, Resolver, Scope
 from nodes.language.finding.surroundings import Surroundings
 from nodes.language.lexicon.describing import LANGUAGES
 from schemas import errors
-from schemas.language import Found, Outcome
+from schemas.language import Outcome
 
 MOST_WORDS: Final = 60
 """Of a description."""
@@ -32,16 +32,11 @@ class Answer:
     resolver: Resolver
 
 
-def find(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Found:
-    """The entities that a text describes, with reasons, or a question, or what is nearest.
+def find(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Answer:
+    """The entities that a text describes; `asker` is who says *my*, by name.
 
     Raises BadRequest for no words, too many, what is said of the past, and left and right without a viewer.
     """
-    return telling.told(answer(text, known, around, asker))
-
-
-def answer(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Answer:
-    """See `find`."""
     read = _read(text, known)
     resolver = Resolver(known, around, read.nouns.describing.language, asker)
     best: tuple[int, Answer] | None = None

@@ -416,6 +416,8 @@ class _Parser:
         if j >= len(self._words):
             return None
         tail = self._length("afford_tail", j + 1)
+        if tail and not self._ends(j + 1 + tail):  # something to read on the desk
+            tail = 0
         endings = (self._said(j + 1, j + 1 + tail), "") if tail else ("",)
         for ending in endings:
             for form in forms(self._words[j]):

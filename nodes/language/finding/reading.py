@@ -110,7 +110,7 @@ def nearest(word: str, nouns: Nouns) -> str | None:
             continue
         found = (off - 0.5 * (_sound(known) == sound), -min(nouns.words[known], 1), known)
         best = found if best is None else min(best, found)
-    return None if best is None else _as_many(word, best[2], nouns)
+    return None if best is None else _as_many(word, nouns.forms[best[2]], nouns)
 
 
 def _as_many(word: str, known: str, nouns: Nouns) -> str:

@@ -119,7 +119,9 @@ class Resolver:
         found = self.known.called(said.key, self.language)
         for restriction in said.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
-                found = {**found, **dict.fromkeys(self.resolve(restriction.other, scope).kind)}
+                content = self.resolve(restriction.other, scope)
+                if not any(self._is_of(self.known.items[name], content) for name in found):
+                    found = {**found, **dict.fromkeys(content.kind)}
         return tuple(sorted(found))
 
     def fits(self, name: str, restriction: Restriction, said: Description, kind: Names, scope: Scope) -> bool:

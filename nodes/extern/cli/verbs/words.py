@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
+import textwrap
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -44,7 +46,8 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
     if format == "json":
         print_json(found)
     else:
-        print_lines([found.text])
+        width = shutil.get_terminal_size().columns
+        print_lines(textwrap.wrap(found.text, width) if sys.stdout.isatty() else [found.text])
 
 
 @click.command()

@@ -200,9 +200,10 @@ class Journal:
 
         That one and its digest are returned. Where it is otherwise, its record is written anew before anybody
         can read it; after a loss of power in between, or where the disk takes the first and not the second,
-        the first one stands. Raises NotWritten for the first; what `finish` raises, and then it is durable.
+        the first one stands. On a disk that is done before a thread is awake, and within `together`, `finish`
+        comes first. Raises NotWritten for the first; what `finish` raises, and then it may be durable.
         """
-        if self.file.is_writing:
+        if self.file.is_writing or not self.file.pace.is_slow():
             finished = finish()
             return finished, self.append(finished)
         found: list[Commit] = []

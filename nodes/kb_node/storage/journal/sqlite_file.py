@@ -6,6 +6,7 @@ import os
 import shlex
 import sqlite3
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Final
 
 from nodes.kb_node.storage.journal import write_ahead
 from nodes.kb_node.storage.journal.beside import Beside, Work
+from nodes.kb_node.storage.journal.pace import Pace
 from schemas import errors
 
 _PAGE_BYTES: Final = 4096
@@ -65,6 +67,7 @@ class JournalFile:
         self.path = path
         self._lock = threading.RLock()
         self._beside = Beside()
+        self.pace = Pace()
         try:
             self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         except sqlite3.DatabaseError as error:
@@ -125,7 +128,9 @@ class JournalFile:
                 try:
                     yield db
                     if meanwhile is None:
+                        began_s = time.perf_counter()
                         db.execute("COMMIT")
+                        self.pace.took(time.perf_counter() - began_s)
                     else:
                         with self._beside.doing(meanwhile):
                             db.execute("COMMIT")

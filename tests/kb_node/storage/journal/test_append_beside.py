@@ -8,6 +8,7 @@ import pytest
 from msgspec import structs
 
 from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.journal.pace import Pace
 from nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from nodes.kb_node.storage.journal.verification import verify
 from schemas.commits import Departed
@@ -19,6 +20,11 @@ from tests.kb_node.storage.journal.test_journal import (
     write,
     written,
 )
+
+
+@pytest.fixture(autouse=True)
+def slow_disk(monkeypatch):
+    monkeypatch.setattr(Pace, "is_slow", lambda _: True)
 
 
 def about(one, *names, notes=()):
@@ -121,6 +127,24 @@ def test_what_could_not_be_finished_is_durable(journal):
     again.close()
 
 
+def test_on_a_quick_disk_it_is_finished_first_and_written_once(journal, monkeypatch):
+    monkeypatch.setattr(Pace, "is_slow", lambda _: False)
+    whole, by = about(commit(1), "cup1"), []
+
+    def finish():
+        by.append(threading.get_ident())
+        return whole
+
+    finished, digest = journal.append_beside(commit(1), finish)
+    assert (finished, digest) == (whole, journal.digest(1))
+    assert by == [threading.get_ident()]
+    with pytest.raises(KeyError):
+        journal.append_beside(commit(2), lambda: {}[0])
+    again = reopened(journal)
+    assert written(again) == [whole]
+    again.close()
+
+
 def test_together_with_others_it_is_written_once_it_is_finished(journal):
     whole = about(commit(2), "cup1")
     with journal.together():
@@ -143,7 +167,9 @@ WRITER = """
 import sys
 from pathlib import Path
 from nodes.kb_node.storage.journal import Journal
+from nodes.kb_node.storage.journal.pace import Pace
 from tests.kb_node.storage.journal.test_append_beside import about, commit
+Pace.is_slow = lambda _: True
 journal = Journal(Path(sys.argv[1]))
 for seq in range(1, 100_000):
     first, whole = about(commit(seq), "cup1"), about(commit(seq), "cup1", "table1")
