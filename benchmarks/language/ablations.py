@@ -30,7 +30,7 @@ GROUPS: Final = {  # a feature is of a group if it mentions it, also together wi
 
 
 def rows(examples: list[Example]) -> Iterator[Row]:
-    """Frames, heads and whole commands by five folds and with a folder left out, without one thing at a time."""
+    """Frames, heads and whole commands by five folds and with a folder left out, without one thing each."""
     trials_without: dict[str, dict[str, Any]] = {
         "nothing": {},
         "patterns of ours": {"with_made": False},
