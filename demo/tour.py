@@ -14,6 +14,7 @@ import signal
 import socket
 import subprocess
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -29,6 +30,8 @@ RECORDING = HERE / "session.rrd"
 PICTURE = HERE / "scene.png"
 _BIN = Path(sys.executable).parent
 _SHOWN_LINES = 14
+_WIDTH, _LONG = 110, 160
+"""Characters of a line; longer ones than the second are sentences, and are wrapped."""
 _PATIENCE_S = 30.0
 
 
@@ -37,7 +40,7 @@ class Tour:
 
     def __init__(self, endpoint: str) -> None:
         self.endpoint = endpoint
-        self._environment = {**os.environ, "SEMMAP_CONNECT": endpoint, "COLUMNS": "110"}
+        self._environment = {**os.environ, "SEMMAP_CONNECT": endpoint, "COLUMNS": f"{_WIDTH}"}
         self.failures: list[str] = []
 
     def tell(self, text: str) -> None:
@@ -114,9 +117,10 @@ class Tour:
         output = run.stdout + run.stderr
         lines = [line for line in output.splitlines() if line.strip()]
         for line in lines[:_SHOWN_LINES]:
-            print(line[:160])
+            print(*textwrap.wrap(line, _WIDTH, max_lines=8) if len(line) > _LONG else [line], sep="\n")
         if len(lines) > _SHOWN_LINES:
-            print(f"... and {len(lines) - _SHOWN_LINES} more lines")
+            more = len(lines) - _SHOWN_LINES
+            print(f"... and {more} more {'line' if more == 1 else 'lines'}")
         if run.returncode != status:
             self.failures.append(f"{' '.join(words)}: status {run.returncode}, expected {status}")
         if holds not in output:
@@ -149,6 +153,7 @@ def tour(t: Tour) -> None:
     t.tell("Who is there, and what is in the map")
     t.do("status")
     t.until("map and scene agree", t.agrees)
+    t.do("tell", holds="The map has 9 places")
     t.do("list", "--class", "Furniture", holds="chair1")
     t.do("classes")
 
@@ -160,6 +165,20 @@ def tour(t: Tour) -> None:
     t.do("list", "--class", "Drinkable", holds="beer7")
     t.do("infer", "beer7", holds="beer7 type Drinkable")
     t.do("explain", "beer7", "type", "Food", holds="beer7")
+
+    t.tell("In words: find what is meant, be asked back, in Italian too; then do as one is told")
+    t.do("find", "something to drink", holds="beer7")
+    t.do("find", "the book", holds="Which one: the book on the desk")
+    t.do("find", "la tazza sulla scrivania", holds="cup1")
+    request = "put the cold beer on the kitchen counter"
+    t.do("understand", request, holds="Placing(Theme=beer7, Goal=counter1)")
+    (frame,) = t.ask("understand", request)["frames"]  # type: ignore[index, call-overload]
+    meant = {argument["role"]: argument["entity"] for argument in frame["arguments"]}
+    t.do("update", meant["Theme"], "--at", "7.75", "0.45", "0.9")
+    t.do("tell", meant["Goal"], holds="a cold beer")
+    t.do("when", meant["Theme"], "isOn", "table1", holds="beer7 is no longer on table1; it was from commit")
+    t.do("undo", holds="undid commit")
+    t.do("when", meant["Theme"], "isOn", "table1", holds="2 times")
 
     t.tell("A chair with all defaults, and a change of it: omitted fields keep their values")
     t.do("add", "Chair", "--default", "--wait", holds="body: present")
@@ -241,6 +260,7 @@ def tour(t: Tour) -> None:
 
     t.tell("The past: what was, who said so, and back again")
     t.do("history", "beer7", holds="add Beer beer7")
+    t.do("diff", "1", "4", holds="beer7: added as Beer")
     t.do("list", "--class", "Beer", "--as-of", "1")
     t.do("last-seen", "apple9", holds="remove")
     t.do("add", "Vase", "vase9", "--at", "8.3", "2.2", "0.76")

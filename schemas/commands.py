@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
+from schemas.approvals import Request, Told
 from schemas.backups import BackupPart
 from schemas.calls import DOCUMENT, MANY, Call, R
 from schemas.entities import (
@@ -32,7 +33,7 @@ from schemas.entities import (
 )
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, KeptRelation, Spells
-from schemas.language import Found, Language, Understood
+from schemas.language import Account, Found, Language, Understood
 from schemas.moments import When
 from schemas.relations import Described, Relation, ViewPoint, Where
 from schemas.replies import (
@@ -55,6 +56,8 @@ RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
 ListFormat = Literal["json", "lu4r", "legacy"]
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
+Since = Annotated[int, Meta(ge=0, le=1 << 53)]
+"""A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
 
 
 _SLOW: Final = frozenset({"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step"})
@@ -94,6 +97,9 @@ class Add(Command[Changed], frozen=True, tag="add"):
     Without `name` one is made from the class; without `at` it goes to the next free place near the default
     pose; with `default` it also gets the class's label as reference. `set` are properties, each written
     `PROPERTY=VALUE`. `wait` delays the reply until its body stands in the scene.
+
+    Like every command that changes entities, it is refused with PreconditionFailed where one of those that
+    are to be `unchanged` is gone, or was changed by a commit after `since`.
     """
 
     class_: ClassName = field(name="class")
@@ -108,6 +114,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
     default: bool = False
     wait: bool = False
     set: tuple[Text, ...] = ()
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
     dry_run: bool = False
 
 
@@ -137,6 +145,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     force: bool = False
     carry: bool = False
     leave: tuple[Word, ...] = ()
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
     dry_run: bool = False
 
 
@@ -155,6 +165,8 @@ class Set(Command[Changed], frozen=True, tag="set"):
     if_is: Value | None = None
     if_unset: bool = False
     confidence: Probability | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
     dry_run: bool = False
 
 
@@ -165,6 +177,8 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
     property: Text
     value: Value | None = None
     if_is: Value | None = None
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
     dry_run: bool = False
 
 
@@ -174,6 +188,8 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
     LARGEST: ClassVar[int] = MANY
 
     names: tuple[Word, ...]
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
     dry_run: bool = False
 
     def __post_init__(self) -> None:
@@ -322,6 +338,16 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
     other: Word
 
 
+class Tell(Command[Account], frozen=True, tag="tell"):
+    """What is there, in a text of at most so many `words`: in the map, in a place, or of a thing.
+
+    What matters most is said first, like things are counted together, and what is left out is said to be.
+    """
+
+    name: Word | None = None
+    words: Annotated[int, Meta(ge=20, le=5000)] = 150
+
+
 class Understand(Command[Understood], frozen=True, tag="understand"):
     """What a command in words asks for: frames, and which entities of the map fill their roles.
 
@@ -393,6 +419,27 @@ class Undo(Command[Changed], frozen=True, tag="undo"):
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
+
+
+# To let agents change
+
+
+class Submit(Command[Request], frozen=True, tag="submit"):
+    """Ask a person to approve a change, in words; under the same `id`, ask what became of it.
+
+    `text` says what is to be done, `follows` what would follow from it, a line each. Approval is no lock: who
+    submits a change makes it when it is approved.
+    """
+
+    text: Annotated[str, Meta(min_length=1, max_length=2000)]
+    follows: Annotated[Told, Meta(max_length=200)] = ()
+
+
+class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
+    """The requests of agents that wait; with a `number` that one is approved or, with `reject`, rejected."""
+
+    number: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
+    reject: bool = False
 
 
 # To keep

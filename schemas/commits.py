@@ -249,7 +249,8 @@ class Transaction(
     `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
 
     `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
-    triple of `require` is asserted. `id` is the command's: the same id a second time changes nothing and is
+    triple of `require` is asserted, and the entities that are to be `unchanged` are there and no commit after
+    `since` has changed them. `id` is the command's: the same id a second time changes nothing and is
     answered with the first commit.
 
     `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
@@ -270,6 +271,8 @@ class Transaction(
     edit: tuple[Edit, ...] = ()
     add: tuple[NewEntity, ...] = ()
     require: tuple[Triple, ...] = ()
+    unchanged: tuple[str, ...] = ()
+    since: int = 0
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
     dry_run: bool = False

@@ -47,8 +47,11 @@ Size = tuple[Length, Length, Length]
 Quaternion = tuple[Unit, Unit, Unit, Unit]
 """Unit quaternion, `wxyz`."""
 
-Source = Literal["operator", "file", "scene", "perception"]
+Source = Literal["operator", "file", "scene", "perception", "agent"]
 """Who says so. Only operators and files decide what a thing is; anybody may say where it is now."""
+
+LESSER: frozenset[Source] = frozenset(("scene", "perception", "agent"))
+"""Those that never outrank an operator. An `agent` decides by itself: a language model, for one."""
 
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 _UNIT_TOLERANCE = 1e-3

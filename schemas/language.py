@@ -56,6 +56,15 @@ class Grounded(Struct, frozen=True):
     entity: str
 
 
+class Account(Struct, frozen=True):
+    """What is there after a commit, as a text of so many words, which names all but `left_out` things."""
+
+    text: str
+    words: int
+    left_out: int
+    commit: int
+
+
 class Understood(Struct, frozen=True):
     """A command as it was understood.
 

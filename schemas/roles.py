@@ -34,6 +34,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
             "could",
             "relations",
             "understand",
+            "tell",
             "find",
             "diff",
             "when",
@@ -44,7 +45,7 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
         *("status", "history", "last-seen", "sparql", "watch", "renew", "picture"),
     ),
     _OBSERVERS: ("add", "update", "set", "unset", "remove"),
-    _OPERATORS: ("clear", "load", "undo", "move", "pause", "step", "reset"),
+    _OPERATORS: ("clear", "load", "undo", "submit", "approve", "move", "pause", "step", "reset"),
     _ADMINS: ("backup", "compact"),
 }
 COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}
@@ -52,8 +53,8 @@ COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.item
 
 SOURCES: Final[dict[Role, frozenset[Source]]] = {
     "perception": frozenset(("perception",)),
-    "operator": frozenset(("operator", "file", "perception")),
-    "admin": frozenset(("operator", "file", "perception")),
+    "operator": frozenset(("operator", "file", "perception", "agent")),
+    "admin": frozenset(("operator", "file", "perception", "agent")),
     "node": frozenset(get_args(Source)),
 }
 """What those who change the map may sign as."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 import time
 from collections import Counter
@@ -11,6 +12,7 @@ import zenoh
 
 from nodes import bus
 from schemas import codec, keys
+from semmap import aio
 from tests.conftest import running, until
 
 PUTS = 4000
@@ -69,3 +71,20 @@ def test_puts_without_end_are_done_or_refused_and_the_status_is_told_meanwhile(s
         assert set(ended) == {"done", "busy"}
         assert until(lambda: client.status().commit - before == ended["done"], "all that was done is there")
         assert max(took_s) < PATIENT_S
+
+
+def test_second_opinions_on_the_map_hold_up_no_other_question(system):
+    """They take seconds each, and waited among what takes milliseconds."""
+
+    async def main():
+        async with aio.connect(system.endpoint) as client:
+            opinions = [asyncio.ensure_future(client.check("owlrl")) for _ in range(4)]
+            await asyncio.sleep(0.5)
+            fridge = await client.get("fridge1", as_of=1)
+            commits = await client.history(limit=1)
+            are_done = [opinion.done() for opinion in opinions]
+            for opinion in opinions:
+                opinion.cancel()
+            return fridge.name, len(commits), any(are_done)
+
+    assert asyncio.run(asyncio.wait_for(main(), PATIENCE_S)) == ("fridge1", 1, False)

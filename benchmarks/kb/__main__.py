@@ -162,6 +162,7 @@ def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
     report[IN_TURN] = {
         "core": {what: pair._asdict() for what, pair in core.items()},
         "wire": {what: pair._asdict() for what, pair in wired.took.items()},
+        "wire_floor": {what: least._asdict() for what, least in wired.floor.items()},
         "wire_cpu": {what: pair._asdict() for what, pair in wired.cpu.items()},
         "university": {triples: pair._asdict() for triples, pair in universities.items()},
     }

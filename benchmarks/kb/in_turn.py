@@ -8,17 +8,20 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import chain
 from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
-from benchmarks.kb import university
+from benchmarks.kb import floor, university
 
 CORE = ("add", "move", "refuse", "remove")
 WIRE = ("add", "move", "reference", "remove")
 SUSTAINED = "sustained"
 _HERE = Path(__file__).parents[2]
 _ROUNDS = 6
+_SHORT_ROUNDS = 30
+"""Over Zenoh: what else the machine does changes from second to second."""
 
 
 class Pair(NamedTuple):
@@ -34,22 +37,23 @@ class Pair(NamedTuple):
 
 
 class Sides:
-    """The processes of both versions, asked in turn; who is asked first changes from round to round."""
+    """The processes of both versions, asked in turn.
+
+    Who is asked first changes from round to round: who was asked last has its caches filled.
+    """
 
     def __init__(self, sides: Sequence[subprocess.Popen[str]]) -> None:
         self._sides = sides
-        self._first = 0
 
-    def ask(self, word: str, count: int) -> tuple[Any, Any]:
+    def ask(self, word: str, count: int, round_: int = 0) -> tuple[Any, Any]:
         """What the version before and this one answer."""
         answers: dict[int, Any] = {}
-        for i in (self._first, 1 - self._first):
+        for i in (round_ % 2, 1 - round_ % 2):
             side = self._sides[i]
             assert side.stdin is not None
             assert side.stdout is not None
             print(word, count, file=side.stdin, flush=True)
             answers[i] = json.loads(side.stdout.readline())
-        self._first = 1 - self._first
         return answers[0], answers[1]
 
 
@@ -57,8 +61,15 @@ def core(before: Path, size: int, count: int) -> dict[str, Pair]:
     """The engine alone; medians of the rounds' medians [ms]."""
     with _sides(before, ["core", str(size)], ["core", str(size)]) as sides:
         sides.ask("warm", count // 5)
-        rounds = [sides.ask(f"n{i}_", count) for i in range(_ROUNDS)]
+        rounds = [sides.ask(f"n{i}_", count, i) for i in range(_ROUNDS)]
     return {what: _pair([(old[what], new[what]) for old, new in rounds]) for what in CORE}
+
+
+class Least(NamedTuple):
+    """The median of what a chain of bare processes takes, and what the processors spend on it [ms]."""
+
+    took_ms: float
+    cpu_ms: float
 
 
 class Wired(NamedTuple):
@@ -66,6 +77,8 @@ class Wired(NamedTuple):
 
     took: dict[str, Pair]
     """Medians [ms]; of `sustained` the moves a second."""
+    floor: dict[str, Least]
+    """Of some, the least that this machine and its libraries would take (`floor.py`)."""
     cpu: dict[str, Pair]
     """Means, in all processes together, the client's too [ms]: a busy machine disturbs it less."""
 
@@ -76,20 +89,28 @@ def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = 
     words[1] += [] if tbox is None else [str(tbox)]
     took: dict[str, tuple[list[float], list[float]]] = {what: ([], []) for what in WIRE}
     cpu: dict[str, list[tuple[float, float]]] = {what: [] for what in (*WIRE, SUSTAINED)}
-    with _sides(before, *words) as sides:
-        for i in range(_ROUNDS + 1):
+    least: dict[str, list[tuple[list[float], float]]] = {what: [] for what in floor.SIZES}
+    with _sides(before, *words) as sides, floor.chain(str(folder)) as bare:
+        for i in range(_SHORT_ROUNDS + 1):
             for what in WIRE:
-                old, new = sides.ask(what, count // _ROUNDS if i else 20)
+                old, new = sides.ask(what, count // _SHORT_ROUNDS if i else 20, i)
+                if what in least:
+                    found = bare(what, count // _SHORT_ROUNDS)
+                    least[what] += [(found.took_ms, found.cpu_ms)] if i else []
                 if i:
                     took[what][0].extend(old["found"])
                     took[what][1].extend(new["found"])
                     cpu[what].append((old["cpu_ms"], new["cpu_ms"]))
-        rounds = [sides.ask(SUSTAINED, 2 * count) for _ in range(3)]
+        rounds = [sides.ask(SUSTAINED, count, i) for i in range(6)]
     cpu[SUSTAINED] = [(old["cpu_ms"], new["cpu_ms"]) for old, new in rounds]
     rates = _pair([(old["found"], new["found"]) for old, new in rounds])
     pairs = {what: Pair(*map(median, both)) for what, both in took.items()}
     spent = {what: Pair(*map(mean, zip(*rows, strict=True))) for what, rows in cpu.items()}
-    return Wired({**pairs, SUSTAINED: rates}, spent)
+    bottom = {
+        what: Least(median(chain.from_iterable(one for one, _ in rows)), mean(spent for _, spent in rows))
+        for what, rows in least.items()
+    }
+    return Wired({**pairs, SUSTAINED: rates}, bottom, spent)
 
 
 def of_university(before: Path, triples: int, turns: int) -> Pair:

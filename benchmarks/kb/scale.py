@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 
-from benchmarks.kb import big_files
+from benchmarks.kb import big_files, limits
 from benchmarks.kb.made import timed
 from nodes.extern.client import Client
 from nodes.extern.testing import free_endpoint, own_system
@@ -64,6 +64,8 @@ class Scale(NamedTuple):
     update_ms: float
     check_s: float | None
     """`check` from nothing, by the client."""
+    limits: limits.Limits
+    """Of the loads, in the same run."""
 
 
 def measure(folder: Path, size: int) -> Scale:
@@ -75,8 +77,9 @@ def measure(folder: Path, size: int) -> Scale:
         with _running(folder / "json") as (client, _):
             load_json_s = timed(lambda: client.load(scene))
         shutil.rmtree(folder / "json")
-        scene.unlink()
     big_files.write_turtle(turtle, size)
+    least = limits.measure(folder, size, turtle, scene if scene.exists() else None)
+    scene.unlink(missing_ok=True)
     data = folder / "turtle"
     with _running(data) as (client, _):
         load_turtle_s = timed(lambda: client.load(turtle))
@@ -125,6 +128,7 @@ def measure(folder: Path, size: int) -> Scale:
         add_ms=median(adds) * 1e3,
         update_ms=median(updates) * 1e3,
         check_s=check_s,
+        limits=least,
     )
 
 

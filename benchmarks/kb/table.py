@@ -73,6 +73,9 @@ def of_wire_in_turn(wired: Wired, size: int) -> list[Row]:
         said = f"over Zenoh: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
         rows.append(Row(said, pair.ratio, "times", reach, aim))
         rows.append(Row(f"over Zenoh: {what}, {size}, p50", pair.now, "ms", None, 1.0))
+    for what, least in wired.floor.items():
+        rows.append(Row(f"over Zenoh: {what}: the chain alone, and the disk, p50", least.took_ms, "ms"))
+        rows.append(Row(f"CPU time: {what}: the chain alone, and the disk", least.cpu_ms, "ms"))
     for what, pair in wired.cpu.items():
         said = f"CPU time: {what}, {size}, {pair.before:.2f} ms before, {pair.now:.2f} now"
         rows.append(Row(said, pair.ratio, "times"))
@@ -172,10 +175,16 @@ def of_scale(found: Sequence[Scale]) -> list[Row]:
     rows: list[Row] = []
     for one in found:
         bounds, of = _OF_SIZE.get(one.entities, {}), f"{one.entities:,} entities"
+        least = one.limits
         measured: list[tuple[str, str, float | None, str]] = [
             ("load_turtle", f"load of {of}, Turtle", one.load_turtle_s, "s"),
             ("load_json", f"load of {of}, JSON", one.load_json_s, "s"),
             ("", f"CPU time of the knowledge base for a load, {of}", one.cpu_of_load_s["kb_node"], "s"),
+            ("", f"limit of a load, {of}: Oxigraph alone reads the Turtle, CPU time", least.turtle_s, "s"),
+            ("", f"limit: msgspec alone reads the JSON, {of}, CPU time", least.json_s, "s"),
+            ("", f"limit: the entities in messages, there and back, {of}, CPU time", least.messages_s, "s"),
+            ("", f"limit: zlib alone compresses the commit, {of}, CPU time", least.compress_s, "s"),
+            ("", f"limit: the disk alone, {of}", least.disk_s, "s"),
             ("", f"memory of all processes after it, {of}", one.memory_loaded_mb / 1e3, "GB"),
             ("memory_gb", f"the same with SPARQL's store, {of}", one.memory_queried_mb / 1e3, "GB"),
             ("first_sparql", f"first SPARQL after a load, {of}", one.first_sparql_after_load_s, "s"),

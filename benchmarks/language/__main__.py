@@ -1,4 +1,4 @@
-"""`python -m benchmarks.language [--ablations | --errors | --evaluate DIR --predictions FILE]`."""
+"""`python -m benchmarks.language [--ablations | --errors | --find | --evaluate DIR --predictions FILE]`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from benchmarks.language import ablations, baseline, errors, trials
+from benchmarks.language import ablations, baseline, errors, finding, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
 from nodes.language.interpretation import shipped
@@ -55,6 +55,7 @@ def rows(examples: list[Example], with_ablations: bool) -> list[Row]:
     _, ms = trials.read(examples, shipped())
     found.append(Row("a sentence, p50", ms, "ms", 5, 2))
     found += _rows("Italian", scores(trials.italian(examples)))
+    found += finding.rows()
     if with_ablations:
         found += ablations.rows(examples)
     return found
@@ -94,6 +95,7 @@ def main() -> None:
     parser.add_argument("--errors", action="store_true", help="only the commands that went wrong, grouped")
     parser.add_argument("--evaluate", type=Path, metavar="DIR", help="read these .hrc files with what ships")
     parser.add_argument("--predictions", type=Path, metavar="FILE", help="where to write what was understood")
+    parser.add_argument("--find", action="store_true", help="only how well things are found")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
     if (given.evaluate is None) != (given.predictions is None):
@@ -104,6 +106,8 @@ def main() -> None:
         return
     if given.evaluate is not None:
         found = _rows(str(given.evaluate), _evaluate(given.evaluate, given.predictions))
+    elif given.find:
+        found = finding.rows()
     else:
         found = rows(corpus.read(given.data), given.ablations)
     print(lines(found))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import time
 from collections.abc import Iterable, Iterator, Mapping
@@ -65,7 +66,7 @@ def _try(finding: Finding, index: int, asked: Mapping[str, Any]) -> Tried:
         asker=asked["for"],
     )
     try:
-        found = finding.find(query)
+        found = finding.find(query).found
     except errors.SemmapError as error:
         return Tried(index, asked, str(error), False)
     names = {candidate.entity for candidate in found.candidates}
@@ -81,13 +82,15 @@ def rows() -> list[Row]:
     """The figures: all, by what was looked at, by kind, by language; and how long one takes."""
     all_ = tried()
     found = [_row("find: right of 150", all_, 0.92, 0.98)]
-    found.append(_row("find: right of those that nobody looked at", (t for t in all_ if not t.was_looked_at)))
-    found.append(_row("find: right of those looked at", (t for t in all_ if t.was_looked_at)))
+    found.append(
+        _row("find: right of those scored before they were read", (t for t in all_ if not t.was_looked_at))
+    )
+    found.append(_row("find: right of those read while it was written", (t for t in all_ if t.was_looked_at)))
     for kind in ("one", "several", "ambiguous", "none"):
         found.append(_row(f"find: right, {kind}", (t for t in all_ if t.asked["kind"] == kind)))
     for tag, language in (("en", "English"), ("it", "Italian")):
         found.append(_row(f"find: right, {language}", (t for t in all_ if t.asked["language"] == tag)))
-    return [*found, Row(f"find: at {_ENTITIES} entities, p50", milliseconds(), "ms", 5, 2)]
+    return [*found, Row(f"find: at {_ENTITIES} entities, p50, CPU", milliseconds(), "ms", 5, 2)]
 
 
 def _row(what: str, some: Iterable[Tried], reach: float | None = None, aim: float | None = None) -> Row:
@@ -107,9 +110,9 @@ def milliseconds(entities: int = _ENTITIES) -> float:
         for description in asked:
             viewer = description["viewer"] and tuple(map(float, description["viewer"]))
             query = Find(text=description["text"], viewpoint=viewer)
-            begun = time.perf_counter()
+            begun = time.process_time()
             finding.find(query)
-            times.append(1e3 * (time.perf_counter() - begun))
+            times.append(1e3 * (time.process_time() - begun))
     return median(times)
 
 
@@ -154,13 +157,27 @@ def _star(
             yield subject, v.dm(property_name), v.entity_iri(value + suffix)
 
 
+@functools.cache
+def _closure() -> tuple[str, bytes]:
+    """Name and content of the file that keeps what follows from the TBox."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder)
+        journal = Journal.create(path / FILENAME, HOUSEHOLD_TTL.read_bytes())
+        SemanticMap(journal)
+        journal.close()
+        kept = next(path.glob("*.closure"))
+        return kept.name, kept.read_bytes()
+
+
 @contextmanager
 def _map(triples: Iterable[Triple]) -> Iterator[SemanticMap]:
+    name, closure = _closure()
     with TemporaryDirectory() as folder:
+        (Path(folder) / name).write_bytes(closure)
         journal = Journal.create(Path(folder) / FILENAME, HOUSEHOLD_TTL.read_bytes())
-        made = SemanticMap(journal)
-        made.commit(Transaction(id="all", source="file", insert=tuple(triples)))
         try:
+            made = SemanticMap(journal)
+            made.commit(Transaction(id="all", source="file", insert=tuple(triples)))
             yield made
         finally:
             journal.close()

@@ -11,9 +11,8 @@ from collections.abc import Iterable
 from nodes.coordinator.config import Truth
 from schemas import errors
 from schemas.commands import Add, Clear, Command, Remove, Update
-from schemas.entities import Entity
+from schemas.entities import LESSER, Entity
 
-_LESSER = frozenset(("scene", "perception"))
 _COMES_BACK = {
     "scene": "the scene decides what exists (--truth scene): a body that still stands there is added again",
     "perceived": "perception decides what exists (--truth perceived): what it still sees is added again",
@@ -23,10 +22,10 @@ _GOES_BACK = {"scene": "the scene decides where bodies stand (--truth scene); to
 
 def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
     """Raises Refused when the command's source may not change what these entities are."""
-    if command.source not in _LESSER:
+    if command.source not in LESSER:
         return
     for entity in concerned:
-        if not {entity.shape_provenance.source, entity.reference_provenance.source} <= _LESSER:
+        if not {entity.shape_provenance.source, entity.reference_provenance.source} <= LESSER:
             raise errors.Refused(
                 f"an operator stated what {entity.name} is, so only an operator may change that or remove it;"
                 " any client may move it"
@@ -43,5 +42,5 @@ def note(command: Add | Update | Remove | Clear, truth: Truth) -> str | None:
 
 def require_operator(command: Command, what: str) -> None:
     """Raises Refused for any other source."""
-    if command.source in _LESSER:
+    if command.source in LESSER:
         raise errors.Refused(f"only an operator may {what}")

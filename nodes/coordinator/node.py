@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from msgspec import structs
 
 from nodes.coordinator import admission, authority
+from nodes.coordinator.approvals import Approvals
 from nodes.coordinator.config import CoordinatorConfig
 from nodes.coordinator.current_answers import Answers
 from nodes.coordinator.dialogues import hold_later
@@ -86,6 +87,7 @@ class Coordinator:
             c.Could.answered_by(relay),
             c.Relations.answered_by(relay),
             c.Understand.answered_by(relay),
+            c.Tell.answered_by(relay),
             c.Find.answered_by(relay),
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
@@ -98,9 +100,14 @@ class Coordinator:
             c.Backup.answered_by(relay),
             c.Compact.answered_by(relay),
         )
+        approvals = Approvals()
         handlers = {
             **{verb: (kind, self._with_map(function)) for verb, (kind, function) in of_the_map.items()},
-            **calls.by_verb(c.Status.answered_by(answers.status)),
+            **calls.by_verb(
+                c.Status.answered_by(answers.status),
+                c.Submit.answered_by(approvals.submit),
+                c.Approve.answered_by(approvals.approve),
+            ),
         }
         Follower(node, door.map, keys.UNTOLD, heard=lambda commit, known: None, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)

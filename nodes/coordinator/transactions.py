@@ -30,6 +30,8 @@ def transaction(
         remove=tuple(remove),
         edit=tuple(edit),
         add=tuple(add),
+        unchanged=getattr(command, "unchanged", ()),
+        since=getattr(command, "since", 0),
         dry_run=getattr(command, "dry_run", False),
         told=True,
     )

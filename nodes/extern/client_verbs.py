@@ -105,9 +105,21 @@ def _written_types(kind: type[Any]) -> dict[str, Any]:
     }
 
 
-def _remove(*names: str, dry_run: bool = False, id: str = "", reason: str = "") -> Command[replies.Changed]:
-    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
-    return commands.Remove(names=names, dry_run=dry_run, id=id, reason=reason)
+def _remove(
+    *names: str,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
+    dry_run: bool = False,
+    id: str = "",
+    reason: str = "",
+) -> Command[replies.Changed]:
+    """Remove entities from the map and the scene: all of them or, if one is unknown, none.
+
+    Raises PreconditionFailed where one of `unchanged` was changed by a commit after `since`.
+    """
+    return commands.Remove(
+        names=names, unchanged=tuple(unchanged), since=since, dry_run=dry_run, id=id, reason=reason
+    )
 
 
 def _set(
@@ -117,6 +129,8 @@ def _set(
     if_is: Value | None = None,
     if_unset: bool = False,
     confidence: float | None = None,
+    unchanged: Sequence[str] = (),
+    since: int = 0,
     dry_run: bool = False,
     id: str = "",
     reason: str = "",
@@ -124,7 +138,8 @@ def _set(
     """State a data or object property of an entity: `client.set("door1", "isOpen", True)`.
 
     The value of a functional property replaces the one before; other properties get more values. With `if_is`
-    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none.
+    it raises PreconditionFailed unless that is a value now, with `if_unset` unless there is none, and where
+    one of `unchanged` was changed by a commit after `since`.
     """
     return commands.Set(
         name=name,
@@ -133,6 +148,8 @@ def _set(
         if_is=if_is,
         if_unset=if_unset,
         confidence=confidence,
+        unchanged=tuple(unchanged),
+        since=since,
         dry_run=dry_run,
         id=id,
         reason=reason,
@@ -253,6 +270,7 @@ class Verbs:
     could = Verb(commands.Could)
     relations = Verb(commands.Relations)
     understand = Verb(commands.Understand)
+    tell = Verb(commands.Tell)
     find = Verb(commands.Find)
     diff = Verb(commands.Diff)
     when = Verb(commands.WasWhen)
@@ -263,6 +281,10 @@ class Verbs:
     history = Verb(commands.History)
     last_seen = Verb(commands.LastSeen)
     sparql = Verb(commands.Sparql)
+
+    # To let agents change
+    submit = Verb(commands.Submit)
+    approve = Verb(commands.Approve)
 
     # To keep
     compact = Verb(commands.Compact)

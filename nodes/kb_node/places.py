@@ -17,6 +17,7 @@ from nodes.kb_node.preconditions import subjects
 from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.carrying import Loads
 from nodes.kb_node.relations.facts.place_facts import Facts
+from nodes.kb_node.relations.facts.rules import RULES, About
 from nodes.kb_node.relations.facts.said import denial, fact_of
 from nodes.kb_node.relations.facts.sayings import Sayings, of_places
 from nodes.kb_node.relations.measuring.space import Space
@@ -70,6 +71,20 @@ class Places:
         """The solids as they are now."""
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
+
+    def upward(self, names: Iterable[str]) -> Collection[str]:
+        """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
+        facts = self._facts()
+        return self._entities.keys() if facts is None else facts.upward(names)
+
+    def about(self, name: str) -> Iterator[About]:
+        """What a thing is inside, on, in and attached to, what counts most first; nothing of a place."""
+        facts = self._facts()
+        if facts is not None:
+            yield from facts.of(name)
+        elif (solid := (space := self.space()).solids.get(name)) is not None and not solid.is_place:
+            for rule in RULES:
+                yield from rule.facts(space, solid)
 
     def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
         """A sentence on each spot where so many things are that not all are looked at; the first of them.

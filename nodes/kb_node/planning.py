@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from nodes.kb_node import preconditions
 from nodes.kb_node.entities import entity_writing
@@ -13,6 +15,9 @@ from ontology import vocabulary as v
 from schemas import agents, errors, wording
 from schemas.commits import Commit, Transaction
 from schemas.explanations import Triple
+
+_VERY_MANY: Final = 100_000
+"""Triples."""
 
 
 class Plan(NamedTuple):
@@ -30,20 +35,41 @@ def of(state: MapState, transaction: Transaction) -> Plan | None:
     Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
     what makes no sense; Refused when it takes away from the TBox.
     """
+    if transaction.unchanged:
+        preconditions.require_unchanged(transaction, state.by_name)
     retract, insert, notes = _spelled_out(state, transaction)
     held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
     preconditions.require(transaction, held)
-    wanted = dict.fromkeys(insert)
+    wanted = set(insert) if retract else frozenset[Triple]()
     retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
-    inserted = tuple([t for t in wanted if t not in held]) if held else tuple(wanted)
+    inserted = _each_once(insert)
+    if held:
+        inserted = tuple([t for t in inserted if t not in held])
     if not retracted and not inserted:
         return None
     denied = state.places.taken_back(state.reasoner, state.classes, retracted, inserted)
-    retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
+    if denied.triples:
+        wanted = wanted or set(insert)
+        retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
     for triple in retracted:
         if triple in state.tbox:
             raise errors.Refused(f"the TBox says that {v.spoken(triple)}, and no command changes the TBox")
     return Plan(retracted, inserted, (*notes, *denied.notes))
+
+
+def _each_once(triples: Collection[Triple]) -> tuple[Triple, ...]:
+    """Each of some triples once, in their order.
+
+    Of very many it is told by their hashes, which takes a tenth of the memory, that all of them differ.
+    """
+    if isinstance(triples, dict):
+        return tuple(triples)
+    if len(triples) < _VERY_MANY:
+        return tuple(dict.fromkeys(triples))
+    hashes = np.fromiter(map(hash, triples), np.int64, len(triples))
+    hashes.sort()
+    differ = bool((hashes[1:] != hashes[:-1]).all())
+    return tuple(triples) if differ else tuple(dict.fromkeys(triples))
 
 
 def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Container, Iterable
+from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from itertools import chain, islice
 from operator import itemgetter
 
@@ -11,6 +11,7 @@ from nodes.kb_node.reasoner import Reasoner
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.commits import Transaction
+from schemas.entities import Entity
 from schemas.explanations import Term, Triple
 
 _FEW = 64
@@ -57,3 +58,14 @@ def require(transaction: Transaction, held: Container[Triple]) -> None:
     for triple in transaction.require:
         if triple not in held:
             raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
+
+
+def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) -> None:
+    """Raises PreconditionFailed where an entity that is to be unchanged is gone, or was changed since."""
+    for name in transaction.unchanged:
+        if (entity := entities.get(name)) is None:
+            raise errors.PreconditionFailed(f"{name} is not in the map any more; ask again")
+        if (commit := entity.provenance.commit) > transaction.since:
+            raise errors.PreconditionFailed(
+                f"{name} was changed by commit {commit}, after commit {transaction.since}; ask again"
+            )

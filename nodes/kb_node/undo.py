@@ -15,6 +15,7 @@ from ontology import vocabulary as v
 from schemas import errors
 from schemas.bridge import TakeBack
 from schemas.commits import Commit, Transaction
+from schemas.entities import LESSER
 from schemas.explanations import Triple
 
 
@@ -127,7 +128,7 @@ def _named(journal: Journal, seq: int) -> Commit:
 
 
 def _require_authority(command: TakeBack, target: Commit) -> None:
-    if command.source in ("scene", "perception") and target.source in ("operator", "file"):
+    if command.source in LESSER and target.source not in LESSER:
         raise errors.Refused(f"commit {target.seq} was made by an operator, so only an operator may undo it")
 
 
@@ -137,6 +138,8 @@ def _later(journal: Journal, target: Commit) -> list[Commit]:
     They are those that touched one of its entities, and what the system did by itself right after it: what
     stood on a table fell when the table went.
     """
+    if target.seq == journal.last:
+        return []
     seqs = {seq for name in target.names for seq in journal.touching(name, after=target.seq)}
     found = {seq: journal.commit(seq) for seq in seqs}
     for seq in range(target.seq + 1, journal.last + 1):
@@ -162,8 +165,10 @@ def _is_settling(commit: Commit) -> bool:
     return not commit.verb and commit.source == "scene" and not commit.removed and not shaped
 
 
-def _net(commits: Iterable[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
+def _net(commits: Sequence[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
     """What commits, in order, inserted and retracted taken together."""
+    if len(commits) == 1:
+        return commits[0].inserted, commits[0].retracted
     inserted: dict[Triple, None] = {}
     retracted: dict[Triple, None] = {}
     for commit in commits:

@@ -16,7 +16,8 @@ import pytest
 
 from nodes.extern.cli.all_verbs import app
 from nodes.extern.cli.app import execute
-from tests.conftest import running
+from ontology import FLAT_TTL
+from tests.conftest import running, until
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -43,6 +44,7 @@ CLOCK = re.compile(r"\b12:30\b")
 """A time of day: whatever is meant, it is not in the future."""
 EXPECTED = {
     "semmap load demo/nonsense.ttl": 1,
+    "semmap find 'la mela nel frigorifero'": 1,  # it is in the bowl, and that is said
     "semmap undo 17": 1,  # there is no such commit in the map that this is run on
     "semmap set door1 isOpen false --if-is yes": 1,  # it is shut already
     "semmap explain apple1 isOn table1": 1,  # it is in a bowl
@@ -97,11 +99,15 @@ def flat(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def tidied(flat):
-    """What one page's programs add does not stand in the way of another's."""
+    """What one page's programs add does not stand in the way of another's, nor is what they remove missed."""
     with flat.client() as client:
         before = {entity.name for entity in client.list()}
         yield
-        if added := sorted({entity.name for entity in client.list()} - before):
+        after = {entity.name for entity in client.list()}
+        if before - after:
+            client.load(FLAT_TTL, replace=True)
+            until(lambda: client.status().in_agreement, "every body stands again")
+        elif added := sorted(after - before):
             client.remove(*added)
 
 

@@ -17,7 +17,7 @@ _MODULES = {
         *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
         *("classes", "properties", "status", "sparql", "watch"),
     ),
-    "words": ("find", "understand"),
+    "words": ("find", "tell", "understand"),
     "past": ("undo", "history", "diff", "when", "last-seen"),
     "run": ("run",),
     "perceive": ("perceive",),
@@ -28,6 +28,7 @@ _MODULES = {
     "keys": ("keys",),
     "fleet": ("fleet",),
     "mcp": ("mcp",),
+    "approve": ("approve",),
     "completion": ("completion",),
 }
 """The verbs of each module of `verbs/`."""

@@ -40,6 +40,17 @@ class Overview(Arguments, frozen=True, kw_only=True):
     """Nothing is asked for in particular."""
 
 
+class Find(Paged, frozen=True, kw_only=True):
+    """A description."""
+
+    text: Annotated[Text, Meta(description="A noun phrase: the red cup on the kitchen table.")]
+    viewer: (
+        Annotated[str, Meta(max_length=1000, description="Who sees what is left, right or behind.")] | None
+    ) = None
+    viewpoint: Annotated[ViewPoint, Meta(description="The same: x, y, z [m], yaw [rad].")] | None = None
+    asker: Annotated[str, Meta(max_length=1000, description="Who says 'my'.")] | None = None
+
+
 class Get(Paged, frozen=True, kw_only=True):
     """One entity."""
 

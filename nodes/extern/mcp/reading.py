@@ -24,6 +24,8 @@ Found = tuple[dict[str, Any], Sequence[Any] | None]
 _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
+_FEW: Final = 5
+_THE_MAP: Final = "the map"
 _ON_A_PAGE: Final = 60
 """More rows of a list than fit on a page."""
 
@@ -36,6 +38,22 @@ def overview(client: Client, _: a.Overview) -> Answer:
         return _overview(client.status(), client.list(), where)
 
     return _told(client, read)
+
+
+def find(client: Client, asked: a.Find) -> Answer:
+    """Which entities a noun phrase describes."""
+    found = client.find(asked.text, viewer=asked.viewer, viewpoint=asked.viewpoint, asker=asked.asker)
+    head: dict[str, Any] = {"outcome": found.outcome, "answer": said(found.text, _THE_MAP)}
+    if found.question:
+        head["question_to_ask_back"] = said(found.question, _THE_MAP)
+    if found.nearest:
+        head["nearest"] = [rows.candidate(candidate) for candidate in found.nearest[:_FEW]]
+    if found.gone:
+        head["gone"] = [said(text, _THE_MAP) for text in found.gone[:_FEW]]
+    if found.read_as:
+        head["read_as"] = dict(found.read_as)
+    items = [rows.candidate(candidate) for candidate in found.candidates]
+    return Answer(first=found.seq, last=found.seq, head=head, items=items, of="candidates")
 
 
 def get(client: Client, asked: a.Get) -> Answer:
@@ -75,7 +93,7 @@ def list_(client: Client, asked: a.List) -> Answer:
             to=asked.to,
         )
         page = found[start : start + _ON_A_PAGE]
-        where = _where(client, page) if as_of is None else {}
+        where = placed(client, page) if as_of is None else {}
         return {}, [rows.entity(entity, where.get(entity.name, {})) for entity in found]
 
     return _paged(client, asked, asked.as_of, read, of="entities")
@@ -199,7 +217,7 @@ def _now(client: Client, read: Callable[[], R]) -> tuple[R, int, int]:
     return at_one_commit(partial(known, client), partial(newest, client), read)
 
 
-def _where(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
+def placed(client: Client, entities: Sequence[Entity]) -> dict[str, dict[str, list[str]]]:
     """What these are on, inside and in."""
     if not entities:
         return {}

@@ -12,6 +12,7 @@ from schemas import changes
 from schemas.entities import Entity
 from schemas.explanations import Term
 from schemas.happenings import Difference
+from schemas.language import Candidate
 from schemas.relations import Described, Relation
 from schemas.replies import LoggedCommit
 from schemas.sparql import Row
@@ -80,6 +81,12 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
 def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
     for start in range(0, len(names), _FEW_NAMES):
         yield names[start : start + _FEW_NAMES]
+
+
+def candidate(found: Candidate) -> dict[str, Any]:
+    """An entity that a description may mean; its reference and the reasons are words of the map."""
+    told = {"called": found.called, "reasons": found.reasons}
+    return {"name": found.entity, "class": found.class_, "said": told}
 
 
 def relation(found: Relation) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from nodes.extern.client import Client
 from nodes.extern.mcp import answers, reading
 from nodes.extern.mcp import arguments as a
 from nodes.extern.mcp.answers import Answer
+from nodes.extern.mcp.changing import Changes
 from nodes.extern.mcp.rate import Rate
 from schemas import codec, errors
 
@@ -67,6 +68,14 @@ READING: Final = (
         "What the map holds: the places, and how many things of which class are in each. Begin here.",
         a.Overview,
         reading.overview,
+    ),
+    Tool(
+        "find",
+        "Which entities a noun phrase describes, in English or Italian, ranked and with reasons: the second"
+        " drawer from the left, something to drink, la tazza sul tavolo. Where it is ambiguous it gives the"
+        " question to ask back, where nothing fits what is nearest.",
+        a.Find,
+        reading.find,
     ),
     Tool(
         "list",
@@ -131,14 +140,43 @@ READING: Final = (
 )
 
 
+def changing(changes: Changes) -> tuple[Tool, ...]:
+    """The tools that change the map, within what is allowed."""
+    return (
+        Tool(
+            "propose",
+            "Try out one change: add, update, set, unset or remove. Nothing is changed. The answer says what"
+            " would follow and no longer follow, and gives a token for commit; or what stands against it, and"
+            " why.",
+            a.Propose,
+            changes.propose,
+        ),
+        Tool(
+            "commit",
+            "Make a proposed change, by its token: once, and only while nothing that it touches or rests on"
+            " has changed. It may have to wait for a person's approval; then call it again.",
+            a.Commit,
+            changes.commit,
+            changes=True,
+        ),
+        Tool(
+            "undo",
+            "Take back a commit of your own, unless later ones depend on it.",
+            a.Undo,
+            changes.undo,
+            changes=True,
+        ),
+    )
+
+
 class Tools:
     """The tools of one server. For any thread."""
 
-    def __init__(self, client: Client, changing: tuple[Tool, ...] = (), *, rate: Rate | None = None) -> None:
+    def __init__(self, client: Client, further: tuple[Tool, ...] = (), *, rate: Rate | None = None) -> None:
         self._client = client
         self._rate = rate or Rate(CALLS_PER_S, _CALLS_AT_ONCE)
-        self.by_name: Mapping[str, Tool] = {tool.name: tool for tool in (*READING, *changing)}
-        self.instructions = INSTRUCTIONS + (_CHANGES if changing else "")
+        self.by_name: Mapping[str, Tool] = {tool.name: tool for tool in (*READING, *further)}
+        self.instructions = INSTRUCTIONS + (_CHANGES if any(tool.changes for tool in further) else "")
 
     def call(self, name: str, arguments: Mapping[str, Any]) -> Page:
         """What tool `name` answers. Raises SemmapError, with one sentence that a model can act upon."""
@@ -170,7 +208,10 @@ def _read(tool: Tool, arguments: Mapping[str, Any]) -> Any:
 
 def complaint(error: errors.SemmapError) -> str:
     """An error as a model reads it: the sentence, and when to come again where it may."""
-    said: dict[str, Any] = {"error": error.code, "text": errors.shortened(error.text, 3000)}
+    said: dict[str, Any] = {
+        "error": error.code,
+        "text": errors.shortened(error.text.removeprefix(codec.MALFORMED), 3000),
+    }
     if error.again_s is not None:
         said["again_s"] = math.ceil(error.again_s * 100.0) / 100.0
     return json.dumps(said, ensure_ascii=False, separators=(",", ":"))

@@ -184,13 +184,16 @@ def export(picture: Picture, syntax: RdfFormat) -> Document:
     )
 
 
-def check(triples: Iterable[Triple], engine: str) -> Checked:
-    """Are the triples (TBox and ABox) consistent? Worked out from nothing, so that it is a check."""
+def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = lambda: False) -> Checked:
+    """Are the triples (TBox and ABox) consistent? Worked out from nothing, so that it is a check.
+
+    With the engine "owlrl" it is given up as soon as `is_over()`. Raises Refused then.
+    """
     triples = list(triples)
     start = time.perf_counter()
     explanation = None
     if engine == "owlrl":
-        faults = owlrl_faults(triples)
+        faults = owlrl_faults(triples, is_over=is_over)
         reason = "; ".join(faults)
     else:
         try:

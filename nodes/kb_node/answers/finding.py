@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import NamedTuple
 
 from msgspec import structs
 
+from nodes.kb_node.answers.speakable import item, terms
 from nodes.kb_node.entities.class_table import ClassTable
-from nodes.kb_node.reasoner import Reasoner
 from nodes.kb_node.relations.asked import Asked
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View
 from nodes.kb_node.relations.selection import only_meant
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language.finding import asking_back
-from nodes.language.finding.finding import answer, find
-from nodes.language.finding.known import Item, Known, Terms
+from nodes.language.finding import asking_back, telling
+from nodes.language.finding.finding import find
+from nodes.language.finding.known import Known
+from nodes.language.finding.missing import Missing, missing
 from nodes.language.finding.resolving import Resolver
-from ontology import vocabulary as v
 from schemas import errors
 from schemas.commands import Find
 from schemas.entities import Entity
-from schemas.explanations import Term
 from schemas.language import Found, Language
 
-_HAS_AFFORDANCE = v.dm("hasAffordance")
+
+class Sought(NamedTuple):
+    """What was found, and what is still to be looked for in the past."""
+
+    found: Found
+    missing: Missing | None = None
+
+    def with_the_past(self, gone: tuple[str, ...]) -> Found:
+        """The same with when it was last there."""
+        return structs.replace(self.found, gone=gone)
 
 
 class Finding:
@@ -37,14 +45,15 @@ class Finding:
         self._read: dict[str, Entity] = {}
         self._seq = -1
 
-    def find(self, query: Find) -> Found:
+    def find(self, query: Find) -> Sought:
         """What is described. Raises BadRequest, UnknownName for an asker or viewer that is not there."""
         space = self._map.places.space()
         asker = None if query.asker is None else self._named(query.asker)
         around = Asked(space, self._view(query, space), self._map.beliefs.left_out)
         with space.remembering():
-            found = find(query.text, self.known(), around, asker)
-        return structs.replace(found, seq=self._map.seq)
+            answer = find(query.text, self.known(), around, asker)
+            found = telling.told(answer)
+        return Sought(structs.replace(found, seq=self._map.seq), missing(answer))
 
     def narrowed(self, text: str, names: tuple[str, ...]) -> tuple[str, ...]:
         """Of the entities that a text may mean those that it does; all where that cannot be said."""
@@ -52,7 +61,7 @@ class Finding:
         around = Asked(space, None, self._map.beliefs.left_out)
         try:
             with space.remembering():
-                found = answer(text, self.known(), around)
+                found = find(text, self.known(), around)
         except errors.BadRequest:
             return names
         return tuple(name for name in found.names if name in names) or names
@@ -88,50 +97,3 @@ class Finding:
 
     def _named(self, word: str) -> str:
         return word if self._map.find(word) is not None else only_meant(tuple(self._map.entities()), word)
-
-
-def item(entity: Entity) -> Item:
-    """An entity as one speaks of it."""
-    references = filter(None, (entity.preferred_reference, *entity.alternative_references))
-    values: dict[str, frozenset[object]] = {
-        name: frozenset(value if isinstance(value, tuple) else (value,))
-        for name, value in entity.properties.items()
-    }
-    return Item(entity.name, entity.class_, frozenset(entity.types), tuple(references), values, entity.place)
-
-
-def terms(reasoner: Reasoner, classes: ClassTable) -> Terms:
-    """What a TBox has words for."""
-    rows = [row for row in classes.rows if row.spatial]
-    named = [(language, row.name, text) for row in rows for language, text in row.labels.items()]
-    named += [("", row.name, text) for row in rows for text in row.also]
-    named += [("en" if row.labels else "", row.name, row.name) for row in rows]
-    values = {value for row in classes.stated.rows() if row.kind == "object" for value in row.values}
-    affordances = {v.local_name(i) for i in reasoner.instances(v.dm("Affordance"))}
-    return Terms(
-        tuple(named),
-        tuple(_labels(reasoner, values - affordances)),
-        tuple(_labels(reasoner, affordances)),
-        _affords(reasoner, classes),
-    )
-
-
-def _labels(reasoner: Reasoner, names: set[str]) -> Iterator[tuple[str, str, str]]:
-    for name in sorted(names):
-        for _, _, label in reasoner.asserted(v.dm(name), v.RDFS_LABEL, None):
-            yield v.language_of(label) or "", name, v.lexical(label)
-
-
-def _affords(reasoner: Reasoner, classes: ClassTable) -> dict[str, frozenset[str]]:
-    """Class to what the TBox says that its instances afford."""
-    found: dict[str, set[str]] = {}
-    for restriction, _, value in reasoner.asserted(None, v.iri(f"{v.OWL}hasValue"), None):
-        if any(reasoner.asserted(restriction, v.iri(f"{v.OWL}onProperty"), _HAS_AFFORDANCE)):
-            for cls, _, _ in reasoner.asserted(None, v.RDFS_SUB_CLASS_OF, restriction):
-                if (name := _name(classes, cls)) is not None:
-                    found.setdefault(name, set()).add(v.local_name(value))
-    return {name: frozenset(values) for name, values in found.items()}
-
-
-def _name(classes: ClassTable, cls: Term) -> str | None:
-    return classes.names.get(cls)

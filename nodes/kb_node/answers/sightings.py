@@ -68,7 +68,7 @@ def _of_what_is_there(placed: Provenance, seen_ns: int | None, now_ns: int) -> s
             return "in sight of a camera just now"
         return f"last in sight {wording.duration(ago_s)} ago; not seen since, nor seen to be gone"
     if not placed.commit:
-        return "never seen, nor seen to be gone"
+        return "neither seen so far nor seen to be gone"
     how = "last seen" if placed.source == "perception" else f"placed by {_author(placed)}"
     return f"{how} {_at(placed, now_ns)}; not seen since, nor seen to be gone"
 
@@ -79,4 +79,5 @@ def _at(said: Provenance, now_ns: int) -> str:
 
 
 def _author(said: Provenance) -> str:
-    return f"{said.source}/{said.agent}" if said.agent else said.source
+    by = {"operator": "an operator", "file": "a file", "scene": "the scene"}.get(said.source, said.source)
+    return f"{said.source}/{said.agent}" if said.agent else by

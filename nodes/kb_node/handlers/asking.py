@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
@@ -10,7 +11,9 @@ from typing import TypeVar
 from msgspec import structs
 
 from nodes.kb_node.answers import answers, beginnings, differences, map_then, questions, whereabouts
+from nodes.kb_node.answers.accounts import Accounts
 from nodes.kb_node.answers.finding import Finding
+from nodes.kb_node.answers.gone import gone
 from nodes.kb_node.answers.pages import Pages
 from nodes.kb_node.answers.sightings import Sightings
 from nodes.kb_node.answers.standing_places import StandingPlaces
@@ -42,6 +45,7 @@ from schemas.commands import (
     Relations,
     Renew,
     Sparql,
+    Tell,
     Understand,
     WasWhen,
     Watch,
@@ -50,6 +54,7 @@ from schemas.commits import Commit, Snapshot, Star
 from schemas.entities import ClassInfo, Entity, PropertyInfo
 from schemas.explanations import Explanation
 from schemas.happenings import Difference, Spells
+from schemas.language import Found
 from schemas.relations import Described, Relation
 from schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from schemas.sparql import SparqlResult, Watching
@@ -82,7 +87,11 @@ class Asking:
         self._then = whereabouts.Then(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""
+        self._accounts = Accounts(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
+        self._second_opinions = FairPool(1, asker)
+        """Of owlrl, which take seconds to minutes: nothing else waits behind them."""
+        self._is_over = threading.Event()
 
     def handlers(self) -> dict[str, Handler]:
         """By verb."""
@@ -103,7 +112,8 @@ class Asking:
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
             Understand.answered_by(self._understanding.understand),
-            Find.answered_by(self._finding.find),
+            Tell.answered_by(self._accounts.tell),
+            Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
@@ -245,16 +255,27 @@ class Asking:
             return self.sightings.there(entity)
         return self._aside.submit(self.sightings.gone, query.name, entity)
 
+    def on_find(self, query: Find) -> Found | Future[Found]:
+        """What a description means; where nothing fits, also when it was last there."""
+        sought = self._finding.find(query)
+        if sought.missing is None:
+            return sought.found
+        missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
+        return self._aside.submit(
+            lambda: sought.with_the_past(gone(self._journal, self._past, missing, there, limits))
+        )
+
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         self._map.follow_places()
         held, denied = self._map.reasoner.held(), self._now.denied()
         withheld, crowds = tuple(answers.withheld(self._map)), self._map.places.crowds()
-        return self._aside.submit(
-            lambda: structs.replace(
-                answers.check(held.asserted, query.engine), denied=denied, withheld=withheld, crowds=crowds
-            )
-        )
+
+        def check() -> Checked:
+            checked = answers.check(held.asserted, query.engine, self._is_over.is_set)
+            return structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+
+        return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """A query, evaluated beside the node's own work; of the past, in a process of its own."""
@@ -283,4 +304,6 @@ class Asking:
 
     def close(self) -> None:
         """Answer no more."""
+        self._is_over.set()
+        self._second_opinions.close()
         self._aside.close()

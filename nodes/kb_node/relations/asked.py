@@ -9,6 +9,7 @@ from typing import Final
 from nodes.kb_node.relations.facts.beside import are_near, beside
 from nodes.kb_node.relations.facts.place_facts import Fact
 from nodes.kb_node.relations.geometry.solids import Solid
+from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.arrangement import attached, between
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View, on_side
@@ -48,7 +49,9 @@ class Asked:
                 self._known[key] = measured(self._space, one, two, self._left_out)
             else:
                 view = self._seen()
-                self._known[key] = not self._is_borne(one, two) and on_side(relation, one, two, view)
+                self._known[key] = not self._is_borne(one, two) and on_side(
+                    self._space, relation, one, two, view
+                )
         return self._known[key]
 
     def _is_borne(self, one: Solid, two: Solid) -> bool:
@@ -137,7 +140,15 @@ def _is_in(space: Space, one: Solid, other: Solid, left_out: Set[Fact]) -> bool:
 
 
 def _is_near(space: Space, one: Solid, other: Solid, _: Set[Fact]) -> bool:
-    return are_near(space, one, other)
+    return _may_be_near(space, one, other) and are_near(space, one, other)
+
+
+def _is_next_to(space: Space, one: Solid, other: Solid, left_out: Set[Fact]) -> bool:
+    return _may_be_near(space, one, other) and _NEXT_TO(space, one, other, left_out)
+
+
+def _may_be_near(space: Space, one: Solid, other: Solid) -> bool:
+    return measures.overlap(one.bounds, other.bounds, space.limits.near_most_m)
 
 
 def _is_beside(relation: RelationName) -> _Measured:
@@ -149,12 +160,13 @@ def _is_beside(relation: RelationName) -> _Measured:
     return measured
 
 
+_NEXT_TO: Final = _is_beside("isNextTo")
 _RELATIONS: Final[Mapping[str, _Measured]] = {
     "isOn": _is_on,
     "isInside": _is_in,
     "isLocatedIn": _is_in,
     "isNear": _is_near,
-    "isNextTo": _is_beside("isNextTo"),
+    "isNextTo": _is_next_to,
     "isUnder": _is_beside("isUnder"),
     "isAbove": _is_beside("isAbove"),
     "touches": _is_beside("touches"),

@@ -150,7 +150,7 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
     folded = word.casefold().replace("_", " ")
     for called in (
         lambda e: (e.name,),
-        lambda e: (e.preferred_reference or "", *e.alternative_references),
+        lambda e: tuple(filter(None, (e.preferred_reference, *e.alternative_references))),
         lambda e: e.types,
     ):
         names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]

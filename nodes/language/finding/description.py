@@ -64,6 +64,14 @@ class Of:
 
 
 @dataclass(frozen=True, slots=True)
+class Among:
+    """One of those that another description means: *except the black one*."""
+
+    said: str
+    other: Description
+
+
+@dataclass(frozen=True, slots=True)
 class Owned:
     """Somebody's; without `by` it is the asker's."""
 
@@ -110,7 +118,7 @@ class AnyOf:
         return " or ".join(restriction.said for restriction in self.restrictions)
 
 
-Restriction = Quality | State | Sized | Related | Has | Of | Owned | Affords | Unknown | Not | AnyOf
+Restriction = Quality | State | Sized | Related | Has | Of | Among | Owned | Affords | Unknown | Not | AnyOf
 
 
 @dataclass(frozen=True, slots=True)

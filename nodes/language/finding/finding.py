@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from nodes.language.finding import reading, telling
+from nodes.language.finding import reading
 from nodes.language.finding.description import Description
 from nodes.language.finding.known import Known
 from nodes.language.finding.parsing import parses
@@ -15,7 +14,7 @@ from nodes.language.finding.resolving import Resolved, Resolver, Scope
 from nodes.language.finding.surroundings import Surroundings
 from nodes.language.lexicon.describing import LANGUAGES
 from schemas import errors
-from schemas.language import Found, Outcome
+from schemas.language import Outcome
 
 MOST_WORDS: Final = 60
 """Of a description."""
@@ -33,16 +32,11 @@ class Answer:
     resolver: Resolver
 
 
-def find(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Found:
-    """The entities that a text describes, with reasons, or a question, or what is nearest.
+def find(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Answer:
+    """The entities that a text describes; `asker` is who says *my*, by name.
 
     Raises BadRequest for no words, too many, what is said of the past, and left and right without a viewer.
     """
-    return telling.told(answer(text, known, around, asker))
-
-
-def answer(text: str, known: Known, around: Surroundings, asker: str | None = None) -> Answer:
-    """See `find`."""
     read = _read(text, known)
     resolver = Resolver(known, around, read.nouns.describing.language, asker)
     best: tuple[int, Answer] | None = None
@@ -64,8 +58,9 @@ def _read(text: str, known: Known) -> Reading:
     """A text in the language that it is in, as it seems."""
     if (number := len(text.split())) > MOST_WORDS:
         raise errors.BadRequest(f"a description has at most {MOST_WORDS} words; these are {number}")
-    readings = [reading.read(text, known.nouns[language]) for language in LANGUAGES]
-    best = min(readings, key=lambda read: read.cost)
+    readings = sorted((reading.read(text, known.nouns[name]) for name in LANGUAGES), key=_cost)
+    likely = [read for read in readings if read.cost == readings[0].cost]
+    best = readings[0] if readings[0].cost == 0.0 else min(map(reading.mended, likely), key=_cost)
     if not best.words:
         raise errors.BadRequest(
             "there are no words in the text; describe a thing, such as: the red cup on the table"
@@ -78,6 +73,10 @@ def _read(text: str, known: Known) -> Reading:
                 " the past tell: semmap when, last-seen, and list --as-of"
             )
     return best
+
+
+def _cost(read: Reading) -> float:
+    return read.cost
 
 
 def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) -> Answer:
@@ -116,8 +115,3 @@ def _outcome(part: Resolved, resolver: Resolver) -> Outcome:
     if said.head == "it" or said.is_plural or not said.is_definite:
         return "several"
     return "ambiguous"
-
-
-def spoken(parts: tuple[Resolved, ...]) -> Iterator[str]:
-    """What was described, part by part."""
-    return (part.description.said for part in parts)

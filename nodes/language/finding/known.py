@@ -57,7 +57,9 @@ class Nouns:
         self.qualities: Final[dict[str, set[str]]] = {}
         self.actions: Final[dict[str, set[str]]] = {}
         self.words: Final[dict[str, int]] = {}
-        """In base form; how many things of the map are called with it, at least by their class's label."""
+        """In base form; how many things of the map have it in what they are called."""
+        self.forms: Final[dict[str, str]] = {}
+        """Words in base form, as they are written."""
         tag, known = TAGS[language], {name for _, name, _ in terms.classes}
         labels = [(name, text) for said, name, text in terms.classes if said in (tag, "")]
         for name, text in (*labels, *((c, w) for c, ws in self.describing.synonyms.items() for w in ws)):
@@ -67,8 +69,8 @@ class Nouns:
         for said, name, text in terms.qualities:
             if said in (tag, ""):
                 for word in (text, *self.describing.qualities.get(spoken(text), ())):
-                    key = self.describing.key(self.describing.split(word))
-                    self.qualities.setdefault(key, set()).add(name)
+                    for key in self.keys(word):
+                        self.qualities.setdefault(key, set()).add(name)
         for said, name, text in terms.affordances:
             if said in (tag, ""):
                 self.actions.setdefault(_action(text), set()).add(name)
@@ -81,6 +83,8 @@ class Nouns:
         words = self.describing.split(spoken(text))
         if not words:
             return
+        for word in words:
+            self.forms.setdefault(self.describing.base(word), word)
         yield self.describing.key(words)
         head = next((words[:i] for i, word in enumerate(words) if i and word in _PURPOSE), None)
         if head is None and self.describing.head_is_last:

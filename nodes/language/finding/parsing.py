@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from nodes.language.finding.description import (
     Affords,
+    Among,
     AnyOf,
     Axis,
     Description,
@@ -329,6 +330,9 @@ class _Parser:
                 continue
             before = len(draft.restrictions)
             j = self._one_after(draft, i, depth)
+            if j == i and negated and not self._ends(i):
+                other, j = self._phrase(i, depth + 1)
+                draft.restrictions.append(Among(self._said(i, j), other))
             if j == i:
                 return i
             if len(draft.restrictions) > before:
@@ -412,6 +416,8 @@ class _Parser:
         if j >= len(self._words):
             return None
         tail = self._length("afford_tail", j + 1)
+        if tail and not self._ends(j + 1 + tail):  # something to read on the desk
+            tail = 0
         endings = (self._said(j + 1, j + 1 + tail), "") if tail else ("",)
         for ending in endings:
             for form in forms(self._words[j]):
@@ -458,8 +464,10 @@ class _Parser:
     def _related(self, draft: _Draft, i: int, relation: tuple[int, Any], depth: int) -> int:
         length, name = relation
         j = i + length
-        if self._ends(j):
-            return j if name != "isInside" else i + length
+        if self._ends(j):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
+            if depth:
+                draft.restrictions.append(Related(self._said(i, j), name, (Description("it", "it"),)))
+            return j
         others: list[Description] = []
         other, end = self._phrase(j, depth + 1)
         others.append(other)

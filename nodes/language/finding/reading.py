@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from nodes.language.finding.known import MOST_WORDS, Nouns
@@ -37,28 +38,34 @@ class Reading:
 
 
 def read(text: str, nouns: Nouns) -> Reading:
-    """A text as words of one language."""
+    """A text as words of one language, as they were said."""
     words = nouns.describing.split(text)
-    first = _senses(words, nouns)
-    known = [False] * len(words)
-    for i, senses in enumerate(first):
-        for length, _ in senses.values():
+    senses = _senses(words, nouns)
+    unknown = _unknown(words, senses)
+    return Reading(nouns, tuple(words), senses, (), _UNKNOWN * len(unknown))
+
+
+def mended(said: Reading) -> Reading:
+    """The same with each unknown word taken for the nearest that is known, if any is near."""
+    words, taken_for, cost = list(said.words), dict[str, str](), 0.0
+    for i in _unknown(words, said.senses):
+        better = nearest(words[i], said.nouns)
+        cost += _UNKNOWN if better is None else 1.0
+        if better is not None:
+            taken_for[words[i]] = words[i] = better
+    if not taken_for:
+        return said
+    pairs = tuple(taken_for.items())
+    return Reading(said.nouns, tuple(words), _senses(words, said.nouns), pairs, cost)
+
+
+def _unknown(words: Sequence[str], senses: Sequence[Mapping[str, tuple[int, Any]]]) -> list[int]:
+    """Which words are part of nothing that is known."""
+    known = [word.isdigit() for word in words]
+    for i, here in enumerate(senses):
+        for length, _ in here.values():
             known[i : i + length] = [True] * length
-    mended: dict[str, str] = {}
-    cost = 0.0
-    for i, word in enumerate(words):
-        if known[i] or word.isdigit():
-            continue
-        better = nearest(word, nouns)
-        if better is None:
-            cost += _UNKNOWN
-        else:
-            mended[word] = better
-            words[i] = better
-            cost += 1.0
-    return Reading(
-        nouns, tuple(words), _senses(words, nouns) if mended else first, tuple(mended.items()), cost
-    )
+    return [i for i, is_known in enumerate(known) if not is_known]
 
 
 def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any]], ...]:
@@ -74,7 +81,8 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
                 senses["quality"] = (length, frozenset(nouns.qualities[key]))
             if length == 1 and _affords(found, i) and any(form in nouns.actions for form in forms(words[i])):
                 senses["action"] = (1, None)
-            for form in (key, "".join(bases[i : i + length])):
+            is_apart = length > 1 and not any((word,) in describing.senses for word in words[i : i + length])
+            for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
                 if length <= MOST_WORDS and nouns.is_noun(form):
                     senses["noun"] = (length, form)
                     senses[f"noun{length}"] = (length, form)
@@ -95,19 +103,20 @@ def nearest(word: str, nouns: Nouns) -> str | None:
     base, sound = nouns.describing.base(word), _sound(word)
     most = 1 if len(word) < 7 else 2
     best: tuple[float, int, str] | None = None
-    for known, count in nouns.words.items():
-        if abs(len(known) - len(base)) > most or len(known) < 3:
+    for known, off, _ in process.extract(
+        base, nouns.words.keys(), scorer=OSA.distance, score_cutoff=most, limit=None
+    ):
+        if len(known) < 3 or (len(known) < 5 and off and known[0] != base[0] and _sound(known) != sound):
             continue
-        off = float(OSA.distance(base, known, score_cutoff=most))
-        if off > most:
-            continue
-        if _sound(known) == sound:
-            off -= 0.5
-        if len(known) < 5 and off >= 1.0 and known[0] != base[0]:
-            continue
-        found = (off, -min(count, 1), known)
+        found = (off - 0.5 * (_sound(known) == sound), -min(nouns.words[known], 1), known)
         best = found if best is None else min(best, found)
-    return None if best is None else best[2]
+    return None if best is None else _as_many(word, nouns.forms[best[2]], nouns)
+
+
+def _as_many(word: str, known: str, nouns: Nouns) -> str:
+    """The known word in the plural if the other one is: bottels are bottles."""
+    is_plural = nouns.describing.head_is_last and word.endswith("s") and nouns.describing.base(word) != word
+    return f"{known}s" if is_plural else known
 
 
 def _affords(senses: Sequence[Mapping[str, tuple[int, Any]]], i: int) -> bool:

@@ -10,6 +10,7 @@ from typing import Final
 
 from nodes.language.finding.description import (
     Affords,
+    Among,
     AnyOf,
     Description,
     Has,
@@ -32,7 +33,18 @@ _ALIKE: Final = 1.25
 """Sizes that differ by less are no reason to call one big and the other small."""
 _TIE_M: Final = 0.015
 """Distances and heights that differ by less are the same."""
-_COST: Final = {Unknown: 0, Quality: 1, State: 1, Owned: 1, Affords: 1, Sized: 2, Of: 3, Related: 4, Has: 5}
+_COST: Final = {
+    Unknown: 0,
+    Quality: 1,
+    State: 1,
+    Owned: 1,
+    Affords: 1,
+    Sized: 2,
+    Of: 3,
+    Among: 4,
+    Related: 4,
+    Has: 5,
+}
 
 Names = tuple[str, ...]
 
@@ -72,7 +84,7 @@ class Resolver:
 
     def resolve(self, said: Description, scope: Scope = Scope()) -> Resolved:
         """What fits a description."""
-        key = (said, scope if _refers(said) else Scope())
+        key = (said, scope if _refers(said, "it", "one") else Scope())
         if key not in self._memory:
             self._memory[key] = self._resolve(said, scope)
         return self._memory[key]
@@ -93,6 +105,8 @@ class Resolver:
             if names and not fitting and failed is None:
                 failed = restriction
             names = fitting
+        if len(names) > 1 and said.is_definite and not said.is_plural:
+            names = self._smallest_of_the_small(names, said)
         is_tied = False
         if said.order is not None and names:
             names, is_tied = self._ordered(names, said.order, said)
@@ -105,7 +119,9 @@ class Resolver:
         found = self.known.called(said.key, self.language)
         for restriction in said.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
-                found = {**found, **dict.fromkeys(self.resolve(restriction.other, scope).kind)}
+                content = self.resolve(restriction.other, scope)
+                if not any(self._is_of(self.known.items[name], content) for name in found):
+                    found = {**found, **dict.fromkeys(content.kind)}
         return tuple(sorted(found))
 
     def fits(self, name: str, restriction: Restriction, said: Description, kind: Names, scope: Scope) -> bool:
@@ -132,7 +148,11 @@ class Resolver:
             case Related(_, relation, others):
                 return self._is_related(name, relation, list(map(meant, others)))
             case Has(_, other):
-                return any(self._bears(name, borne) for borne in meant(other).names)
+                found = meant(other).names
+                says_where = _refers(other, "it")
+                return any(says_where or self._bears(name, borne) for borne in found)
+            case Among(_, other):
+                return name in meant(other).names
             case Of(_, other):
                 return self._is_of(item, meant(other))
             case Not(restriction=inside):
@@ -205,6 +225,14 @@ class Resolver:
         middle = math.sqrt(least * most)
         return own > middle if sign < 0 else own < middle
 
+    def _smallest_of_the_small(self, names: Names, said: Description) -> Names:
+        """Of several small ones those that are small beside the others, if there are any."""
+        for restriction in said.restrictions:
+            if isinstance(restriction, Sized):
+                axis, sign = restriction.axis, restriction.sign
+                names = tuple(n for n in names if self._stands_out(n, axis, sign, names)) or names
+        return names
+
     def _ordered(self, names: Names, order: Order, said: Description) -> tuple[Names, bool]:
         """Those that come first; all that tie for it, and whether they do."""
         values = self._values(names, order)
@@ -252,9 +280,9 @@ class Resolver:
 
 
 @functools.lru_cache(1024)
-def _refers(said: Description) -> bool:
-    """Whether something in it stands for what was said before."""
-    return said.head in ("it", "one") or any(map(_refers, _embedded(said.restrictions)))
+def _refers(said: Description, *heads: str) -> bool:
+    """Whether something in it stands for what was said before, by one of these heads."""
+    return said.head in heads or any(_refers(inner, *heads) for inner in _embedded(said.restrictions))
 
 
 def _embedded(restrictions: Iterable[Restriction]) -> Iterator[Description]:
@@ -262,7 +290,7 @@ def _embedded(restrictions: Iterable[Restriction]) -> Iterator[Description]:
         match restriction:
             case Related(others=others):
                 yield from others
-            case Has(other=other) | Of(other=other):
+            case Has(other=other) | Of(other=other) | Among(other=other):
                 yield other
             case Owned(by=by) if by is not None:
                 yield by

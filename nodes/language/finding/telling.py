@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nodes.language.finding import asking_back
 from nodes.language.finding.description import (
@@ -13,11 +13,9 @@ from nodes.language.finding.description import (
     Restriction,
     Unknown,
 )
+from nodes.language.finding.finding import Answer
 from nodes.language.finding.resolving import Resolved, Resolver, Scope
 from schemas.language import Candidate, Found
-
-if TYPE_CHECKING:
-    from nodes.language.finding.finding import Answer
 
 _MOST: Final = 50
 """Candidates that are told of."""

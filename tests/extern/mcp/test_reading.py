@@ -87,6 +87,8 @@ def test_pages_are_of_the_commit_of_the_first(client):
     ("tool", "arguments"),
     [
         ("overview", {}),
+        ("find", {"text": "the red cup on the kitchen table"}),
+        ("find", {"text": "something to drink"}),
         ("list", {"class_": "Cup"}),
         ("list", {"near": "table1", "within": 1.5}),
         ("list", {"nearest": 3, "to": "cup1"}),
@@ -113,6 +115,15 @@ def test_every_answer_has_its_commit_and_units_and_keeps_to_the_budget(client, t
     found = json.loads(text)
     assert found["commit"] == client.status().commit
     assert found["units"].startswith("m, rad")
+
+
+def test_find_names_what_is_meant_and_asks_back(client):
+    cup = asked(client, lambda agent: agent("find", text="the cup on the desk"))
+    assert (cup["outcome"], [c["name"] for c in cup["candidates"]]) == ("one", ["cup1"])
+    chair = asked(client, lambda agent: agent("find", text="the chair"))
+    assert chair["outcome"] == "ambiguous"
+    assert chair["question_to_ask_back"]["said"].endswith("?")
+    assert asked(client, lambda agent: agent("find", text="the elephant"))["candidates"] == []
 
 
 def test_query_answers_with_prefixes_and_numbers(client):
@@ -183,6 +194,8 @@ def test_a_very_long_reference_and_very_many_keep_to_the_budget(client):
     ("tool", "arguments", "sentence"),
     [
         ("get", {"name": ""}, "no entity"),
+        ("find", {"text": ""}, "text must be a text of 1 to 1000 characters"),
+        ("find", {"text": "cup " * 10_000}, "text must be a text of 1 to 1000 characters"),
         ("get", {"name": "\x00\x1b[31m"}, "no entity"),
         ("get", {"name": "🍺" * 300}, "no entity"),
         ("list", {"class_": "Chiar"}, "did you mean Chair"),

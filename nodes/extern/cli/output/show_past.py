@@ -53,4 +53,6 @@ def sighting_card(s: Sighting) -> Table:
         rows["removed"] = provenance_text(s.removed)
     if s.seen_ns is not None:
         rows["last in sight"] = moment(s.seen_ns)
-    return card({**rows, "status": s.text} if s.text else rows)
+    if s.removed is None or s.gone is not None:  # else it is said already
+        rows["status"] = s.text
+    return card(rows)

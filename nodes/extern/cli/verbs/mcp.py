@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import functools
+import os
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from nodes.extern.cli.calling import talks
+from nodes.extern.cli.output.printable import say
 from nodes.runtime import extras
+from schemas import errors
 
 if TYPE_CHECKING:
     from nodes.extern.client import Client
+    from nodes.extern.mcp.tools import Tool
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
@@ -26,16 +31,88 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
     return checked
 
 
+def _names(_: click.Context, __: click.Parameter, said: str | None) -> frozenset[str]:
+    """Words with commas between them."""
+    return frozenset(filter(None, (word.strip() for word in (said or "").split(","))))
+
+
 @click.command()
+@click.option("--allow", type=click.Choice(["change"]), help="Let agents change the map, too.")
+@click.option(
+    "--classes", callback=_names, metavar="CLASSES", help="Only entities of these, such as Cup,Book."
+)
+@click.option("--places", callback=_names, metavar="PLACES", help="Only entities in these, such as kitchen1.")
+@click.option("--rate", type=click.FloatRange(min=0.1, max=6000.0), help="Changes a minute. Default: 30.")
+@click.option("--approve", is_flag=True, help="Changes wait for a person: semmap approve.")
+@click.option("--agent", default="agent", show_default=True, metavar="NAME", help="Name that signs changes.")
+@click.option(
+    "--http",
+    type=click.IntRange(0, 65_535),
+    is_flag=False,
+    flag_value=7448,
+    metavar="[PORT]",
+    help="Serve over HTTP on this machine (port 7448), for who bears the token that is printed.",
+)
 @_with_its_extra
 @talks
-def mcp(client: Client) -> None:
+def mcp(
+    client: Client,
+    allow: str | None,
+    classes: frozenset[str],
+    places: frozenset[str],
+    rate: float | None,
+    approve: bool,
+    agent: str,
+    http: int | None,
+) -> None:
     """Serve the map to language-model agents, over MCP.
 
     It speaks the Model Context Protocol on standard input and output, as hosts that start it expect. It only
-    reads.
+    reads, unless changes are allowed: then an agent proposes a change, reads what would follow, and commits.
     """
+    limited = [
+        option
+        for option, given in (
+            ("--classes", classes),
+            ("--places", places),
+            ("--rate", rate),
+            ("--approve", approve),
+        )
+        if given
+    ]
+    if limited and allow is None:
+        raise errors.BadRequest(f"{limited[0]} limits changes; to allow them at all: --allow change")
     from nodes.extern.mcp.server import run_stdio
     from nodes.extern.mcp.tools import Tools
 
-    run_stdio(Tools(client))
+    further = _changing(client, agent, classes, places, rate, approve) if allow else ()
+    tools = Tools(client, further)
+    if http is None:
+        run_stdio(tools)
+        return
+    from nodes.extern.mcp.http import TOKEN_VARIABLE, new_token, run_http
+
+    run_http(tools, http, new_token(os.environ.get(TOKEN_VARIABLE)), lambda text: say(text, file=sys.stderr))
+
+
+def _changing(
+    client: Client,
+    agent: str,
+    classes: frozenset[str],
+    places: frozenset[str],
+    rate: float | None,
+    approve: bool,
+) -> tuple[Tool, ...]:
+    from nodes.extern.mcp.changing import Changes
+    from nodes.extern.mcp.limits import CHANGES_PER_MIN, Limits
+    from nodes.extern.mcp.tools import changing
+
+    signed = agent if client.identity is None else client.identity.name
+    changes = Changes(
+        client,
+        signed,
+        allowed=Limits(classes=classes, places=places),
+        per_min=rate or CHANGES_PER_MIN,
+        approve=approve,
+    )
+    return changing(changes)

@@ -1,14 +1,17 @@
-"""The verbs that take words as people say them: `find` and `understand`."""
+"""The verbs that take words as people say them, `find` and `understand`; and `tell`, which says some."""
 
 from __future__ import annotations
 
+import shutil
 import sys
+import textwrap
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from nodes.extern.cli.angles import ANGLE
 from nodes.extern.cli.calling import complain, print_json, print_lines, talks
+from nodes.extern.cli.completing import entity_names
 from nodes.extern.cli.output import lines, lu4r
 from schemas import errors
 
@@ -21,6 +24,30 @@ _WHY: Final[dict[Mood, str]] = {
     "question": "'{text}' asks something, and there is no command in it; try: take the cup from the table",
     "past": "'{text}' tells what was done, and there is no command in it; try: take the cup from the table",
 }
+
+
+@click.command()
+@click.argument("name", required=False, shell_complete=entity_names)
+@click.option(
+    "--words",
+    type=click.IntRange(20, 5000),
+    default=150,
+    show_default=True,
+    help="Most words of the text.",
+)
+@click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@talks
+def tell(client: Client, name: str | None, words: int, format: str) -> None:
+    """Tell in a few words what is there.
+
+    In the map, or in a place, or of a thing: by its name, or a reference or class that only one has.
+    """
+    found = client.tell(name, words=words)
+    if format == "json":
+        print_json(found)
+    else:
+        width = shutil.get_terminal_size().columns
+        print_lines(textwrap.wrap(found.text, width) if sys.stdout.isatty() else [found.text])
 
 
 @click.command()

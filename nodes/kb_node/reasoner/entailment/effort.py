@@ -14,12 +14,15 @@ _MOST = 1000
 
 
 class Effort:
-    """Bounds a search for a proof; one that is `traced` also keeps what the proof may rest on."""
+    """Bounds a search for a proof; one that is `traced` also keeps what the proof may rest on.
+
+    Its seconds are of this thread's clock, so that what is found does not depend on who else is at work.
+    """
 
     def __init__(self, patience_s: float = inf, *, traced: bool = False, anew: bool = True) -> None:
         """Unless `anew`, nothing is supposed for which everything would have to be worked out anew."""
         self.anew = anew
-        self._until_s = time.monotonic() + patience_s
+        self._until_s = time.thread_time() + patience_s
         self._left = _MOST
         self._seen: dict[Triple, None] | None = {} if traced else None
 
@@ -35,7 +38,7 @@ class Effort:
     @property
     def is_over(self) -> bool:
         """Whether the time is up."""
-        return time.monotonic() >= self._until_s
+        return time.thread_time() >= self._until_s
 
     def may_suppose(self) -> bool:
         """Whether one more supposition is allowed."""

@@ -65,8 +65,10 @@ def sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
             yield Side(relation, other, by_m)
 
 
-def on_side(relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
-    """Whether a thing is left of, right of, in front of or behind another, as a viewer sees the two."""
+def on_side(space: Space, relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
+    """Whether a thing is left of, right of, in front of or behind a neighbour, as a viewer sees the two."""
+    if other.is_place or measures.gap(solid, other) > 2.0 * space.limits.near_most_m:
+        return False
     return any(side == relation for side, _ in _as_faced(solid, other, view))
 
 

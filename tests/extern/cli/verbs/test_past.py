@@ -93,7 +93,10 @@ def test_last_seen(system):
     assert re.fullmatch(
         r"last seen at commit 3, \d+ s ago; not seen since, nor seen to be gone", seen["text"]
     )
-    assert re.search(r"removed at commit 5, \d+ s ago by operator/ann", said)
+    with system.client() as client:
+        assert re.fullmatch(
+            r"removed at commit 5, \d+ s ago by operator/ann", client.last_seen("chair2").text
+        )
 
 
 def test_get_shows_who_when_why_and_how_sure(system):

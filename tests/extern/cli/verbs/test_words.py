@@ -1,4 +1,4 @@
-"""Commands in words, from the command line and the client."""
+"""Commands in words, and words on what is there, from the command line and the client."""
 
 import json
 
@@ -34,6 +34,29 @@ def test_other_forms(system, monkeypatch):
     assert (frame["cfr"], frame["groundedCfr"]) == ('TAKING(theme:"the lemonade")', "TAKING(theme:bottle1)")
     text, _ = said(system, monkeypatch, "understand", "grab the lemonade", "--format", "json")
     assert json.loads(text)["frames"][0]["arguments"][0]["span"] == [2, 3]
+
+
+def test_what_is_there_is_told_in_few_words(system, monkeypatch, capsys):
+    text, status = said(system, monkeypatch, "tell")
+    assert (text, status) == ("The map has one place and one thing. The kitchen has a lemonade.\n", 0)
+    text, _ = said(system, monkeypatch, "tell", "kitchen", "--words", "20", "--format", "json")
+    told = json.loads(text)
+    assert told["text"] == "The kitchen (kitchen1) has one thing. It has a lemonade."
+    assert (told["words"], told["left_out"]) == (10, 0)
+    with system.client() as client:
+        assert client.tell("lemonade", words=20).text.startswith(
+            "bottle1 is a lemonade in the kitchen (kitchen1)."
+        )
+        with pytest.raises(errors.BadRequest, match="words must be"):
+            client.tell(words=3)
+    for words, wrong, sentence in (
+        (("tell", "teapot"), 1, "nothing is named or called 'teapot'"),
+        (("tell", "--words", "0"), 2, "0 is not in the range"),
+        (("tell", ""), 1, ""),
+    ):
+        text, status = said(system, monkeypatch, *words)
+        assert (text, status) == ("", wrong)
+        assert sentence in capsys.readouterr().err
 
 
 def test_italian_needs_no_flag(system, monkeypatch):

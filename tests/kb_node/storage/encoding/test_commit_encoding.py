@@ -1,3 +1,4 @@
+import threading
 import zlib
 
 import pytest
@@ -29,6 +30,34 @@ def test_a_body_that_was_begun_is_the_whole(semantic_map):
 def test_one_without_effects(semantic_map):
     whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
     assert zlib.decompress(commit_encoding.early(whole, "").finish(whole).result()) == codec.encode(whole)
+
+
+@pytest.mark.parametrize("count", [9_999, 10_000, 10_001, 20_000, 70_001])
+def test_long_lists_are_encoded_in_pieces(monkeypatch, count):
+    whole = commit(
+        *[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(count)],
+        removed=tuple(Departed(name=f"b{i}", types=()) for i in range(count)),
+        notes=("", "x"),
+    )
+    expected, encode, longest = codec.encode(whole), codec.encode, []
+
+    def noted(message):
+        longest.append(len(encoded := encode(message)))
+        return encoded
+
+    monkeypatch.setattr(codec, "encode", noted)
+    assert zlib.decompress(commit_encoding.early(whole, "").finish(whole).result()) == expected
+    assert max(longest) < 2 << 20
+
+
+def test_one_that_is_given_up_is_not_encoded_to_its_end(monkeypatch):
+    begins, encode = threading.Event(), codec.encode
+    monkeypatch.setattr(codec, "encode", lambda message: begins.wait(10.0) and encode(message))
+    whole = commit(*[(v.entity_iri(f"c{i}"), v.RDFS_LABEL, v.literal("x")) for i in range(2000)])
+    begun = commit_encoding.early(whole, "")
+    begun.give_up()
+    begins.set()
+    assert len(zlib.decompressobj().decompress(begun.finish(whole).result())) < 10
 
 
 @pytest.mark.parametrize(("label", "name"), [(LONG, "b"), ("x", LONG)], ids=["triples", "effects"])

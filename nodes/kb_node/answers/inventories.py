@@ -1,0 +1,182 @@
+"""The things and places of a map as they are spoken of, each with what bears it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Set
+from typing import Final
+
+from nodes.kb_node.entities.class_table import ClassTable
+from nodes.kb_node.relations.facts.place_facts import Fact
+from nodes.kb_node.relations.measuring import measures
+from nodes.kb_node.relations.measuring.space import Space
+from nodes.kb_node.semantic_map import SemanticMap
+from nodes.language import nouns
+from nodes.language.inventory import How, Inventory, Place, Thing
+from nodes.language.vocabulary import spoken
+from ontology.model_shapes import own_size_m
+from schemas.entities import Entity
+from schemas.relations import RelationName
+
+LARGEST: Final = 10_000
+"""Of a map with more things (a quarter of a second) only their numbers are told."""
+_HOW: Final[dict[RelationName, How]] = {"isInside": "in", "isOn": "on"}
+_SEATS: Final = frozenset(("Chair", "Stool"))
+_TABLES: Final = frozenset(("Table", "Desk"))
+_PARTS: Final = "hasSubLocation"
+_PLAIN: Final = re.compile(r"[^\W\d_]+(?:[ -][^\W\d_]+){0,2}")
+_DETERMINERS: Final = frozenset(("a", "an", "the", "my", "your", "his", "her", "its", "our", "their", "this"))
+
+
+class Inventories:
+    """Takes stock of a map; owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap) -> None:
+        self._map = semantic_map
+        self._named: tuple[ClassTable, Nouns] | None = None
+        self._whole: tuple[int, Inventory] | None = None
+
+    @property
+    def nouns(self) -> Nouns:
+        """What things are called."""
+        if self._named is None or self._named[0] is not self._map.classes:
+            self._named = (self._map.classes, Nouns(self._map.classes))
+        return self._named[1]
+
+    def whole(self) -> Inventory:
+        """All that there is after the last commit, worked out once a commit."""
+        if self._whole is None or self._whole[0] != self._map.seq:
+            self._whole = (self._map.seq, self._of(self._map.entities()))
+        return self._whole[1]
+
+    def numbers(self) -> Inventory:
+        """All that there is, without where it is."""
+        noun = self.nouns.of
+        entities = tuple(self._map.entities())
+        return Inventory(
+            (Thing(entity.name, noun(entity)) for entity in entities if not entity.place),
+            (Place(entity.name, noun(entity)) for entity in entities if entity.place),
+        )
+
+    def around(self, entity: Entity) -> Inventory:
+        """What is in a place and its parts; of a thing, what it is on, in and beside, and what bears that."""
+        self._map.believe_places()
+        names = {entity.name, *(other for _, other in self._map.places.about(entity.name))}
+        space = self._map.places.space()
+        if _is_table(entity) and (solid := space.solids.get(entity.name)) is not None:
+            names.update(other.name for other in space.counted_around(solid, space.limits.near_most_m))
+        if entity.place:
+            places = Inventory((), self._places())
+            names |= set(places.parts_of(entity.name))
+        found = filter(None, map(self._map.find, sorted(self._map.places.upward(names))))
+        return self._of(found)
+
+    def _of(self, entities: Iterable[Entity]) -> Inventory:
+        self._map.believe_places()
+        left_out = self._map.beliefs.left_out
+        things = [self._thing(entity, left_out) for entity in entities if not entity.place]
+        return Inventory(things, self._places())
+
+    def _places(self) -> Iterator[Place]:
+        """All places: their names are to tell them apart."""
+        places = [entity for entity in self._map.entities() if entity.place]
+        space, parts = self._map.places.space(), _parts_said(places)
+        for place in places:
+            within = parts.get(place.name) or _around(space, place.name)
+            yield Place(place.name, self.nouns.of(place), within)
+
+    def _thing(self, entity: Entity, left_out: Set[Fact]) -> Thing:
+        at: tuple[How, str] | None = None
+        place: str | None = None
+        for relation, other in self._map.places.about(entity.name):
+            if (entity.name, relation, other) in left_out:
+                continue
+            if relation in _HOW and at is None:
+                at = (_HOW[relation], other)
+            elif relation == "isLocatedIn":
+                place = other
+        if at is None and (table := self._table_of(entity)) is not None:
+            at = ("round", table)
+        return Thing(
+            entity.name,
+            self.nouns.of(entity),
+            self._states(entity),
+            place,
+            at,
+            math.prod(entity.size_m or own_size_m(entity.model) or (0.0,)),
+            entity.fixed,
+        )
+
+    def _table_of(self, entity: Entity) -> str | None:
+        """The nearest table that a thing is near to, if it is a seat."""
+        space = self._map.places.space()
+        if _SEATS.isdisjoint(entity.types) or (solid := space.solids.get(entity.name)) is None:
+            return None
+        tables = [
+            (made.gap_m, other.name)
+            for other in space.counted_around(solid, space.limits.near_most_m)
+            if _is_table(self._map.find(other.name))
+            and (made := measures.near(solid, other, space.limits)) is not None
+            and made.holds
+        ]
+        return min(tables)[1] if tables else None
+
+    def _states(self, entity: Entity) -> str:
+        """What is so of it by properties such as "is open": `open and switched on`."""
+        labels = self.nouns.states
+        stated = entity.properties.items()
+        return nouns.listed([labels[p] for p, is_so in stated if is_so is True and p in labels])
+
+
+def _is_table(entity: Entity | None) -> bool:
+    return entity is not None and not entity.place and not _TABLES.isdisjoint(entity.types)
+
+
+def _parts_said(entities: Iterable[Entity]) -> dict[str, str]:
+    """Place to the place that it is said to be a part of."""
+    found: dict[str, str] = {}
+    for entity in entities:
+        stated = entity.properties.get(_PARTS, ()) if entity.place else ()
+        for part in stated if isinstance(stated, tuple) else (stated,):
+            found.setdefault(str(part), entity.name)
+    return found
+
+
+def _around(space: Space, name: str) -> str | None:
+    """The smallest place that a place is in, by its extent."""
+    solid = space.solids.get(name)
+    if solid is None:
+        return None
+    place = space.whereabouts(solid).place
+    return None if place is None or place[0].volume <= solid.volume else place[0].name
+
+
+class Nouns:
+    """What things are called in a sentence: by their references where these are nouns, else by class."""
+
+    def __init__(self, classes: ClassTable) -> None:
+        rows = {row.name: row for row in classes.rows}
+        self._labels = {
+            name: row.labels.get("en") or row.labels.get("") or spoken(name) for name, row in rows.items()
+        }
+        self._heads = {
+            word.rpartition(" ")[2].lower()
+            for row in rows.values()
+            for word in (*row.labels.values(), *row.also)
+        }
+        self.states = {
+            row.name: label.removeprefix("is ")
+            for row in classes.stated.rows()
+            if row.range == ("boolean",) and (label := row.labels.get("en", "")).startswith("is ")
+        }
+        """Of properties that are true or false, what they say of a thing."""
+
+    def of(self, entity: Entity) -> str:
+        """A singular noun phrase without article. What is no such phrase by its looks is not repeated."""
+        label = self._labels.get(entity.class_) or spoken(entity.class_)
+        reference = (entity.preferred_reference or "").strip()
+        if not _PLAIN.fullmatch(reference) or reference.partition(" ")[0].lower() in _DETERMINERS:
+            return label
+        head = reference.rpartition(" ")[2].lower()
+        return reference if head == reference.lower() or head in self._heads else label

@@ -1,0 +1,179 @@
+"""What is there as a tree of groups: things of one noun that are in one spot, with what these bear.
+
+kitchen: 4 chairs | a table [on it: 2 plates, a bowl [in it: an apple]] | a fridge [in it: milk]
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, Literal
+
+from nodes.language import nouns
+
+How = Literal["on", "in", "round"]
+"""How a thing is at another that bears or holds it, or that it stands round."""
+
+HOWS: Final[tuple[How, ...]] = ("round", "on", "in")
+_MOST_LEVELS: Final = 50
+"""Of things on things on things: more are a slip of some measurement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """A thing as it is spoken of. `noun` is singular, without article; `state` an adjective, or ""."""
+
+    name: str
+    noun: str
+    state: str = ""
+    place: str | None = None
+    """The smallest place that it is in."""
+    at: tuple[How, str] | None = None
+    """What it is on, in or round, by name."""
+    volume_m3: float = 0.0
+    fixed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place as it is spoken of; `within` is the smallest that it is a part of, by name."""
+
+    name: str
+    noun: str
+    within: str | None = None
+
+
+@dataclass(frozen=True)
+class Group:
+    """Things that are spoken of together, the most telling groups of what they bear first."""
+
+    noun: str
+    state: str
+    things: tuple[Thing, ...]
+    load: Mapping[How, tuple[Group, ...]]
+
+    @cached_property
+    def all(self) -> int:
+        """How many things these are, with those that they bear."""
+        return len(self.things) + sum(group.all for groups in self.load.values() for group in groups)
+
+    @property
+    def phrase(self) -> str:
+        """`4 chairs`, `a door that is open`."""
+        said = nouns.counted(len(self.things), self.noun)
+        verb = "are" if self.is_plural else "is"
+        return f"{said} that {verb} {self.state}" if self.state else said
+
+    @property
+    def definite(self) -> str:
+        """`the table`, `the 2 tables`."""
+        if len(self.things) == 1:
+            return f"the {self.noun}"
+        return f"the {len(self.things)} {nouns.plural(self.noun)}"
+
+    @property
+    def is_plural(self) -> bool:
+        """Whether its verb is in the plural."""
+        return nouns.is_plural(len(self.things), self.noun)
+
+
+class Inventory:
+    """The things of a map by place, each on or in what bears it."""
+
+    def __init__(self, things: Iterable[Thing], places: Iterable[Place] = ()) -> None:
+        self.places = {place.name: place for place in places}
+        self.things = {thing.name: thing for thing in things}
+        self._called = Counter(place.noun for place in self.places.values())
+        self._parts: dict[str, list[str]] = {}
+        for place in sorted(self.places):
+            if (within := self.places[place].within) is not None:
+                self._parts.setdefault(within, []).append(place)
+        self._above: dict[str, list[Thing]] = {}
+        self._standing: dict[str | None, list[Thing]] = {}
+        for thing in self.things.values():
+            if thing.at is not None and self._is_borne(thing):
+                self._above.setdefault(thing.at[1], []).append(thing)
+            else:
+                self._standing.setdefault(thing.place if thing.place in self.places else None, []).append(
+                    thing
+                )
+
+    def _is_borne(self, thing: Thing) -> bool:
+        """Whether what it is said to be on or in is there, and not in the end the thing itself."""
+        lower: Thing | None = thing
+        for _ in range(_MOST_LEVELS):
+            if lower is None or lower.at is None:
+                return lower is not None
+            lower = self.things.get(lower.at[1])
+        return False
+
+    def standing_in(self, place: str | None) -> tuple[Group, ...]:
+        """What stands in a place itself, not in a part of it; None for what is in no place."""
+        return self._groups(self._standing.get(place, ()))
+
+    def in_place(self, place: str) -> list[Thing]:
+        """The things in a place, also those on and in others, but not those in a part of it."""
+        return [thing for thing in self.things.values() if thing.place == place]
+
+    def in_sum(self, things: Iterable[Thing]) -> tuple[Group, ...]:
+        """Things by noun, wherever they are: the most first."""
+        together: dict[str, list[Thing]] = {}
+        for thing in things:
+            together.setdefault(thing.noun, []).append(thing)
+        groups = [Group(noun, "", tuple(those), {}) for noun, those in together.items()]
+        return tuple(sorted(groups, key=lambda group: (-len(group.things), group.noun)))
+
+    def at(self, name: str) -> Mapping[How, tuple[Group, ...]]:
+        """What is on, in and round a thing."""
+        return self._load((name,))
+
+    def the(self, place: str | None) -> str:
+        """`the kitchen`; where several places are called so, with its name."""
+        noun = self.places[place or ""].noun
+        return f"the {noun}" if self._called[noun] == 1 else f"the {noun} {place}"
+
+    def parts_of(self, place: str) -> list[str]:
+        """The place and those that are a part of it, directly or not, by name: each before its parts."""
+        found, waiting = dict[str, None](), [place]
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found[name] = None
+                waiting += reversed(self._parts.get(name, ()))
+        return list(found)
+
+    def places_in_order(self) -> list[str]:
+        """All of them: each followed by its parts, but what is a part of nothing comes after its own."""
+        found = dict[str, None]()
+        for name, place in self.places.items():
+            if place.within not in self.places:
+                _, *parts = self.parts_of(name)
+                found.update(dict.fromkeys((*parts, name)))
+        return list(found | dict.fromkeys(self.places))
+
+    def _groups(self, things: Iterable[Thing]) -> tuple[Group, ...]:
+        """What bears something comes first, then what is large; what is part of the building last."""
+        together: dict[tuple[str, str], list[Thing]] = {}
+        for thing in things:
+            together.setdefault((thing.noun, thing.state), []).append(thing)
+        groups = [
+            Group(noun, state, tuple(those), self._load(thing.name for thing in those))
+            for (noun, state), those in together.items()
+        ]
+        return tuple(sorted(groups, key=_rank))
+
+    def _load(self, names: Iterable[str]) -> Mapping[How, tuple[Group, ...]]:
+        by_how: dict[How, list[Thing]] = {}
+        for name in names:
+            for thing in self._above.get(name, ()):
+                assert thing.at is not None
+                by_how.setdefault(thing.at[0], []).append(thing)
+        return {how: self._groups(by_how[how]) for how in HOWS if how in by_how}
+
+
+def _rank(group: Group) -> tuple[bool, float, str, str]:
+    fixed = all(thing.fixed for thing in group.things)
+    weight = group.all - len(group.things) + sum(thing.volume_m3 for thing in group.things)
+    return (fixed and not group.load, -weight, group.noun, group.state)

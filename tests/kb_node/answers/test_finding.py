@@ -1,0 +1,90 @@
+"""Descriptions of things in the flat that comes with semmap, and of what is not there any more."""
+
+import pytest
+from msgspec import structs
+
+from nodes.kb_node.answers.finding import Finding
+from nodes.kb_node.answers.gone import gone
+from nodes.kb_node.storage.history import Past
+from ontology import stars
+from ontology import vocabulary as v
+from schemas import errors
+from schemas.commands import Find
+from schemas.commits import Transaction
+from schemas.entities import Pose
+
+
+def names(found):
+    return {candidate.entity for candidate in found.candidates}
+
+
+@pytest.mark.parametrize(
+    ("text", "fields", "meant"),
+    [
+        ("the bowl on the kitchen table", {}, {"bowl1"}),
+        ("the refridgerator", {}, {"fridge1"}),
+        ("il frigo", {}, {"fridge1"}),
+        ("something to read on the desk", {}, {"book1"}),
+        ("il mio computer", {"asker": "person1"}, {"laptop1"}),
+        ("my computer", {"asker": "owner"}, {"laptop1"}),
+        ("the lamp in the bedroom", {}, {"abat_jour1"}),
+        ("the bowl and the apple in it", {}, {"bowl1", "apple1"}),
+        ("the chair left of the dining table", {"viewpoint": (8.2, 0.9, 0.0, 1.5708)}, {"chair1"}),
+        ("la finestra", {}, {"window1", "window2", "window3", "window4"}),
+    ],
+)
+def test_what_is_meant_in_the_flat(flat, text, fields, meant):
+    found = Finding(flat).find(Find(text=text, **fields)).found
+    assert (names(found), found.seq) == (meant, 1)
+    assert all(candidate.reasons for candidate in found.candidates)
+
+
+def test_who_looks_and_who_asks_must_be_there(flat):
+    with pytest.raises(errors.UnknownName):
+        Finding(flat).find(Find(text="my cup", asker="nobody"))
+    with pytest.raises(errors.BadRequest, match="depend on who looks"):
+        Finding(flat).find(Find(text="the leftmost book"))
+    with pytest.raises(errors.BadRequest, match="'chair' may mean"):
+        Finding(flat).find(Find(text="the leftmost book", viewer="chair"))
+
+
+def test_each_commit_is_known_to_the_next_question(flat):
+    finding = Finding(flat)
+    assert finding.find(Find(text="the spoon")).found.outcome == "none"
+    spoon = stars.star("spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)), preferred="ladle")
+    flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
+    assert names(finding.find(Find(text="the spoon")).found) == {"spoon1"}
+    flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
+    assert finding.find(Find(text="the ladle")).found.outcome == "none"
+
+
+def test_what_is_gone_is_told_with_when(flat):
+    finding = Finding(flat)
+    spoon = stars.star("spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)))
+    flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
+    flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
+    sought = finding.find(Find(text="the spoon"))
+    past = Past(flat._journal)
+    told = gone(flat._journal, past, sought.missing, frozenset(flat.names), flat.classes.limits)
+    assert len(told) == 1
+    assert told[0].startswith("spoon1 was there until commit 3, ")
+    assert sought.with_the_past(told) == structs.replace(sought.found, gone=told)
+    other = finding.find(Find(text="the fork"))
+    assert gone(flat._journal, past, other.missing, frozenset(flat.names), flat.classes.limits) == ()
+
+
+def test_what_has_been_moved_is_told_with_when_it_was_there(flat):
+    finding = Finding(flat)
+    apple, at = flat.entity("apple1"), Pose(position_m=(2.0, 2.0, 0.0))
+    assert apple.pose is not None
+    coordinates = v.entity_iri("apple1_coordinates")
+    before = stars.position(v.iri(apple.iri), coordinates, apple.pose)
+    after = stars.position(v.iri(apple.iri), coordinates, at)
+    flat.commit(Transaction(id="1", source="operator", retract=tuple(before), insert=tuple(after)))
+    sought = finding.find(Find(text="the apple in the bowl"))
+    told = gone(
+        flat._journal, Past(flat._journal), sought.missing, frozenset(flat.names), flat.classes.limits
+    )
+    assert sought.found.outcome == "none"
+    assert len(told) == 1
+    assert told[0].startswith("apple1 was inside bowl1 until commit 2, ")

@@ -1,0 +1,27 @@
+"""owlrl in a process of its own: it can be given up."""
+
+import time
+
+import pytest
+
+from nodes.kb_node.owlrl import second_opinion
+from schemas import errors
+from tests.kb_node import home
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch):
+    monkeypatch.setattr(second_opinion, "_LOOK_S", 0.01)
+
+
+def test_it_is_given_up_when_nobody_wants_it_any_more():
+    began_s = time.monotonic()
+    with pytest.raises(errors.Refused, match="the knowledge base is stopping"):
+        second_opinion.owlrl_faults(home.TBOX, is_over=lambda: True)
+    assert time.monotonic() - began_s < 10.0
+
+
+def test_it_is_given_up_after_a_while(monkeypatch):
+    monkeypatch.setattr(second_opinion, "TIMEOUT_S", 0.0)
+    with pytest.raises(errors.Refused, match="did not finish within 0 s"):
+        second_opinion.owlrl_faults(home.TBOX)

@@ -1,0 +1,66 @@
+"""Relations asked pair by pair are those that `list` and `relations` tell."""
+
+import math
+
+import pytest
+
+from nodes.kb_node.relations.asked import Asked
+from nodes.kb_node.relations.measuring.viewing import View
+from nodes.kb_node.relations.selection import selected
+from nodes.kb_node.relations.telling import as_seen
+from schemas import errors
+from schemas.relations import Where
+
+
+@pytest.fixture
+def space(flat):
+    return flat.places.space()
+
+
+@pytest.mark.parametrize("where", ["on", "near", "in_"])
+def test_list_means_the_same(flat, space, where):
+    asked, there = Asked(space), tuple(flat.entities())
+    relation = {"on": "isOn", "near": "isNear", "in_": "isInside"}[where]
+    for other in ("table1", "kitchen1", "bowl1", "desk1"):
+        try:
+            listed = {e.name for e in selected(space, there, Where(**{where: other}), there)}
+        except errors.Refused:
+            continue
+        found = {e.name for e in there if asked.related(relation, e.name, other)}
+        hanging = found - listed
+        assert listed <= found
+        assert not hanging or (where == "on" and all(flat.entity(name).fixed for name in hanging))
+
+
+def test_sides_are_those_that_relations_tells(space):
+    view = View.at(8.2, 0.9, 0.0, math.pi / 2)
+    asked = Asked(space, view)
+    told = {
+        (r.relation, r.object) for r in as_seen(space, "chair1", view, None) if r.relation.startswith("isL")
+    }
+    assert told
+    assert all(asked.related(relation, "chair1", other) for relation, other in told)
+    assert not asked.related("isLeftOf", "bowl1", "table1")  # it stands on it
+
+
+def test_without_a_viewer_there_is_no_left(space):
+    with pytest.raises(errors.BadRequest, match="--from VIEWER"):
+        Asked(space).bearing("cup1")
+    with pytest.raises(errors.BadRequest):
+        Asked(space).related("isBehind", "cup1", "laptop1")
+
+
+def test_what_has_no_position_is_nowhere(space):
+    asked = Asked(space, View.at(0, 0, 0, 0))
+    assert asked.position("nobody") is asked.size("nobody") is None
+    assert asked.distance("nobody", "cup1") == asked.distance_from_viewer("nobody") == math.inf
+    assert not asked.related("isOn", "nobody", "table1")
+    assert not asked.holds_anything("nobody")
+    assert asked.whereabouts("nobody") == ()
+    assert asked.between("nobody", "cup1") == frozenset()
+
+
+def test_whereabouts_are_the_nearest_first(space):
+    assert Asked(space).whereabouts("apple1") == (("isInside", "bowl1"), ("isLocatedIn", "dining_corner1"))
+    assert Asked(space).holds_anything("bowl1")
+    assert not Asked(space).holds_anything("plate1")
