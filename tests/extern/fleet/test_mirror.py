@@ -20,6 +20,7 @@ import pytest
 from nodes.extern.client import connect
 from nodes.extern.fleet import asking, mirroring
 from nodes.extern.fleet.mirror import Mirror
+from nodes.extern.fleet.server import TIMEOUT_S
 from schemas import errors
 from tests.conftest import PATIENCE_S, until
 from tests.extern.fleet.sparql_servers import oxigraph, spelled, virtuoso
@@ -71,15 +72,19 @@ def once(server, where, **options):
     return told
 
 
+STILL_S = PATIENCE_S + 2 * TIMEOUT_S
+"""After so long a copy that has not gone on never will: a server that does not answer is asked again before."""
+
+
 def assert_same(server, client, robot):
     """The robot's graph is its export, at the same commit, as soon as the copy has caught up.
 
     It may take its time as long as it goes on.
     """
-    copied, until_s = None, time.monotonic() + PATIENCE_S
+    copied, until_s = None, time.monotonic() + STILL_S
     while (now := _copied(server, robot)) != client.status().commit:
         if now != copied:
-            copied, until_s = now, time.monotonic() + PATIENCE_S
+            copied, until_s = now, time.monotonic() + STILL_S
         assert time.monotonic() < until_s, f"the copy of {robot} stands still at commit {copied}"
         time.sleep(0.1)
     document = client.export("ntriples")
