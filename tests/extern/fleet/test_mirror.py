@@ -73,7 +73,7 @@ def once(server, where, **options):
 
 
 STILL_S = PATIENCE_S + 2 * TIMEOUT_S
-"""After so long a copy that has not gone on never will: a server that does not answer is asked again before."""
+"""A copy that has not gone on for so long never will: a server that does not answer is asked again before."""
 
 
 def assert_same(server, client, robot):
