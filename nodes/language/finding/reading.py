@@ -79,7 +79,7 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
             key = " ".join(bases[i : i + length])
             if key in nouns.qualities:
                 senses["quality"] = (length, frozenset(nouns.qualities[key]))
-            if length == 1 and _affords(found, i) and any(form in nouns.actions for form in forms(words[i])):
+            if length == 1 and _affords(found, i) and any(form in nouns.verbs for form in forms(words[i])):
                 senses["action"] = (1, None)
             is_apart = length > 1 and not any((word,) in describing.senses for word in words[i : i + length])
             for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
