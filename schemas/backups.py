@@ -17,7 +17,7 @@ from typing import BinaryIO, Final, Literal
 import msgspec
 from msgspec import Struct
 
-from schemas import wording
+from schemas import codec, wording
 from schemas.errors import BadFile
 
 MAGIC: Final = b"semmap backup 1\n"
@@ -63,7 +63,7 @@ class End(Struct, frozen=True, kw_only=True, tag="end"):
 
 Frame = Opening | Piece | End
 _encoder = msgspec.msgpack.Encoder()
-_decoder = msgspec.msgpack.Decoder(Frame)
+_decoder = codec.decoder(Frame)
 
 
 class Restored(Struct, frozen=True, kw_only=True):

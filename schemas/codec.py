@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import re
+import threading
 import types
 from collections.abc import Mapping
 from typing import Any, Final, TypeVar, Union, get_args, get_origin
@@ -23,6 +24,7 @@ _LARGE: Final = 1 << 18
 looking through it again and again takes twice as long as reading it."""
 _encoder = msgspec.msgpack.Encoder()
 _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
+_preparing = threading.Lock()
 
 
 def encode(message: Any) -> bytes:
@@ -53,16 +55,34 @@ def decode(payload: bytes | bytearray, kind: type[T] | Any) -> T:
         gc.disable()
     try:
         if looks_like_json(payload):
-            return msgspec.json.decode(payload, type=kind)
-        decoder = _decoders.get(kind)
-        if decoder is None:
-            decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
-        return decoder.decode(payload)  # type: ignore[no-any-return]
+            return msgspec.json.decode(payload, type=prepared(kind))
+        return (_decoders.get(kind) or decoder(kind)).decode(payload)  # type: ignore[no-any-return]
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
     finally:
         if pauses:
             gc.enable()
+
+
+def decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
+    """The decoder of MessagePack for `kind`; any thread may ask for it at any time.
+
+    When msgspec (0.22.0) first meets a struct it keeps what it finds out about it with the struct, and that
+    before it has found out everything. Another thread that meets the same struct at that moment works with
+    the half, and the process ends with a segmentation fault. So only one thread at a time may let msgspec
+    meet a type: by this function, or by `prepared`.
+    """
+    with _preparing:
+        if (made := _decoders.get(kind)) is None:
+            made = _decoders[kind] = msgspec.msgpack.Decoder(kind)
+        return made
+
+
+def prepared(kind: T) -> T:
+    """`kind`, fit to be given to any function of msgspec's on any thread; see `decoder`."""
+    if kind not in _decoders:
+        decoder(kind)
+    return kind
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
@@ -78,7 +98,7 @@ def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
 def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
     """Plain data as a message. Raises BadRequest."""
     try:
-        return msgspec.convert(values, type=kind, strict=strict)
+        return msgspec.convert(values, type=prepared(kind), strict=strict)
     except msgspec.MsgspecError as error:
         raise BadRequest(f"{MALFORMED}{sentence(error, kind)}") from None
 

@@ -16,7 +16,8 @@ Mood = Literal["command", "question", "past"]
 class Argument(Struct, frozen=True):
     """What fills a role. Words count from 1.
 
-    `entity` is the one that is meant; where several may be, `candidates` has their names instead.
+    `entity` is the one that is meant; where several may be, `candidates` has their names instead. One of them
+    is meant if it is `ambiguous`, any or all of them if it is not (*a cup*, *the cups*).
     """
 
     role: str
@@ -25,6 +26,7 @@ class Argument(Struct, frozen=True):
     head: int  # the word that it is about
     entity: str | None = None
     candidates: tuple[str, ...] = ()
+    ambiguous: bool = False
 
     @property
     def filler(self) -> str:
@@ -68,6 +70,7 @@ class Understood(Struct, frozen=True):
 
     `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
     `mood` other than "command" says why there are no frames: something is asked, or told of the past.
+    `question` is what to ask back where arguments are ambiguous.
     """
 
     words: tuple[str, ...]
@@ -76,6 +79,7 @@ class Understood(Struct, frozen=True):
     unknown: tuple[str, ...] = ()
     language: Language = "english"
     mood: Mood = "command"
+    question: str = ""
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

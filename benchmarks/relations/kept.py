@@ -16,11 +16,11 @@ from typing import NamedTuple
 from benchmarks.kb.made import Cost, cost
 from benchmarks.kb.wire import running
 from benchmarks.relations.speed import rooms
-from nodes.kb_node import gc_pause
 from nodes.kb_node.documents import rdf
 from nodes.kb_node.relations.facts.rules import COMPUTED
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.kb_node.storage.journal import FILENAME, Journal
+from nodes.runtime import gc_pause
 from ontology import HOUSEHOLD_TTL, stars
 from ontology import vocabulary as v
 from schemas.commits import Transaction

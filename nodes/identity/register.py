@@ -13,7 +13,7 @@ from typing import Final
 
 import msgspec
 
-from schemas import errors
+from schemas import codec, errors
 from schemas.roles import Role
 
 FILE: Final = "identities.json"
@@ -46,7 +46,7 @@ class Register(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         """That of a folder of keys. Raises BadFile where there is none."""
         path = folder / FILE
         try:
-            return msgspec.json.decode(path.read_bytes(), type=cls)
+            return msgspec.json.decode(path.read_bytes(), type=codec.prepared(cls))
         except FileNotFoundError:
             raise errors.BadFile(
                 f"{folder} is not a folder of keys; make one with: semmap keys init {folder}"

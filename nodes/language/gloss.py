@@ -23,6 +23,7 @@ class Glossed:
     last: int
     head: int  # the word that it is about
     kind: PartOfSpeech | None = None  # where it is known
+    is_plural: bool = False  # which the English word does not tell
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,4 +75,11 @@ class Gloss:
             return None
         first, last = said[0], said[-1]
         head = min(max(self.words[argument.head - 1].head, first), last)
-        return replace(argument, text=" ".join(self.said[first - 1 : last]), span=(first, last), head=head)
+        inside = self.words[argument.span[0] - 1 : argument.span[1]]
+        return replace(
+            argument,
+            text=" ".join(self.said[first - 1 : last]),
+            span=(first, last),
+            head=head,
+            ambiguous=argument.ambiguous and not any(word.is_plural for word in inside[:2]),
+        )

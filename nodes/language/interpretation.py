@@ -18,6 +18,8 @@ from schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
+Narrow = Callable[[str, tuple[str, ...]], tuple[str, ...]]
+"""Of the entities that words may mean, by name, those that they do: whoever sees the whole map knows more."""
 Seen = Callable[[list[list[str]]], list[list[str]]]
 _Span = tuple[str, int, int]  # slot, index of the first and of the last word
 
@@ -38,18 +40,29 @@ class Interpreter:
         self._frames.open(frames)
         self._roles.open(roles)
 
-    def understand(self, text: str, scene: Scene, language: Language | None = None) -> Understood:
+    def understand(
+        self,
+        text: str,
+        scene: Scene,
+        language: Language | None = None,
+        narrow: Narrow = lambda _, names: names,
+    ) -> Understood:
         """The frames of a command, in the order of their verbs, with their arguments grounded in a map.
 
-        language: what it is said in; without one its words tell.
+        language: what it is said in; without one its words tell. narrow: asked where several entities may be
+        meant, with the English words for them.
         """
         if (language or languages.language_of(text)) == "english":
-            return self.read(split(text), scene)
+            return self.read(split(text), scene, narrow=narrow)
         told = italian.gloss(text, scene)
-        return told.told_back(self.read(told.texts, scene, told.kinds), "italian")
+        return told.told_back(self.read(told.texts, scene, told.kinds, narrow), "italian")
 
     def read(
-        self, texts: Sequence[str], scene: Scene, kinds: Sequence[PartOfSpeech | None] = ()
+        self,
+        texts: Sequence[str],
+        scene: Scene,
+        kinds: Sequence[PartOfSpeech | None] = (),
+        narrow: Narrow = lambda _, names: names,
     ) -> Understood:
         """The same of lower-case English words. kinds: the parts of speech that are known."""
         s = sentence(texts, scene, self._lexicon, kinds)
@@ -59,7 +72,7 @@ class Interpreter:
         frames: list[Frame] = []
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
-            frames.append(_frame(s, name, (first, last), spans, frames, scene))
+            frames.append(_frame(s, name, (first, last), spans, frames, scene, narrow))
         unknown = (word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
         return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown), mood=mood)
 
@@ -142,13 +155,14 @@ def _frame(
     spans: Sequence[_Span],
     before: Sequence[Frame],
     scene: Scene,
+    narrow: Narrow,
 ) -> Frame:
     arguments: list[Argument] = []
     for slot, first, last in spans:
         head = _head(s, slot, first, last)
         k = s.phrase_of[head]
         role = slots.role(name, slot, s.branches[k], s.words[verb[0]].lemma)
-        things = _chosen(s, first, last, k)
+        things = _chosen(s, first, last, k, narrow)
         entity = things[0].name if len(things) == 1 else None
         if s.branches[k] == "pronoun" and entity is None:
             phrase, said = s.phrases[k], s.words[head].text
@@ -161,6 +175,7 @@ def _frame(
                 head + 1,
                 entity,
                 tuple(sorted(thing.name for thing in things)) if len(things) > 1 else (),
+                len(things) > 1 and _means_one(s, k),
             )
         )
     negated = any(word.kind == "neg" for word in s.words[max(0, verb[0] - 2) : verb[0]])
@@ -177,9 +192,25 @@ def _head(s: Sentence, slot: str, first: int, last: int) -> int:
     return min(max(head, first), last)
 
 
-def _chosen(s: Sentence, first: int, last: int, k: int) -> Things:
-    """What phrase k may mean; of several the nearest to what the same argument also speaks of."""
+def _means_one(s: Sentence, k: int) -> bool:
+    """Whether a phrase speaks of one thing that is known, and not of any or of several."""
+    phrase = s.phrases[k]
+    inside = s.words[phrase.nominal : phrase.last + 1]
+    any_or_several = any(s.lexicon.is_a(word.text, "any_or_several") or word.kind == "num" for word in inside)
+    head = s.words[phrase.head]
+    return not any_or_several and head.kind == "noun" and (head.text == head.lemma or " " in head.text)
+
+
+def _chosen(s: Sentence, first: int, last: int, k: int, narrow: Narrow) -> Things:
+    """What phrase k may mean; of several what `narrow` says, or the nearest to what else is spoken of."""
     things = s.meant[k]
+    if len(things) > 1:
+        names = tuple(thing.name for thing in things)
+        words = (word.text for word in s.words[s.phrases[k].nominal : last + 1])
+        if left := set(narrow(" ".join(words), names)) & set(names):
+            narrowed = tuple(thing for thing in things if thing.name in left)
+            if len(narrowed) < len(things):
+                return narrowed
     beside = [
         s.meant[other][0]
         for other in range(s.phrase_of[first], s.phrase_of[last] + 1)

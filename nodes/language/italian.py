@@ -10,7 +10,7 @@ from nodes.language.gloss import Gloss, Glossed
 from nodes.language.grounding import Scene
 from nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
 from nodes.language.vocabulary import spoken
-from nodes.language.words import PartOfSpeech
+from nodes.language.words import PartOfSpeech, plain
 
 _WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
 _LONGEST: Final = 5  # words of an expression or of what a thing is called
@@ -23,6 +23,7 @@ _CLITICS: Final = {
 _SHORT: Final = ("da", "va", "fa", "sta")  # before these a clitic's consonant is doubled: dammi
 _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "their", "some", "no", "every")
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
+_PLURAL: Final = ("i", "gli", "le")
 _GIVING: Final = ("give", "hand", "offer")
 _NUMBERS: Final = ("two", "three", "four", "five", "ten", "thirty", "ninety")
 _ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
@@ -54,7 +55,7 @@ def _tokens(text: str) -> list[str]:
     """The words, clitics written behind a verb apart and beginning with `-`."""
     known = italian()
     found: list[str] = []
-    for word in _WORD.findall(text.lower().replace("’", "'")):
+    for word in _WORD.findall(plain(text)):
         previous = found[-1] if found else ""
         nominal = previous in ARTICULATED or known.expressions.get((previous,), "") in _DETERMINERS
         opens = not found or previous == "favore" or known.expressions.get((previous,), "") in _OPENING
@@ -160,7 +161,8 @@ class _Glossing:
             if word.startswith("("):
                 self._found.append(Glossed(word.strip("()"), 1, 0, end))
             else:
-                self._found.append(Glossed(word, start, end, end, kind))
+                is_plural = kind == "det" and self._pieces[last].text in _PLURAL
+                self._found.append(Glossed(word, start, end, end, kind, is_plural))
 
     def _expression(self, english: str, i: int, length: int) -> int:
         following = self._pieces[i + 1].text if i + 1 < len(self._pieces) else ""

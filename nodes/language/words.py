@@ -27,6 +27,7 @@ PartOfSpeech = Literal[
 ]
 
 _WORD: Final = re.compile(r"n't\b|'\w+|\d+(?:[.,]\d+)?|[^\W\d_]+(?:-[^\W_]+)*(?=n't\b)|[^\W_]+(?:-[^\W_]+)*")
+_NOT_SAID: Final = re.compile(r"</?[a-zA-Z!][^<>]*>|\x1b\[[0-9;]*[A-Za-z]")
 _OPENS_CLAUSE: Final = ("conj", "modal", "adv", "neg")
 
 
@@ -41,7 +42,12 @@ class Word:
 
 def split(text: str) -> list[str]:
     """The words of a text in lower case, without punctuation; `it's` and `don't` are two words each."""
-    return _WORD.findall(text.lower().replace("’", "'"))
+    return _WORD.findall(plain(text))
+
+
+def plain(text: str) -> str:
+    """A text in lower case, without markup and terminals' control sequences, apostrophes alike."""
+    return _NOT_SAID.sub(" ", text).lower().replace("’", "'")
 
 
 def lemma(word: str, lexicon: Lexicon) -> str:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import msgspec
 
+from schemas import codec
 from schemas.errors import Refused
 
 _FILE = "systems.json"
@@ -73,7 +74,7 @@ def _read() -> tuple[System, ...]:
     try:
         if path.stat().st_uid != os.getuid():
             return ()
-        return msgspec.json.decode(path.read_bytes(), type=_Registry).systems
+        return msgspec.json.decode(path.read_bytes(), type=codec.prepared(_Registry)).systems
     except (OSError, msgspec.MsgspecError):
         return ()
 

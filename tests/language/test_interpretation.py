@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from nodes.language.grounding import Thing
 from nodes.language.interpretation import shipped
 from tests.language.household import THINGS, there
 
@@ -44,6 +45,43 @@ def test_where_things_are_tells_taking_from_bringing():
     assert frames("take the bottle on the table", near)[0].startswith("Taking")
     far = [t for t in THINGS if t.name != "table1"]
     assert frames("take the bottle on the table", far) == ["Bringing(Theme=bottle1, Goal=table2)"]
+
+
+def test_of_several_things_the_nearest_tells():
+    chairs = tuple(Thing(f"chair{n}", "Chair", (), (2.0 + n, 2.5, 0.0)) for n in range(5))
+    things = (Thing("desk1", "Desk", (), (6.2, 2.5, 0.0)), *chairs)
+    for order in (things, things[::-1]):
+        assert frames("take the chair near the desk", order) == ["Taking(Theme=chair4)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "ambiguous"),
+    [
+        ("take the bottle", True),
+        ("take a bottle", False),
+        ("take the bottles", False),
+        ("take both bottles", False),
+        ("prendi la bottiglia", True),
+        ("prendi le bottiglie", False),
+        ("prendi una bottiglia", False),
+    ],
+)
+def test_any_and_several_are_not_ambiguous(text, ambiguous):
+    bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2))
+    assert read(text, bottles).frames[0].arguments[0].ambiguous == ambiguous
+
+
+def test_whoever_sees_the_map_narrows():
+    bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2, 3))
+    asked = []
+
+    def narrow(text, names):
+        asked.append((text, sorted(names)))
+        return ("bottle2", "bottle3", "cup1")
+
+    theme = shipped().understand("take the red bottle", there(bottles), narrow=narrow).frames[0].arguments[0]
+    assert asked == [("the red bottle", ["bottle1", "bottle2", "bottle3"])]
+    assert theme.candidates == ("bottle2", "bottle3")
 
 
 def test_words_count_from_one_and_heads_are_inside():

@@ -1,6 +1,8 @@
 import contextlib
 import gc
 import math
+import subprocess
+import sys
 import zlib
 from typing import Any
 
@@ -244,3 +246,40 @@ def test_texts_have_an_end_before_anybody_looks_at_them(command):
     with pytest.raises(errors.BadRequest, match="must be a text of up to") as refused:
         codec.decode(msgpack.packb(command), COMMANDS[command["verb"]])
     assert len(refused.value.text) < 300
+
+
+MEET_AT_ONCE = """
+import sys, threading
+from msgspec import defstruct, json, msgpack
+from schemas import codec
+
+sys.setswitchinterval(1e-6)  # threads take turns as often as they can
+content = {f"field{i}": {"x": 1} for i in range(10)}
+packed, text = msgpack.encode(content), json.encode(content)
+for number in range(60):
+    inner = [defstruct(f"Inner{i}", [("x", int | None, None), ("y", str, "")]) for i in range(10)]
+    kind = defstruct("Outer", [(f"field{i}", one | None, None) for i, one in enumerate(inner)])
+    start = threading.Barrier(3)
+
+    def read(how):
+        start.wait(10)
+        assert how(kind).field9.x == 1
+
+    hows = (
+        lambda kind: codec.decode(packed, kind),
+        lambda kind: codec.decode(text, kind),
+        lambda kind: codec.convert(content, kind),
+    )
+    threads = [threading.Thread(target=read, args=(how,)) for how in hows]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+print("alive")
+"""
+
+
+def test_threads_may_meet_a_type_for_the_first_time_at_once():
+    """msgspec alone ends such a process with a segmentation fault."""
+    done = subprocess.run([sys.executable, "-c", MEET_AT_ONCE], capture_output=True, text=True, timeout=100)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "alive\n", "")

@@ -9,6 +9,7 @@ from typing import Literal
 from msgspec import UNSET, DecodeError, Raw, Struct, UnsetType
 from msgspec import json as _json
 
+from schemas import codec
 from schemas.errors import BadFile
 from schemas.packing import beginning, unpacked
 
@@ -42,7 +43,7 @@ class _Top(Struct):
 
 def _kind_of_json(content: bytes, filename: str) -> Kind:
     with suppress(DecodeError, UnicodeDecodeError, RecursionError):  # what it is instead takes a closer look
-        if _json.decode(content.removeprefix(_BOM), type=_Top).entities is not UNSET:
+        if _json.decode(content.removeprefix(_BOM), type=codec.prepared(_Top)).entities is not UNSET:
             return "scene"
     try:
         document = json.loads(content)

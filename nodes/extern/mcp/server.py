@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import logging
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, suppress
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -13,8 +15,13 @@ import anyio.to_thread
 from mcp import types
 from mcp.server.context import ServerRequestContext
 from mcp.server.lowlevel import Server
+from mcp.server.session import ServerSession
 from mcp.server.stdio import stdio_server
+from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, ResourceUpdated
+from mcp.shared.exceptions import MCPError
 
+from nodes.extern.mcp import resources
+from nodes.extern.mcp.standing import Standing
 from nodes.extern.mcp.tools import Page, Tool, Tools, complaint
 from nodes.runtime.version import version
 from schemas import errors
@@ -22,14 +29,19 @@ from schemas import errors
 R = TypeVar("R")
 Context = ServerRequestContext[Any, Any]
 
+MOST_LISTENERS: Final = 64
+"""Streams of notifications of one server."""
 _AT_ONCE: Final = 8
 """Calls that are at work at the same time."""
 _log = logging.getLogger(__name__)
 
 
 def server(tools: Tools) -> Server[Any]:
-    """A server of these tools, for any transport."""
+    """A server of these tools and of the resources, for any transport."""
     threads = anyio.CapacityLimiter(_AT_ONCE)
+    bus = InMemorySubscriptionBus()
+    listen = ListenHandler(bus, max_subscriptions=MOST_LISTENERS)
+    sessions: dict[str, set[ServerSession]] = {}  # of the protocol before 2026-07-28, by what they follow
 
     async def beside(function: Callable[[], R]) -> R:
         return await anyio.to_thread.run_sync(function, limiter=threads, abandon_on_cancel=True)
@@ -47,6 +59,78 @@ def server(tools: Tools) -> Server[Any]:
             return _refused(errors.InternalError("a fault in semmap itself; it has been logged"))
         return types.CallToolResult(content=_contents(page))
 
+    @asynccontextmanager
+    async def lifespan(_: Server[Any]) -> AsyncIterator[Standing]:
+        loop = asyncio.get_running_loop()
+        tasks: set[asyncio.Task[None]] = set()
+
+        async def tell(uri: str) -> None:
+            await bus.publish(ResourceUpdated(uri))
+            for session in tuple(sessions.get(uri, ())):
+                try:
+                    await session.send_resource_updated(uri)
+                except Exception:  # whoever is gone is told no more
+                    sessions[uri].discard(session)
+
+        def begin(uri: str) -> None:
+            task = loop.create_task(tell(uri))
+            tasks.add(task)
+            task.add_done_callback(tasks.discard)
+
+        def changed(uri: str) -> None:
+            with suppress(RuntimeError):  # the loop has ended
+                loop.call_soon_threadsafe(begin, uri)
+
+        standing = tools.standing(changed)
+        try:
+            yield standing
+        finally:
+            standing.close()
+
+    async def list_resources(
+        _: Context, __: types.PaginatedRequestParams | None
+    ) -> types.ListResourcesResult:
+        return types.ListResourcesResult(resources=list(_RESOURCES))
+
+    async def list_templates(
+        _: Context, __: types.PaginatedRequestParams | None
+    ) -> types.ListResourceTemplatesResult:
+        return types.ListResourceTemplatesResult(resource_templates=list(_TEMPLATES))
+
+    async def read_resource(_: Context, asked: types.ReadResourceRequestParams) -> types.ReadResourceResult:
+        text = await _answered(beside(partial(tools.read, asked.uri)))
+        contents = types.TextResourceContents(uri=asked.uri, text=text, mime_type="application/json")
+        return types.ReadResourceResult(contents=[contents])
+
+    async def subscribe(context: Context, asked: types.SubscribeRequestParams) -> types.EmptyResult:
+        standing: Standing = context.lifespan_context
+        if context.session not in sessions.get(asked.uri, ()):
+            await _answered(beside(partial(standing.follow, asked.uri)))
+            sessions.setdefault(asked.uri, set()).add(context.session)
+        return types.EmptyResult()
+
+    async def unsubscribe(context: Context, asked: types.UnsubscribeRequestParams) -> types.EmptyResult:
+        standing: Standing = context.lifespan_context
+        if context.session in sessions.get(asked.uri, ()):
+            sessions[asked.uri].discard(context.session)
+            await beside(partial(standing.leave, asked.uri))
+        return types.EmptyResult()
+
+    async def listen_to(
+        context: Context, asked: types.SubscriptionsListenRequestParams
+    ) -> types.SubscriptionsListenResult:
+        standing: Standing = context.lifespan_context
+        followed: list[str] = []
+        try:
+            for uri in asked.notifications.resource_subscriptions or ():
+                await _answered(beside(partial(standing.follow, uri)))
+                followed.append(uri)
+            return await listen(context, asked)
+        finally:
+            with anyio.CancelScope(shield=True):
+                for uri in followed:
+                    await beside(partial(standing.leave, uri))
+
     return Server(
         "semmap",
         version=version(),
@@ -55,6 +139,13 @@ def server(tools: Tools) -> Server[Any]:
         instructions=tools.instructions,
         on_list_tools=list_tools,
         on_call_tool=call_tool,
+        on_list_resources=list_resources,
+        on_list_resource_templates=list_templates,
+        on_read_resource=read_resource,
+        on_subscribe_resource=subscribe,
+        on_unsubscribe_resource=unsubscribe,
+        on_subscriptions_listen=listen_to,
+        lifespan=lifespan,
     )
 
 
@@ -67,6 +158,52 @@ def run_stdio(tools: Tools) -> None:
             await made.run(read, write, made.create_initialization_options())
 
     anyio.run(serve)
+
+
+_RESOURCES: Final = (
+    types.Resource(
+        uri=resources.SCHEMA,
+        name="schema",
+        description="For queries: the prefixes, and where the classes and properties are.",
+        mime_type="application/json",
+    ),
+    types.Resource(
+        uri=resources.CLASSES,
+        name="classes",
+        description="The classes, each with its parents; by pages.",
+        mime_type="application/json",
+    ),
+    types.Resource(
+        uri=resources.PROPERTIES,
+        name="properties",
+        description="The properties that may be set, with what they are of and what they take; by pages.",
+        mime_type="application/json",
+    ),
+)
+_TEMPLATES: Final = tuple(
+    types.ResourceTemplate(
+        uri_template=f"{resources.WATCH}{kind}/{{{word}}}",
+        name=f"watch {kind}",
+        description=f"{what}; subscribe to be told when that changes.",
+        mime_type="application/json",
+    )
+    for kind, word, what in (
+        ("in", "place", "The entities in a place or container"),
+        ("on", "name", "The entities on another one"),
+        ("near", "name", "The entities near another one"),
+        ("class", "class", "The entities of a class"),
+        ("query", "select", "The rows of a SPARQL SELECT, percent-encoded"),
+    )
+)
+
+
+async def _answered(waiting: Awaitable[R]) -> R:
+    """Its result; what is wrong is told as an error of the protocol."""
+    try:
+        return await waiting
+    except errors.SemmapError as error:
+        code = types.INTERNAL_ERROR if isinstance(error, errors.NoAnswer) else types.INVALID_PARAMS
+        raise MCPError(code=code, message=errors.shortened(error.text, 1000)) from None
 
 
 def _described(tool: Tool) -> types.Tool:

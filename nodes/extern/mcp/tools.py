@@ -10,11 +10,12 @@ from typing import Any, Final, NamedTuple
 import msgspec
 
 from nodes.extern.client import Client
-from nodes.extern.mcp import answers, reading
+from nodes.extern.mcp import answers, reading, resources
 from nodes.extern.mcp import arguments as a
 from nodes.extern.mcp.answers import Answer
 from nodes.extern.mcp.changing import Changes
 from nodes.extern.mcp.rate import Rate
+from nodes.extern.mcp.standing import Standing
 from schemas import codec, errors
 
 CALLS_PER_S: Final = 20.0
@@ -178,13 +179,18 @@ class Tools:
         self.by_name: Mapping[str, Tool] = {tool.name: tool for tool in (*READING, *further)}
         self.instructions = INSTRUCTIONS + (_CHANGES if any(tool.changes for tool in further) else "")
 
+    def read(self, uri: str) -> str:
+        """What a resource says now. Raises SemmapError."""
+        self._require_rate()
+        return resources.read(self._client, uri)
+
+    def standing(self, changed: Callable[[str], None]) -> Standing:
+        """Standing questions; `changed(uri)` is called when the answer of one is another."""
+        return Standing(self._client, changed)
+
     def call(self, name: str, arguments: Mapping[str, Any]) -> Page:
         """What tool `name` answers. Raises SemmapError, with one sentence that a model can act upon."""
-        if (wait_s := self._rate.wait_s()) > 0.0:
-            raise errors.Busy(
-                f"too many calls: {CALLS_PER_S:g} a second are answered; come again in {wait_s:.2f} s",
-                again_s=wait_s,
-            )
+        self._require_rate()
         if (tool := self.by_name.get(name)) is None:
             hint = errors.did_you_mean(name, self.by_name) or f"; there are: {', '.join(self.by_name)}"
             raise errors.UnknownVerb(f"there is no tool '{errors.shortened(name, 100)}'{hint}")
@@ -194,6 +200,13 @@ class Tools:
             return found
         cursor = getattr(asked, "cursor", None)
         return Page(answers.text(found, answers.read_cursor(cursor)[1] if cursor else 0))
+
+    def _require_rate(self) -> None:
+        if (wait_s := self._rate.wait_s()) > 0.0:
+            raise errors.Busy(
+                f"too many calls: {CALLS_PER_S:g} a second are answered; come again in {wait_s:.2f} s",
+                again_s=wait_s,
+            )
 
 
 def _read(tool: Tool, arguments: Mapping[str, Any]) -> Any:

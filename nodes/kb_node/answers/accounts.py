@@ -36,8 +36,12 @@ class Accounts:
         if name is not None and self._map.find(name) is None:
             name = only_meant(tuple(self._map.entities()), name)
         told = self._told(name, query.words)
-        words = len(told.text.split())
-        return language.Account(text=told.text, words=words, left_out=told.left_out, commit=self._map.seq)
+        words = told.text.split()  # what was quoted may have had lines of its own
+        if len(words) > query.words:  # as the label of a class may have
+            words[query.words - 1 :] = [f"{words[query.words - 1]}…"]
+        return language.Account(
+            text=" ".join(words), words=len(words), left_out=told.left_out, commit=self._map.seq
+        )
 
     def _told(self, name: str | None, most_words: int) -> Account:
         if name is None:

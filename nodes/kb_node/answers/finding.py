@@ -13,14 +13,15 @@ from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View
 from nodes.kb_node.relations.selection import only_meant
 from nodes.kb_node.semantic_map import SemanticMap
-from nodes.language.finding import telling
+from nodes.language.finding import asking_back, telling
 from nodes.language.finding.finding import find
 from nodes.language.finding.known import Known
 from nodes.language.finding.missing import Missing, missing
+from nodes.language.finding.resolving import Resolver
 from schemas import errors
 from schemas.commands import Find
 from schemas.entities import Entity
-from schemas.language import Found
+from schemas.language import Found, Language
 
 
 class Sought(NamedTuple):
@@ -53,6 +54,24 @@ class Finding:
             answer = find(query.text, self.known(), around, asker)
             found = telling.told(answer)
         return Sought(structs.replace(found, seq=self._map.seq), missing(answer))
+
+    def narrowed(self, text: str, names: tuple[str, ...]) -> tuple[str, ...]:
+        """Of the entities that a text may mean those that it does; all where that cannot be said."""
+        space = self._map.places.space()
+        around = Asked(space, None, self._map.beliefs.left_out)
+        try:
+            with space.remembering():
+                found = find(text, self.known(), around)
+        except errors.BadRequest:
+            return names
+        return tuple(name for name in found.names if name in names) or names
+
+    def question(self, names: tuple[str, ...], language: Language) -> str:
+        """What to ask back to learn which of several entities is meant."""
+        space = self._map.places.space()
+        around = Asked(space, None, self._map.beliefs.left_out)
+        with space.remembering():
+            return asking_back.question(names, Resolver(self.known(), around, language))
 
     def known(self) -> Known:
         """What there is to be described, after the last commit; who is as before is not read again."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from msgspec import structs
+
+from nodes.kb_node.answers.finding import Finding
 from nodes.kb_node.entities.class_table import ClassTable
 from nodes.kb_node.semantic_map import SemanticMap
 from nodes.language import lexicon
@@ -20,21 +23,31 @@ _MOST_WORDS = 200  # of a command: a minute of speech
 class Understanding:
     """Reads commands in the light of the map; owned by the node's thread."""
 
-    def __init__(self, semantic_map: SemanticMap) -> None:
-        self._map = semantic_map
+    def __init__(self, semantic_map: SemanticMap, finding: Finding) -> None:
+        """finding: knows which of several entities is meant, and what to ask back."""
+        self._map, self._finding = semantic_map, finding
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
         self._vocabulary: Vocabulary | None = None
         self._scene: tuple[int, Scene] | None = None
 
     def understand(self, query: Understand) -> Understood:
-        """The frames of a command. Raises BadRequest for no words or too many."""
+        """The frames of a command, and what to ask back. Raises BadRequest for no words or too many."""
         words = split(query.text)
         if not words:
             raise errors.BadRequest("there are no words in the text")
         if len(words) > _MOST_WORDS:
             raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
-        return shipped().understand(query.text, self._there(), query.language)
+        narrowed = self._finding.narrowed
+        found = shipped().understand(query.text, self._there(), query.language, narrowed)
+        open_still = dict.fromkeys(
+            argument.candidates
+            for frame in found.frames
+            for argument in frame.arguments
+            if argument.ambiguous
+        )
+        questions = (self._finding.question(names, found.language) for names in open_still)
+        return structs.replace(found, question=" ".join(questions))
 
     def _there(self) -> Scene:
         """What there is to be spoken of, after the last commit."""

@@ -71,10 +71,13 @@ def read(
     `prefixes` are those declared before the first triple. Blank nodes get `label_prefix`. `progress` is told
     now and then how many triples there are so far.
     """
+    reader = _Reader(prefixes, label_prefix)
     try:
-        return _Reader(prefixes, label_prefix).read(content, progress)
+        return reader.read(content, progress)
     except (_NotPlain, UnicodeDecodeError):
         return None
+    finally:
+        reader.forget()
 
 
 class _Reader:
@@ -108,6 +111,12 @@ class _Reader:
             raise _NotPlain
         each = iter(self._terms)
         return list(zip(each, each, each, strict=True))
+
+    def forget(self) -> None:
+        """Part with what was read: words refer to their reader, a cycle, and cycles may stay for long."""
+        for words in (self._subjects, self._predicates, self._tails, self._known, self._shared):
+            words.clear()
+        self._terms = []
 
     def _read_columns(self, text: str) -> bool:
         """A piece that is nothing but triples, each in full, of words without spaces; False for any other."""

@@ -82,8 +82,8 @@ class Asking:
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
-        self._understanding = Understanding(semantic_map)
         self._finding = Finding(semantic_map)
+        self._understanding = Understanding(semantic_map, self._finding)
         self._then = whereabouts.Then(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""

@@ -8,6 +8,7 @@ from nodes.kb_node.beliefs import UNCHANGED, Believed
 from nodes.kb_node.relations.geometry.placed import Placed
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
 from nodes.kb_node.sparql.triples.dataset import Delta
+from schemas import codec
 from schemas.commands import Renew, Watch
 from schemas.errors import ErrorMessage
 from schemas.explanations import Triple
@@ -135,7 +136,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
 ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire | Dismiss
 FromWorker = Answered | Left | News
 
-to_worker = msgpack.Decoder(ToWorker)
-from_worker = msgpack.Decoder(FromWorker)
-questions = msgpack.Decoder(Question)
-outcomes = msgpack.Decoder(Outcome)
+to_worker = codec.decoder(ToWorker)
+from_worker = codec.decoder(FromWorker)
+questions = codec.decoder(Question)
+outcomes = codec.decoder(Outcome)

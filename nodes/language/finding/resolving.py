@@ -32,7 +32,7 @@ from nodes.language.lexicon.describing import Language
 _ALIKE: Final = 1.25
 """Sizes that differ by less are no reason to call one big and the other small."""
 _IN_VIEW_RAD: Final = math.radians(60.0)
-"""What is further to the side is not counted from the left, if anything is before the viewer."""
+"""What is further to the side is not counted from the left, if enough is before the viewer."""
 _TIE_M: Final = 0.015
 """Distances and heights that differ by less are the same."""
 _INTO: Final = ("connects", "separates")
@@ -281,7 +281,8 @@ class Resolver:
             return None
         if axis in ("across", ""):
             bearings = {name: around.bearing(name) for name in names}
-            are_seen = any(abs(bearing) <= _IN_VIEW_RAD for bearing in bearings.values())
+            seen = sum(abs(bearing) <= _IN_VIEW_RAD for bearing in bearings.values())
+            are_seen = seen >= max(abs(order.place), order.count)
             return {
                 name: math.inf if are_seen and abs(bearing) > _IN_VIEW_RAD else -bearing
                 for name, bearing in bearings.items()

@@ -59,7 +59,7 @@ class _Maker:
         words: list[str] = []
         frames: list[_Open] = []
         ahead: list[tuple[int, Role]] = []  # index of the frame to come
-        things: list[tuple[str, _At]] = []
+        things: list[tuple[str, str, _At]] = []  # kind, words, place
         theme: _At | None = None
         if chance.random() < _POLITE:
             words.append(chance.choice(["please", "robot"]))
@@ -73,7 +73,7 @@ class _Maker:
                     if kind in self._placed:
                         at = self._somewhere(None if is_far or kind == "place" else beside)
                         beside = beside or at
-                        things.append((" ".join(said), at))
+                        things.append((kind, " ".join(said), at))
                         if theme is None and roles in _MENTIONED:
                             theme = at
                     words += said
@@ -117,13 +117,15 @@ class _Maker:
         x, y, z = beside
         return x + chance.uniform(-_SPREAD_M, _SPREAD_M), y + chance.uniform(-_SPREAD_M, _SPREAD_M), z
 
-    def _map(self, things: list[tuple[str, _At]]) -> tuple[Thing, ...]:
+    def _map(self, things: list[tuple[str, str, _At]]) -> tuple[Thing, ...]:
         with_places = self._random.random() < _WITH_PLACES
         return tuple(
-            Thing(f"thing{n}", self._class_of(text), (text,), at if with_places else None)
-            for n, (text, at) in enumerate(things)
+            Thing(f"thing{n}", self._class_of(kind, text), (text,), at if with_places else None)
+            for n, (kind, text, at) in enumerate(things)
             if self._random.random() < _IN_MAP
         )
 
-    def _class_of(self, text: str) -> str:
+    def _class_of(self, kind: str, text: str) -> str:
+        if kind == "person":
+            return "Person"
         return self._known.class_of(text) or self._known.class_of(text.split()[-1]) or "Object"

@@ -1,5 +1,8 @@
 """Whatever is read in columns or line by line is what Oxigraph reads; what it would refuse is not read."""
 
+import gc
+import tracemalloc
+
 import pyoxigraph
 import pytest
 from hypothesis import HealthCheck, example, given, settings
@@ -262,3 +265,17 @@ def test_a_large_document_is_read_so(monkeypatch):
         rdf.parse(content + b":cup2 a\n.", "f.ttl")
     with pytest.raises(errors.BadFile, match=r"not UTF-8 text \(line 6"):
         rdf.parse(content.replace(b"Cup", b"C\xfcp"), "f.ttl")
+
+
+def test_nothing_stays_of_what_was_read():
+    content = (HEAD + "".join(f":thing{i} dm:isOn :table{i} .\n" for i in range(5000))).encode()
+    gc.disable()
+    tracemalloc.start()
+    try:
+        count = len(quickly(content))
+        kept, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+        gc.enable()
+    assert count == 5000
+    assert kept < 200_000

@@ -23,3 +23,10 @@ def test_every_pattern_can_be_drawn_and_means_what_it_says():
 def test_the_same_seed_draws_the_same():
     assert made.examples(1, household(), seed=2) == made.examples(1, household(), seed=2)
     assert made.examples(1, household(), seed=2) != made.examples(1, household(), seed=3)
+
+
+def test_whoever_is_named_is_a_person():
+    things = [thing for example in made.examples(2, household()) for thing in example.things]
+    people = [thing for thing in things if "anna" in thing.references]
+    assert people
+    assert {thing.class_name for thing in people} == {"Person"}

@@ -104,7 +104,7 @@ def understand(client: Client, text: str, format: str, language: Language | None
     elif format == "lu4r":
         print_json(lu4r.document(found))
     else:
-        print_lines([frame.text for frame in found.frames])
+        print_lines([frame.text for frame in found.frames] + ([found.question] if found.question else []))
     if found.unknown:
         complain(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
     if not found.frames:

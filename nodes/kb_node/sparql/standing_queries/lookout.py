@@ -25,7 +25,7 @@ from nodes.kb_node.sparql.queries import text
 from nodes.kb_node.sparql.readers import Reader, cause_of_death
 from nodes.kb_node.sparql.standing_queries.standing import Standing
 from nodes.kb_node.sparql.triples.dataset import Delta
-from schemas import errors
+from schemas import codec, errors
 from schemas.commands import Renew, Watch
 from schemas.replies import Done
 from schemas.sparql import RowsChanged, SparqlResult, Watching
@@ -35,7 +35,7 @@ STANDING: Final = 64
 ROWS: Final = 10_000
 TIMEOUT_S: Final = 2.0
 
-_results = msgpack.Decoder(SparqlResult)
+_results: msgpack.Decoder[SparqlResult] = codec.decoder(SparqlResult)
 
 
 @dataclass

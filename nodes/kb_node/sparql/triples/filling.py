@@ -16,9 +16,11 @@ from typing import Any, BinaryIO, Final
 import pyoxigraph as ox
 from msgspec import msgpack
 
+from schemas import codec
+
 Triples = Sequence[tuple[str, str, str]]
 _LENGTH_BYTES: Final = 4
-_triples = msgpack.Decoder(list[tuple[str, str, str]])
+_triples = codec.decoder(list[tuple[str, str, str]])
 
 
 END: Final = bytes(_LENGTH_BYTES)

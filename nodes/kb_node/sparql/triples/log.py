@@ -9,9 +9,10 @@ from typing import Final
 from msgspec import msgpack
 
 from nodes.kb_node.sparql.triples.dataset import Delta
+from schemas import codec
 
 _LENGTH_BYTES: Final = 4
-_deltas = msgpack.Decoder(Delta)
+_deltas = codec.decoder(Delta)
 
 
 class Log:

@@ -21,6 +21,7 @@ from nodes.kb_node.storage.encoding import columns_encoding, dense
 from nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
 from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
 from nodes.runtime.shared_parts import SharedParts
+from schemas import codec
 from schemas.entities import Entity
 from schemas.explanations import Triple
 
@@ -72,9 +73,9 @@ class Checkpoint(Struct, frozen=True, kw_only=True):
         return self.triples if self.columns is None else chain(self.columns.triples(), self.triples)
 
 
-_bodies = msgpack.Decoder(_Body)
-_triples = msgpack.Decoder(_Triples)
-_entities = msgpack.Decoder(list[Entity])
+_bodies = codec.decoder(_Body)
+_triples = codec.decoder(_Triples)
+_entities = codec.decoder(list[Entity])
 
 
 def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> bytes:

@@ -11,6 +11,7 @@ from msgspec import Struct, msgpack
 
 from nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
 from nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from schemas import codec
 
 _TERMS: Final = 100_000
 _NUMBERS: Final = 1 << 20
@@ -38,8 +39,8 @@ class StoredColumns(Struct, frozen=True, array_like=True):
     """Frame by frame: those of nodes, of edges, and the links of edges that leave and that enter."""
 
 
-_heads = msgpack.Decoder(_Head)
-_terms = msgpack.Decoder(list[str])
+_heads = codec.decoder(_Head)
+_terms = codec.decoder(list[str])
 
 
 def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:

@@ -8,6 +8,8 @@ from typing import Final
 
 from msgspec import MsgspecError, Struct, msgpack
 
+from schemas import codec
+
 TABLE: Final = """CREATE TABLE beginning (
     seq INTEGER PRIMARY KEY, head BLOB NOT NULL, body BLOB NOT NULL, digest BLOB NOT NULL
 ) STRICT"""
@@ -53,7 +55,7 @@ def read(db: sqlite3.Connection) -> Beginning | None:
     try:
         if row is None or digest(row[1]) != row[2]:
             return None
-        found = msgpack.decode(row[1], type=Beginning)
+        found = msgpack.decode(row[1], type=codec.prepared(Beginning))
     except (MsgspecError, TypeError):
         return None
     return found if found.seq == row[0] else None

@@ -12,6 +12,7 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
+from schemas import codec
 from schemas.commits import Commit
 
 _RECORD: Final = "index"
@@ -61,7 +62,7 @@ def write(db: sqlite3.Connection, after: int, seq: int) -> None:
 def read(db: sqlite3.Connection) -> Record | None:
     """What was recorded last; None where nothing was. Raises MsgspecError or TypeError if it is damaged."""
     row = db.execute("SELECT value FROM meta WHERE key = ?", (_RECORD,)).fetchone()
-    return None if row is None else msgpack.decode(row[0], type=Record)
+    return None if row is None else msgpack.decode(row[0], type=codec.prepared(Record))
 
 
 def is_as_recorded(db: sqlite3.Connection, after: int, record: Record) -> bool:

@@ -11,6 +11,7 @@ from PIL import Image
 
 from nodes.perception_node.input.cloud import Cloud
 from nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from schemas import codec
 from schemas.wording import sentence
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
@@ -35,7 +36,7 @@ class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 def read_camera(path: Path) -> PinholeCamera:
     """The camera in a JSON file. Raises ValueError saying what is wrong, and OSError."""
     try:
-        camera = msgspec.json.decode(path.read_bytes(), type=PinholeCamera)
+        camera = msgspec.json.decode(path.read_bytes(), type=codec.prepared(PinholeCamera))
     except msgspec.DecodeError as error:
         raise ValueError(f"invalid intrinsics: {sentence(error, PinholeCamera)}") from None
     if not (camera.fx > 0 and camera.fy > 0 and camera.depth_scale > 0):

@@ -86,6 +86,53 @@ def test_what_is_no_command_says_why(system, monkeypatch, capsys, text, why):
     assert why in capsys.readouterr().err
 
 
+def test_which_of_several_is_meant_is_asked_back(system, monkeypatch):
+    with system.client() as client:
+        client.add("Table", "table1", at=(3, 0, 0), size=(1, 1, 0.7))
+        client.add("Desk", "desk1", at=(0, 3, 0), size=(1, 1, 0.7))
+        client.add("Cup", "cup1", at=(3, 0, 0.7), size=(0.1, 0.1, 0.1))
+        client.add("Cup", "cup2", at=(0, 3, 0.7), size=(0.1, 0.1, 0.1))
+        try:
+            text, status = said(system, monkeypatch, "understand", "take the cup")
+            question = "Which one: the cup on the table or the one on the desk?"
+            assert (text, status) == (f"Taking(Theme=cup1|cup2)\n{question}\n", 0)
+            understood = client.understand("prendi la tazza")
+            assert understood.question == "Quale: la tazza sul tavolo o quella sulla scrivania?"
+            assert understood.frames[0].arguments[0].ambiguous
+            assert client.understand("take the cup on the desk").frames[0].arguments[0].entity == "cup2"
+            assert client.understand("prendi la tazza sulla scrivania").frames[0].text == "Taking(Theme=cup2)"
+            for text in (
+                "take a cup",
+                "take the cups",
+                "prendi una tazza",
+                "prendi le tazze",
+                "take the lemonade",
+            ):
+                assert not client.understand(text).question, text
+        finally:
+            for name in ("cup1", "cup2", "table1", "desk1"):
+                client.remove(name)
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("\x1b[31mtake\x07 the lemonade\x00", "Taking(Theme=bottle1)"),
+        ("<b>take</b> the lemonade <script src='x'>", "Taking(Theme=bottle1)"),
+        ("take 🍋 the 🍋 lemonade", "Taking(Theme=bottle1)"),
+        ("TAKE THE LEMONADE!!!", "Taking(Theme=bottle1)"),
+        ("take Bottle", "Taking(Theme=bottle1)"),  # what is also a class
+        ("nimm die Flasche vom Tisch", ""),
+        ("возьми бутылку", ""),
+        ("ボトルを取って", ""),
+        ("\"; -- '' take", "Taking()"),
+    ],
+)
+def test_whatever_is_said_is_answered(system, text, understood):
+    with system.client() as client:
+        assert "".join(frame.text for frame in client.understand(text).frames) == understood
+
+
 def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "understand", "frobnicate the lemonade")
     assert (text, status) == ("", 1)
@@ -93,8 +140,13 @@ def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "understand", "🤖")
     assert (text, status) == ("", 2)
     assert "there are no words" in capsys.readouterr().err
-    with system.client() as client, pytest.raises(errors.BadRequest, match="at most 200 words"):
-        client.understand("go " * 300)
+    with system.client() as client:
+        with pytest.raises(errors.BadRequest, match="at most 200 words"):
+            client.understand("go " * 300)
+        with pytest.raises(errors.BadRequest, match="1 to 1000 characters"):
+            client.understand("go " * 10_000)
+        with pytest.raises(errors.BadRequest, match="1 to 1000 characters"):
+            client.understand("")
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,25 @@
+"""The scripted tasks are done right, and by few characters."""
+
+import asyncio
+from collections import Counter
+
+from benchmarks.agents.__main__ import all_done, rows
+from benchmarks.agents.tasks import TASKS, prepare
+from tests.conftest import running
+
+
+def test_there_are_sixty_tasks_of_eight_kinds():
+    assert len(TASKS) == 60
+    assert set(Counter(task.kind for task in TASKS)) == {
+        "find", "count", "compare", "why", "when", "change", "refuse", "undo"
+    }  # fmt: skip
+
+
+def test_every_task_is_done_right_and_reads_little(tmp_path):
+    with running(tmp_path, "--no-sim", "--no-record") as system, system.client() as client:
+        prepare(client)
+        found = asyncio.run(asyncio.wait_for(all_done(client, system.endpoint), 200))
+    assert [one for one in found if one.fault] == []
+    assert sum(one.characters for one in found) / len(found) < 1500
+    assert max(one.calls for one in found) <= 3
+    assert rows(found, 100_000, 5)[0].value == 1.0
