@@ -117,6 +117,11 @@ def test_typing_and_recognition_errors_mean_the_nearest_word(text, said, meant):
     assert made.reading.mended == ((said, meant),)
 
 
+@pytest.mark.parametrize("text", ["the die", "da rote", "la terr"])
+def test_what_would_name_nothing_is_not_what_was_meant(text):
+    assert find(text, known(), Written()).reading.mended == ()
+
+
 @pytest.mark.parametrize("text", ["", "   ", "🤖🫖", "?!"])
 def test_no_words_is_refused(text):
     with pytest.raises(errors.BadRequest):
