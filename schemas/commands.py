@@ -554,9 +554,14 @@ class Reset(Command[Done], frozen=True, tag="reset"):
 
 
 class TakePicture(Command[Picture], frozen=True, tag="picture"):
-    """A picture of the scene, from one of the world's cameras or from above."""
+    """A picture of the scene, from one of the world's cameras or from above; or of one `place`.
+
+    With `labels` the names of the entities are written on it.
+    """
 
     camera: Word | None = None
+    place: Word | None = None
+    labels: bool = False
     width: Annotated[int, Meta(ge=16, le=4096)] = 960
     height: Annotated[int, Meta(ge=16, le=4096)] = 720
 

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta, Struct, field
 
 from schemas.calls import MANY, Call
-from schemas.entities import Name, Pose, Size
+from schemas.entities import Name, Pose, Size, Vector
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
 """How wide or high a picture may be."""
@@ -139,10 +139,16 @@ class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A picture of the scene for people, from a camera of the world; or, without one, of everything."""
+    """A picture of the scene for people, from a camera of the world; or, without one, of everything.
+
+    With a `box` (lowest and highest corner [m], map frame) it is of that, seen from above. `labels` writes
+    the names of the entities' bodies on it, of those whose middle is in the box.
+    """
 
     VERB: ClassVar[str] = "picture"
     camera: str = ""
+    box: tuple[Vector, Vector] | None = None
+    labels: bool = False
     width: Annotated[int, Meta(ge=16, le=4096)] = 960
     height: Annotated[int, Meta(ge=16, le=4096)] = 640
 

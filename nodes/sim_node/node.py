@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import Any, Literal, TypeVar
 
+import numpy as np
+
 from nodes import bus
 from nodes.runtime.class_names import ClassNames
 from nodes.runtime.loop import Node, open_node
 from nodes.sim_node.config import SimConfig
 from nodes.sim_node.models.sources import Models
 from nodes.sim_node.vision.studio import Plane, Still, Studio
-from nodes.sim_node.vision.view import View, camera_view, overview
+from nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from nodes.sim_node.window import Window
 from nodes.sim_node.world_file import is_scene, open_world
 from schemas import codec, errors, keys, wording
@@ -150,7 +152,9 @@ class Simulator:
         return self._told(Done(text=f"put back to the ordered poses: {wording.bodies(count)}"))
 
     def _picture(self, query: PictureQuery) -> Future[Picture]:
-        return self._studio.paint(self._still(), self._view(query))
+        box = None if query.box is None else (np.array(query.box[0]), np.array(query.box[1]))
+        labels = self._world.tops(box) if query.labels else {}
+        return self._studio.paint(self._still(), self._view(query), labels)
 
     def _surfaces(self, query: SurfaceQuery) -> Surfaces:
         return self._world.surfaces(query.names)
@@ -172,6 +176,9 @@ class Simulator:
         world = self._world
         if query.camera:
             return camera_view(world.model, world.data, query.camera, query.width, query.height)
+        if query.box is not None:
+            low, high = np.array(query.box[0]), np.array(query.box[1])
+            return overview(low, high, query.width, query.height, back=FROM_ABOVE)
         low, high = world.extent()
         return overview(low, high, query.width, query.height)
 

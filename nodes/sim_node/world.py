@@ -126,6 +126,19 @@ class World:
         felt = np.isfinite(stage.body_low).all(axis=1)
         return bulk(stage.body_low[felt], stage.body_high[felt])
 
+    def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
+        """The middle of the top (3,) [m] of each entity's body; only of those whose middle is in the box."""
+        stage, index = self._engine.stage(), self._engine.index
+        found = {}
+        for name, row in index.row.items():
+            low, high = stage.body_low[row], stage.body_high[row]
+            middle = (low + high) / 2.0
+            if not self._engine.records[name].entity or not np.isfinite(middle).all():
+                continue
+            if box is None or bool(((box[0] <= middle) & (middle <= box[1])).all()):
+                found[name] = np.array([middle[0], middle[1], high[2]])
+        return found
+
     def poses(self) -> Poses:
         """Where all bodies are."""
         engine = self._engine

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import TypeVar
@@ -15,7 +16,7 @@ from schemas import commands as c
 from schemas import errors, wording
 from schemas.bridge import LoadOf
 from schemas.calls import Call
-from schemas.entities import Pose, carried, orientation_from_yaw
+from schemas.entities import Pose, Vector, carried, orientation_from_yaw
 from schemas.replies import Done, Moved
 from schemas.scenes import BodiesMoved, Body, MoveBodies, Picture, PictureQuery, Placement
 
@@ -88,8 +89,27 @@ class Running:
 
     def picture(self, command: c.TakePicture) -> Future[Picture]:
         """What a camera sees."""
-        query = PictureQuery(camera=command.camera or "", width=command.width, height=command.height)
+        if command.camera and command.place:
+            raise errors.BadRequest("give either a camera or a place")
+        query = PictureQuery(
+            camera=command.camera or "",
+            box=self._box_of(command.place) if command.place else None,
+            labels=command.labels,
+            width=command.width,
+            height=command.height,
+        )
         return self._ask_scene(query)
+
+    def _box_of(self, name: str) -> tuple[Vector, Vector]:
+        """Lowest and highest corner of a place. Raises UnknownName; Refused for what is no place."""
+        entity = self._door.map.entity(name)
+        if not entity.place or entity.pose is None or entity.size_m is None:
+            raise errors.Refused(f"{entity.name} is not a place with a position and a size")
+        (x, y, z), (width, depth, height) = entity.pose.position_m, entity.size_m
+        turn = entity.pose.yaw_rad
+        across = (abs(width * math.cos(turn)) + abs(depth * math.sin(turn))) / 2
+        along = (abs(width * math.sin(turn)) + abs(depth * math.cos(turn))) / 2
+        return (x - across, y - along, z), (x + across, y + along, z + height)
 
     def _ask_scene(self, call: Call[R]) -> Future[R]:
         if not self._keeping.scene.known:

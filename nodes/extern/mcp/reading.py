@@ -185,8 +185,11 @@ def when_(client: Client, asked: a.WasWhen) -> Answer:
 
 def depicted(client: Client, asked: a.Picture) -> tuple[Answer, bytes]:
     """A picture of the scene (PNG), and what there is to say of it."""
-    png, first, last = _now(client, lambda: client.picture(width=asked.width, height=asked.height))
-    return Answer(first=first, last=last, head={"picture": "the scene as it is simulated, from aloft"}), png
+    png, first, last = _now(
+        client, lambda: client.picture(place=asked.place, labels=True, width=asked.width, height=asked.height)
+    )
+    head = {"picture": "the scene as it is simulated", "of": asked.place or "everything"}
+    return Answer(first=first, last=last, head=head), png
 
 
 def _told(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:

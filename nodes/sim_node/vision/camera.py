@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
@@ -11,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from nodes.sim_node.bodies import Floats
+from nodes.sim_node.vision.labels import projected, written
 from nodes.sim_node.vision.offscreen import MAX_PIXELS, Offscreen, open_gl
 from nodes.sim_node.vision.raycast import raycast
 from nodes.sim_node.vision.view import View, camera_view
@@ -66,14 +69,25 @@ class Eye:
         return raycast(model, data, view)[2]
 
 
-def picture_png(eye: Eye, model: mujoco.MjModel, data: mujoco.MjData, view: View) -> bytes:
-    """A picture for people as PNG, with smooth edges: drawn at twice the size, where OpenGL allows that."""
+def picture_png(
+    eye: Eye,
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    view: View,
+    labels: Mapping[str, Floats] = MappingProxyType({}),
+) -> bytes:
+    """A picture for people as PNG, with smooth edges: drawn at twice the size, where OpenGL allows that.
+
+    `labels` are written beside their points (3,) [m] of the map frame.
+    """
     factor = min(2.0, MAX_PIXELS[0] / view.width, MAX_PIXELS[1] / view.height) if eye.has_graphics else 2.0
     scale = np.diag([factor, factor, 1.0])
     width, height = int(factor * view.width), int(factor * view.height)
     fine = View(width, height, scale @ view.intrinsics, view.map_from_camera)
     rgb = eye.see(model, data, fine)[0] if eye.has_graphics else raycast(model, data, fine, shadows=True)[0]
     image = Image.fromarray(rgb).resize((view.width, view.height), Image.Resampling.BOX)
+    if labels:
+        image = written(image, projected(view, labels))
     out = io.BytesIO()
     image.save(out, format="PNG")
     return out.getvalue()

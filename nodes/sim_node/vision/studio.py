@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from nodes.sim_node.bodies import Floats
 from nodes.sim_node.config import CameraConfig
 from nodes.sim_node.vision.camera import Eye, picture_png
 from nodes.sim_node.vision.noise import kinect_noise
@@ -47,10 +49,12 @@ class Studio:
         """Let the picture in hand be finished, and no other be begun."""
         self._thread.shutdown(wait=True, cancel_futures=True)
 
-    def paint(self, still: Still, view: View) -> Future[Picture]:
-        """A picture for people."""
+    def paint(
+        self, still: Still, view: View, labels: Mapping[str, Floats] = MappingProxyType({})
+    ) -> Future[Picture]:
+        """A picture for people, with `labels` beside their points (3,) [m] of the map frame."""
         return self._thread.submit(
-            lambda: Picture(png=picture_png(self._open_eye(), still.model, still.data, view))
+            lambda: Picture(png=picture_png(self._open_eye(), still.model, still.data, view, labels))
         )
 
     def film(self, still: Callable[[], Still], publish: Callable[[Plane], None]) -> None:

@@ -78,6 +78,8 @@ def bulk(low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
     return low_m[near].min(axis=0), high_m[near].max(axis=0)
 
 
+FROM_ABOVE = (0.0, -0.15, 1.0)
+"""Nearly straight down, so that walls hide nothing."""
 FROM_ALOFT = (0.40, -0.46, 0.80)
 FROM_THE_FRONT = (0.68, -0.44, 0.58)
 

@@ -63,14 +63,18 @@ def reset(client: Client) -> None:
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--camera", metavar="NAME", help="A camera of the world; default: an overview from above.")
+@click.option("--place", metavar="NAME", help="Only this place, from above.")
+@click.option("--labels", is_flag=True, help="Write the names of things on it.")
 @click.option("--width", type=int, default=960, show_default=True)
 @click.option("--height", type=int, default=720, show_default=True)
 @talks
-def picture(client: Client, file: Path, camera: str | None, width: int, height: int) -> None:
+def picture(
+    client: Client, file: Path, camera: str | None, place: str | None, labels: bool, width: int, height: int
+) -> None:
     """Write a picture of the scene to FILE (PNG)."""
     if file.suffix.lower() != ".png":
         raise errors.BadRequest(f"pictures are written as PNG; name the file {file.stem or 'scene'}.png")
-    write_atomically(file, client.picture(camera, width=width, height=height))
+    write_atomically(file, client.picture(camera, place=place, labels=labels, width=width, height=height))
     print(f"wrote {file}")
 
 
