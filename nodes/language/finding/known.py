@@ -62,9 +62,15 @@ class Nouns:
         """Words in base form, as they are written."""
         tag, known = TAGS[language], {name for _, name, _ in terms.classes}
         labels = [(name, text) for said, name, text in terms.classes if said in (tag, "")]
-        for name, text in (*labels, *((c, w) for c, ws in self.describing.synonyms.items() for w in ws)):
-            if name in known:
-                for key in self.keys(text):
+        synonyms = [(name, word) for name, words in self.describing.synonyms.items() for word in words]
+        named = [(name, tuple(self.keys(text))) for name, text in (*labels, *synonyms) if name in known]
+        for name, keys in named:
+            for key in keys[:1]:
+                self.classes.setdefault(key, set()).add(name)
+        whole = frozenset(self.classes)
+        for name, keys in named:
+            for key in keys[1:]:
+                if key not in whole:  # else the taxonomy says what is a table
                     self.classes.setdefault(key, set()).add(name)
         for said, name, text in terms.qualities:
             if said in (tag, ""):
@@ -74,6 +80,7 @@ class Nouns:
         for said, name, text in terms.affordances:
             if said in (tag, ""):
                 self.actions.setdefault(_action(text), set()).add(name)
+        self.verbs: Final = frozenset(action.partition(" ")[0] for action in self.actions)
         for key in (*self.classes, *self.qualities):
             for word in key.split():
                 self.words.setdefault(word, 0)

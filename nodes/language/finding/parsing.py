@@ -174,7 +174,9 @@ class _Parser:
             noun = self._length("noun", i)
             bound = max(self._length(kind, i) for kind in _BOUNDS)
             beside = max(self._length(kind, i) for kind in _BEFORE_A_NOUN)
-            if noun > 1 and noun >= bound:
+            if anything := self._length("anything", i):
+                i, seen_noun = i + anything, True
+            elif noun > 1 and noun >= bound:
                 i, seen_noun = i + noun, True
             elif self._joins_qualities(i) and not seen_noun:
                 i += 1
@@ -381,6 +383,10 @@ class _Parser:
             return made
         if relation is not None:
             return self._related(draft, i, relation, depth)
+        if (length := self._length("from", i)) and not self._ends(i + length):  # a cup from the table
+            other, j = self._phrase(i + length, depth + 1)
+            draft.restrictions.append(Of(self._said(i, j), other))
+            return j
         if (length := self._length("lack", i)) and length >= self._length("have", i):
             return self._lacking(draft, i, length, depth)
         if length := self._length("have", i):
@@ -464,13 +470,24 @@ class _Parser:
     def _related(self, draft: _Draft, i: int, relation: tuple[int, Any], depth: int) -> int:
         length, name = relation
         j = i + length
-        if self._ends(j):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
+        which = self._length("relative", j)
+        if (
+            self._ends(j) and not which
+        ):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
             if depth:
                 draft.restrictions.append(Related(self._said(i, j), name, (Description("it", "it"),)))
             return j
+        if which and not self._ends(j + which):  # on which the laptop is
+            other, end = self._phrase(j + which, depth + 1)
+            draft.restrictions.append(Has(self._said(i, end), other))
+            return end
         others: list[Description] = []
         other, end = self._phrase(j, depth + 1)
         others.append(other)
+        if name == "outside":
+            inside = Related(self._said(i, end), "isInside", (other,))
+            draft.restrictions.append(Not(inside))
+            return end
         if name == "isBetween" and not other.is_plural and (joined := self._length("and", end)):
             other, end = self._phrase(end + joined, depth + 1)
             others.append(other)

@@ -53,6 +53,10 @@ def mended(said: Reading) -> Reading:
         cost += _UNKNOWN if better is None else 1.0
         if better is not None:
             taken_for[words[i]] = words[i] = better
+    for i in _unknown(words, _senses(words, said.nouns)) if taken_for else ():
+        if taken_for.pop(said.words[i], None) is not None:  # a part of a name that by itself names nothing
+            words[i] = said.words[i]
+            cost += _UNKNOWN - 1.0
     if not taken_for:
         return said
     pairs = tuple(taken_for.items())
@@ -79,7 +83,7 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
             key = " ".join(bases[i : i + length])
             if key in nouns.qualities:
                 senses["quality"] = (length, frozenset(nouns.qualities[key]))
-            if length == 1 and _affords(found, i) and any(form in nouns.actions for form in forms(words[i])):
+            if length == 1 and _affords(found, i) and any(form in nouns.verbs for form in forms(words[i])):
                 senses["action"] = (1, None)
             is_apart = length > 1 and not any((word,) in describing.senses for word in words[i : i + length])
             for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
@@ -106,7 +110,9 @@ def nearest(word: str, nouns: Nouns) -> str | None:
     for known, off, _ in process.extract(
         base, nouns.words.keys(), scorer=OSA.distance, score_cutoff=most, limit=None
     ):
-        if len(known) < 3 or (len(known) < 5 and off and known[0] != base[0] and _sound(known) != sound):
+        if len(known) < 3 or (len(base) < 4 and _sound(known) != sound):
+            continue
+        if len(known) < 5 and off and known[0] != base[0] and _sound(known) != sound:
             continue
         found = (off - 0.5 * (_sound(known) == sound), -min(nouns.words[known], 1), known)
         best = found if best is None else min(best, found)

@@ -31,8 +31,12 @@ from nodes.language.lexicon.describing import Language
 
 _ALIKE: Final = 1.25
 """Sizes that differ by less are no reason to call one big and the other small."""
+_IN_VIEW_RAD: Final = math.radians(60.0)
+"""What is further to the side is not counted from the left, if enough is before the viewer."""
 _TIE_M: Final = 0.015
 """Distances and heights that differ by less are the same."""
+_INTO: Final = ("connects", "separates")
+"""What leads into a place is in it, as one says: the kitchen door."""
 _COST: Final = {
     Unknown: 0,
     Quality: 1,
@@ -180,7 +184,18 @@ class Resolver:
         if relation == "isBetween":
             pairs = [(a, b) for a in found[0] for b in found[-1] if a != b]
             return any(name in self.around.between(*pair) for pair in pairs)
-        return any(self.around.related(relation, name, other) for other in found[0])  # type: ignore[arg-type]
+        return any(
+            self.around.related(relation, name, other) or self._is_said(relation, name, other)  # type: ignore[arg-type]
+            for other in found[0]
+        )
+
+    def _is_said(self, relation: str, name: str, other: str) -> bool:
+        """Of places, which have no gap to be measured: adjacent ones, and what leads into one."""
+        one, two = self.known.items[name], self.known.items[other]
+        if relation == "isInside":
+            return two.is_place and any(other in one.values.get(name, ()) for name in _INTO)
+        adjacent = one.values.get("isAdjacentTo", frozenset()), two.values.get("isAdjacentTo", frozenset())
+        return relation in ("isNextTo", "isNear") and (other in adjacent[0] or name in adjacent[1])
 
     def _bears(self, name: str, other: str) -> bool:
         return any(self.around.related(how, other, name) for how in ("isOn", "isInside"))
@@ -265,7 +280,13 @@ class Resolver:
         if axis == "" and not around.has_viewer:
             return None
         if axis in ("across", ""):
-            return {name: -around.bearing(name) for name in names}
+            bearings = {name: around.bearing(name) for name in names}
+            seen = sum(abs(bearing) <= _IN_VIEW_RAD for bearing in bearings.values())
+            are_seen = seen >= max(abs(order.place), order.count)
+            return {
+                name: math.inf if are_seen and abs(bearing) > _IN_VIEW_RAD else -bearing
+                for name, bearing in bearings.items()
+            }
         if axis == "height":
             return {name: at[2] if (at := around.position(name)) else math.inf for name in names}
         if axis == "distance":

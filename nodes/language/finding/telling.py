@@ -127,22 +127,20 @@ def _missing(part: Resolved) -> str:
 
 
 def _nearest(part: Resolved, resolver: Resolver) -> Iterator[Candidate]:
-    """What fits all but one restriction, the first that leaves anything, with what does not fit."""
+    """What the most of a description fits, with what of it does not."""
     said = part.description
-    if not part.kind or said.head != "noun":
+    if said.head != "noun":
         return
-    for dropped in sorted(said.restrictions, key=lambda r: r is not part.failed):
-        others = [r for r in said.restrictions if r is not dropped]
-        names = [n for n in part.kind if all(resolver.fits(n, r, said, part.kind, Scope()) for r in others)]
-        if names:
-            for name in names[:_NEAREST]:
-                fitting = (_reason(name, r, said, resolver) for r in others)
-                against = (f"not: {dropped.said}", *_whereabouts(name, resolver))
-                yield _candidate(name, resolver, (_called(name, part, resolver), *fitting, *against))
-            return
-    if not said.restrictions:
-        for name in part.kind[:_NEAREST]:
-            yield _candidate(name, resolver, (_called(name, part, resolver), *_whereabouts(name, resolver)))
+    against = {
+        name: [r for r in said.restrictions if not resolver.fits(name, r, said, part.kind, Scope())]
+        for name in part.kind
+    }
+    least = min(map(len, against.values()), default=0)
+    for name in [name for name, unfit in against.items() if len(unfit) == least][:_NEAREST]:
+        fitting = (_reason(name, r, said, resolver) for r in said.restrictions if r not in against[name])
+        unfit = (f"not: {restriction.said}" for restriction in against[name])
+        where = _whereabouts(name, resolver)
+        yield _candidate(name, resolver, (_called(name, part, resolver), *fitting, *unfit, *where))
 
 
 def _whereabouts(name: str, resolver: Resolver) -> Iterator[str]:

@@ -37,6 +37,13 @@ from tests.language.finding.kitchen import ITEMS, TERMS, Written, found, item, k
         ("the table and the cup in the sink", {"table1", "cup3"}),
         ("something to drink", {"wine1"}),
         ("something cold", {"wine1"}),
+        ("qualcosa di fresco da bere", {"wine1"}),
+        ("what is in the sink", {"cup3"}),
+        ("which cups are red", {"cup1", "cup3"}),
+        ("quante tazze ci sono sul tavolo", {"cup1", "cup2"}),
+        ("the sink in which the cup is", {"sink1"}),
+        ("the cup outside the sink that is red", {"cup1"}),
+        ("some cups from the table", {"cup1", "cup2"}),
         ("the bottle of wine", {"wine1"}),
         ("Anna's cup", {"cup3"}),
         ("the favourite mug", {"cup3"}),
@@ -108,6 +115,11 @@ def test_left_and_right_take_a_viewer():
 def test_typing_and_recognition_errors_mean_the_nearest_word(text, said, meant):
     made = find(text, known(), Written())
     assert made.reading.mended == ((said, meant),)
+
+
+@pytest.mark.parametrize("text", ["the die", "da rote", "la terr"])
+def test_what_would_name_nothing_is_not_what_was_meant(text):
+    assert find(text, known(), Written()).reading.mended == ()
 
 
 @pytest.mark.parametrize("text", ["", "   ", "🤖🫖", "?!"])
