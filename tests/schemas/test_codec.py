@@ -93,12 +93,12 @@ NAME = "must be a valid name: up to 128 letters, digits, '_', '.' and '-', begin
         ({"name": "chair/1"}, f"name {NAME}"),
         ({"name": "x" * 129}, f"name {NAME}"),
         ({"name": ""}, f"name {NAME}"),
-        ({"source": "god"}, "source must be one of file, operator, perception, scene"),
+        ({"source": "god"}, "source must be one of agent, file, operator, perception, scene"),
         ({"confidence": 1.5}, "confidence must be a number from 0 to 1"),
         ({"wait": 3}, "wait must be true or false"),
         ({"class": 3}, "class must be a text of 1 to 200 characters"),
         ({"verb": "remove"}, "verb must be add"),
-        ({"siez": [1, 1, 1]}, "there is no field 'siez'; did you mean size?"),
+        ({"siez": [1, 1, 1]}, "there is no field 'siez'; did you mean size or since?"),
     ],
 )
 def test_a_bad_field_is_named_with_what_it_may_be(fields, text):
@@ -180,7 +180,7 @@ def test_selector_parameters_are_the_same_fields_as_text(parameters, message):
         (
             {"xyzzy": "1"},
             Remove,
-            "there is no field 'xyzzy'; there are: names, dry_run, id, source, agent, reason",
+            "there is no field 'xyzzy'; there are: names, unchanged, since, dry_run, id, source, agent, reason",
         ),
     ],
 )
