@@ -37,6 +37,7 @@ class Following:
         self.copying: Anew | None = None
         """The map that is to be copied."""
         self._next: dict[int, Commit] = {}
+        self._most_triples = MOST_TRIPLES
 
     @property
     def has_work(self) -> bool:
@@ -91,7 +92,7 @@ class Following:
         change = Change(self.robot, facts.frame)
         commit = None
         seq = self._first
-        while seq in self._next and len(change) < MOST_TRIPLES:
+        while seq in self._next and len(change) < self._most_triples:
             commit = self._next[seq]
             change.take(commit)
             seq += 1
@@ -99,6 +100,16 @@ class Following:
         return change, structs.replace(
             facts, commit=commit.seq, digest=commit.digest, stamp=f.iso(commit.stamp_ns)
         )
+
+    def take_less(self, refused: int, wanted: Facts) -> bool:
+        """The server refused a change of `refused` triples, up to `wanted`: from now on take half as many.
+
+        False if that was a single commit, which cannot be divided.
+        """
+        if self.copying is not None or wanted.commit is None or wanted.commit <= self._first:
+            return False
+        self._most_triples = max(1, min(refused, self._most_triples) // 2)
+        return True
 
     def learn(self, facts: Facts | None, wanted: Facts | None = None) -> None:
         """What the server says of the graph now; where that is not what was `wanted`, look again."""

@@ -290,25 +290,25 @@ class Mirror:
         for robot in self._robots.values():
             if robot.following.copying is not None and not self._stopped:
                 self._copy(robot)
-        pending: list[tuple[_Robot, list[str], Facts]] = []
+        pending: list[tuple[_Robot, list[str], Facts, int]] = []
         triples = 0
         for robot in self._robots.values():
             before = robot.following.facts
             if triples < _REQUEST_TRIPLES and (next_ := robot.following.change()) and before is not None:
                 change, wanted = next_
                 triples += len(change)
-                pending.append((robot, list(change.operations(before, wanted)), wanted))
+                pending.append((robot, list(change.operations(before, wanted)), wanted, len(change)))
         if not pending or self._server is None:
             return
         try:
-            self._send([operation for _, operations, _ in pending for operation in operations])
+            self._send([operation for _, operations, _, _ in pending for operation in operations])
         except errors.BadRequest:  # one of them is at fault, and the others shall not wait for it
-            for robot, operations, wanted in pending:
-                self._write_alone(robot, operations, wanted)
+            for robot, operations, wanted, size in pending:
+                self._write_alone(robot, operations, wanted, size=size)
         except errors.SemmapError as error:
             self._complain(error.text)
         else:
-            self._confirm([(robot, wanted) for robot, _, wanted in pending])
+            self._confirm([(robot, wanted) for robot, _, wanted, _ in pending])
 
     def _copy(self, robot: _Robot) -> None:
         """Write a robot's whole map, in one request if it is small."""
@@ -324,13 +324,25 @@ class Mirror:
             self._say(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {anew.why}")
 
     def _write_alone(
-        self, robot: _Robot, operations: Sequence[str], wanted: Facts, *, one_by_one: bool = False
+        self,
+        robot: _Robot,
+        operations: Sequence[str],
+        wanted: Facts,
+        *,
+        size: int = 0,
+        one_by_one: bool = False,
     ) -> bool:
-        """Write what is to be written of one robot; is it there now?"""
+        """Write what is to be written of one robot; is it there now?
+
+        A change of `size` triples that the server refuses is tried again in smaller steps: Virtuoso 7 refuses
+        one of 800 commits, of which it would make more than 10 000 lines of SQL.
+        """
         try:
             for some in ([operation] for operation in operations) if one_by_one else [operations]:
                 self._send(some)
         except errors.BadRequest as error:
+            if robot.following.take_less(size, wanted):
+                return False
             self._tell_of(robot, error.text)
             robot.following.begin_anew()
             robot.ask_at_s = time.monotonic() + _REFUSED_S

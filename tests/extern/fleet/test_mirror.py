@@ -72,6 +72,8 @@ def once(server, where, **options):
     return told
 
 
+LITTLE = 10_000
+"""Characters of an update."""
 STILL_S = PATIENCE_S + 2 * TIMEOUT_S
 """A copy that has not gone on for so long never will: a server that does not answer is asked again before."""
 
@@ -168,6 +170,28 @@ def test_poses_are_asked_for_in_the_fleets_frame(server, two_robots):
         GRAPH ?poses { :cup1 fleet:x ?x ; fleet:y ?y ; fleet:z ?z } }"""
     (row,) = asking.sparql(query, server.query_url, reachable=False).result.rows
     assert [float(term.split('"')[1]) for term in row] == pytest.approx([8.0, 1.0, 0.7])
+
+
+def test_a_server_that_takes_little_at_a_time_gets_less(server, two_robots, arm1, monkeypatch):
+    """Virtuoso, for one; the copy stood still for good when it was some hundred commits behind."""
+    once(server, two_robots[0].endpoint)
+    names = [f"plate{number}" for number in range(30)]
+    for number, name in enumerate(names):
+        arm1.add("Plate", name, at=(number, 5.0, 0.7))
+    mirror, refused = Mirror(mirroring.config(server.update_url, where=two_robots[0].endpoint)), []
+    update = mirror._writer.update
+
+    def take_little(operations):
+        if (size := sum(map(len, operations))) > LITTLE:
+            refused.append(size)
+            raise errors.BadRequest("too much at once")
+        update(operations)
+
+    monkeypatch.setattr(mirror._writer, "update", take_little)
+    mirror.run(once=True)
+    assert refused
+    assert_same(server, arm1, "arm1")
+    arm1.remove(*names)
 
 
 def test_exactly_once_though_mirror_and_server_are_killed(any_server, two_robots, arm1, tmp_path):

@@ -27,12 +27,14 @@ def asked(client, talk, **options):
     return run(session())
 
 
-def test_over_stdio_an_agent_finds_its_way_from_the_overview_to_a_thing(flat):
+def test_over_stdio_an_agent_finds_its_way_from_the_overview_to_a_thing(flat, client):
+    now = client.status().commit
+
     async def session():
         async with by_stdio(flat.endpoint) as agent:
             assert await agent.tools() == [tool.name for tool in READING]
             overview = await agent("overview")
-            assert overview["commit"] == 1
+            assert overview["commit"] == now
             kitchen = next(p for p in overview["places"] if p["class"] == "Kitchen")
             inside = await agent("list", in_=kitchen["name"], class_="Drink")
             assert inside["total"] == len(inside["entities"]) > 0
@@ -64,7 +66,9 @@ def test_list_says_what_the_map_says_in_pages(client):
     cup = next(row for row in rows if row["name"] == "cup1")
     assert cup["on"] == ["desk1"]
     assert "studio1" in cup["in"]
-    assert (cup["said"], cup["by"]) == ("cup", "file")
+    entity = client.get("cup1")
+    by = entity.reference_provenance
+    assert (cup["said"], cup["by"]) == ("cup", f"{by.source} {by.agent}".strip())
 
 
 def test_pages_are_of_the_commit_of_the_first(client):
