@@ -21,14 +21,25 @@ from schemas.relations import RelationName
 _Measured = Callable[[Space, Solid, Solid, Set[Fact]], bool]
 
 
+MOST_PAIRS: Final = 20_000
+"""So many pairs are looked at for one description: who asks for more holds up everybody else."""
+
+_AS_LONG_AS: Final = 200
+"""What is between two things takes as long as so many pairs."""
+
+
 class Asked:
-    """The relations of a map as they are now, each measured when it is asked for and only once."""
+    """The relations of a map as they are now, each measured when it is asked for and only once.
+
+    Raises BadRequest once more than `MOST_PAIRS` pairs have been asked for.
+    """
 
     def __init__(self, space: Space, view: View | None = None, left_out: Set[Fact] = frozenset()) -> None:
         """view: of who looks, if anybody does; what is `left_out` does not count."""
         self._space: Final = space
         self._left_out: Final = left_out
         self._view: Final = view
+        self._pairs = 0
         self._known: Final[dict[tuple[str, str, str], bool]] = {}
         self._between: Final[dict[tuple[str, str], frozenset[str]]] = {}
 
@@ -39,6 +50,7 @@ class Asked:
 
     def related(self, relation: RelationName, name: str, other: str) -> bool:
         """Whether a relation holds of two, as `list` and `relations` mean it."""
+        self._count()
         key = (relation, name, other)
         if key not in self._known:
             one, two = self._space.solids.get(name), self._space.solids.get(other)
@@ -54,6 +66,14 @@ class Asked:
                 )
         return self._known[key]
 
+    def _count(self, pairs: int = 1) -> None:
+        self._pairs += pairs
+        if self._pairs > MOST_PAIRS:
+            raise errors.BadRequest(
+                f"more than {MOST_PAIRS} pairs of things would have to be compared;"
+                " say of what kind the things are"
+            )
+
     def _is_borne(self, one: Solid, two: Solid) -> bool:
         """Whether one bears the other: a cup on a desk is not right of the desk."""
         return two in bearers(self._space, one) or one in bearers(self._space, two)
@@ -62,6 +82,7 @@ class Asked:
         """What is between two things."""
         key = (min(one, other), max(one, other))
         if key not in self._between:
+            self._count(_AS_LONG_AS)
             pair = [solid for name in key if (solid := self._space.solids.get(name)) is not None]
             found = between(self._space, *pair) if len(pair) == 2 else []
             self._between[key] = frozenset(solid.name for solid in found)

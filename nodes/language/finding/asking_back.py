@@ -20,7 +20,7 @@ def question(names: Sequence[str], resolver: Resolver) -> str:
     """`Which one: the cup on the table or the one in the sink?`, in the language that was used."""
     describing = resolver.known.nouns[resolver.language].describing
     wording = describing.wording
-    items = [resolver.known.items[name] for name in names]
+    items = [resolver.known.items[name] for name in names[: _MOST + 1]]
     choices: list[str] = []
     first = ""
     for item, (tail, is_before) in zip(items, _telling_apart(items, resolver), strict=True):

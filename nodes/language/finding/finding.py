@@ -70,7 +70,7 @@ def _read(text: str, known: Known) -> Reading:
             said = " ".join(best.words[i : i + senses["past"][0]])
             raise errors.BadRequest(
                 f"'{said}' asks about the past, and find looks at the map as it is now;"
-                " the past tell: semmap when, last-seen, and list --as-of"
+                " for the past see: semmap when, semmap last-seen, semmap list --as-of"
             )
     return best
 

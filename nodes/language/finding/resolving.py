@@ -182,7 +182,7 @@ class Resolver:
     def _is_related(self, name: str, relation: str, others: Sequence[Resolved]) -> bool:
         found = [tuple(n for n in other.names if n != name) for other in others]
         if relation == "isBetween":
-            pairs = [(a, b) for a in found[0] for b in found[-1] if a != b]
+            pairs = ((a, b) for a in found[0] for b in found[-1] if a != b)
             return any(name in self.around.between(*pair) for pair in pairs)
         return any(
             self.around.related(relation, name, other) or self._is_said(relation, name, other)  # type: ignore[arg-type]

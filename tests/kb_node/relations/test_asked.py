@@ -64,3 +64,12 @@ def test_whereabouts_are_the_nearest_first(space):
     assert Asked(space).whereabouts("apple1") == (("isInside", "bowl1"), ("isLocatedIn", "dining_corner1"))
     assert Asked(space).holds_anything("bowl1")
     assert not Asked(space).holds_anything("plate1")
+
+
+def test_what_would_take_too_long_is_refused(space, monkeypatch):
+    monkeypatch.setattr("nodes.kb_node.relations.asked.MOST_PAIRS", 10)
+    asked = Asked(space)
+    for _ in range(10):
+        asked.related("isOn", "plate1", "table1")
+    with pytest.raises(errors.BadRequest, match="more than 10 pairs"):
+        asked.between("chair1", "chair2")
