@@ -180,7 +180,8 @@ def test_selector_parameters_are_the_same_fields_as_text(parameters, message):
         (
             {"xyzzy": "1"},
             Remove,
-            "there is no field 'xyzzy'; there are: names, unchanged, since, dry_run, id, source, agent, reason",
+            "there is no field 'xyzzy'; there are: names, unchanged, since, dry_run, id, source, agent,"
+            " reason",
         ),
     ],
 )
