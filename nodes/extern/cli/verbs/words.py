@@ -66,7 +66,7 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @talks
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
-    """Find the entities that words describe, in English or Italian.
+    """Find the entities that words describe (English, Italian).
 
     For example: semmap find "the red cup on the kitchen table". Where several may be meant, there is the
     question to ask back. The exit status is 1 if nothing fits.
@@ -93,7 +93,9 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
 @click.option("--language", type=click.Choice(["english", "italian"]), help="Unless the words tell.")
 @talks
 def understand(client: Client, text: str, format: str, language: Language | None) -> None:
-    """Show what a command in English or Italian asks for, and which entities it is about.
+    """Show what a command in words asks for, and of what.
+
+    In English or Italian, with the entities that it is about.
 
     For example: semmap understand "take the bottle from the table". The frames and roles are FrameNet's. The
     exit status is 1 if no frame is understood.
