@@ -110,6 +110,10 @@ class _Parser:
             made, j = self._phrase(i, 0)
             if j == i:  # nothing begins here that is understood: the word must not be lost
                 made, j = replace(made, restrictions=(Unknown(self._words[i]),)), i + 1
+            joined = any(self._length(kind, j) for kind in ("and", "or", "definite", "indefinite"))
+            if j < len(self._words) and not joined:  # the next word goes with nothing that was said
+                unread = Unknown(self._words[j])
+                made, j = replace(made, restrictions=(*made.restrictions, unread)), j + 1
             found.append(replace(made, is_alternative=is_alternative))
             is_alternative = bool(self._length("or", j))
             i = j + (self._length("or", j) or self._length("and", j))
@@ -134,7 +138,12 @@ class _Parser:
             draft.head = "it"
             return self._done(draft, i + it), i + it
         i = self._determiners(draft, i)
-        i = self._around_the_noun(draft, i)
+        if not depth and i == 0 and (who := self._sense("who", i)):
+            noun = self._r.nouns.describing.wording["person"]
+            draft.head, draft.key, draft.noun = "noun", self._r.nouns.describing.base(noun), noun
+            draft.is_plural, i = True, who[0]
+        else:
+            i = self._around_the_noun(draft, i)
         if (possessive := self._length("possessive", i)) and draft.head == "noun":
             by = Owned(self._said(draft.first, i), self._done(draft, i))
             made, j = self._phrase(i + possessive, depth, by)
@@ -475,9 +484,14 @@ class _Parser:
         endings = (self._said(j + 1, j + 1 + tail), "") if tail else ("",)
         for ending in endings:
             for form in forms(self._words[j]):
-                for text in (f"{form} {ending}".strip(),):
-                    if text in actions:
-                        return length + 1 + tail, frozenset(actions[text])
+                if (text := f"{form} {ending}".strip()) in actions:
+                    return length + 1 + tail, frozenset(actions[text])
+        if self._length("where", i):  # where can I sit? on what affords sitting on it
+            verbs = tuple(f"{form} " for form in forms(self._words[j]))
+            found = frozenset[str]().union(
+                *(names for text, names in actions.items() if text.startswith(verbs))
+            )
+            return (length + 1, found) if found else None
         return None
 
     def _ordering(self, draft: _Draft, i: int, depth: int) -> int:
@@ -520,7 +534,7 @@ class _Parser:
         j = i + length
         which = self._length("relative", j)
         if (
-            self._ends(j) and not which
+            self._ends(j + self._length("no", j)) and not which
         ):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
             if depth:
                 draft.restrictions.append(Related(self._said(i, j), name, (Description("it", "it"),)))
