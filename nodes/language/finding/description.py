@@ -98,12 +98,8 @@ class Unknown:
 class Not:
     """What fits does not count."""
 
+    said: str
     restriction: Restriction
-
-    @property
-    def said(self) -> str:
-        """As it was said."""
-        return f"not {self.restriction.said}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +141,7 @@ class Description:
     """A noun phrase. noun: as it was said, key: in base form; number: how many there are to be.
 
     Of the heads *anything* stands for all things, *one* for the noun said before, *it* for the thing.
+    is_alternative: it is joined to the one before by *or*.
     """
 
     said: str
@@ -156,3 +153,4 @@ class Description:
     number: int | None = None
     restrictions: tuple[Restriction, ...] = ()
     order: Order | None = None
+    is_alternative: bool = False

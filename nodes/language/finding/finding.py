@@ -89,6 +89,8 @@ def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) 
         scope = Scope(found.names, found.description)
     outcomes = [_outcome(part, resolver) for part in parts]
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
+    if any(description.is_alternative for description in said):
+        return _either(parts, read, resolver)
     if "none" in outcomes or not parts:
         return Answer("none", (), tuple(parts), read, resolver)
     if "ambiguous" in outcomes:
@@ -96,6 +98,16 @@ def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) 
         names = tuple(dict.fromkeys(name for part in unclear for name in part.names))
         return Answer("ambiguous", names, tuple(parts), read, resolver)
     return Answer("one" if len(names) == 1 else "several", names, tuple(parts), read, resolver)
+
+
+def _either(parts: list[Resolved], read: Reading, resolver: Resolver) -> Answer:
+    """Things that are named with *or*: any of those that there are is meant."""
+    names = tuple(dict.fromkeys(name for part in parts for name in part.names))
+    is_any = all(part.description.is_plural or not part.description.is_definite for part in parts)
+    outcome: Outcome = "several" if is_any else "ambiguous"
+    if len(names) < 2:
+        outcome = "one" if names else "none"
+    return Answer(outcome, names, tuple(parts), read, resolver)
 
 
 def _outcome(part: Resolved, resolver: Resolver) -> Outcome:

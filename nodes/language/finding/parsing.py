@@ -29,8 +29,8 @@ from nodes.language.finding.description import (
 from nodes.language.finding.reading import Reading, forms
 
 _BOUNDS: Final = (
-    *("relations", "relative", "be", "have", "lack", "not", "and", "or", "of", "possessive", "afford"),
-    "from",
+    *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),
+    *("possessive", "afford", "from"),
 )
 """Kinds of words that end the words around a noun."""
 _BEFORE_A_NOUN: Final = (
@@ -45,7 +45,7 @@ _BEGINS: Final = (
 )
 """Kinds of words that a noun phrase may begin with."""
 _SKIPPED: Final = ("definite", "indefinite", "relative", "be", "to", "possibly")
-_OPENING: Final = ("relations", "relative", "have", "lack", "of", "sides", "not")
+_OPENING: Final = ("relations", "relative", "where", "have", "lack", "of", "sides", "not")
 _MOST_ATTACHMENTS: Final = 6
 """Of so many phrases it is tried what else they may belong to."""
 
@@ -105,13 +105,30 @@ class _Parser:
 
     def all(self) -> tuple[Description, ...]:
         """The things that are named together."""
-        i, found = self._length("opening", 0), list[Description]()
+        i, found, is_alternative = self._length("opening", 0), list[Description](), False
         while i < len(self._words):
             made, j = self._phrase(i, 0)
-            found.append(made)
-            i = max(j, i + 1)
-            i += self._length("and", i)
-        return tuple(found)
+            if j == i:  # nothing begins here that is understood: the word must not be lost
+                made, j = replace(made, restrictions=(Unknown(self._words[i]),)), i + 1
+            joined = any(self._length(kind, j) for kind in ("and", "or", "definite", "indefinite"))
+            if j < len(self._words) and not joined:  # the next word goes with nothing that was said
+                unread = Unknown(self._words[j])
+                made, j = replace(made, restrictions=(*made.restrictions, unread)), j + 1
+            found.append(replace(made, is_alternative=is_alternative))
+            is_alternative = bool(self._length("or", j))
+            i = j + (self._length("or", j) or self._length("and", j))
+        return tuple(self._with_nouns(found))
+
+    def _with_nouns(self, found: list[Description]) -> Iterator[Description]:
+        """Gives the noun to what goes without one before it: the red and the blue cup."""
+        following: Description | None = None
+        for i in reversed(range(len(found))):
+            said = found[i]
+            if said.head != "one":
+                following = said
+            elif following is not None and said.restrictions and not any(d.head == "noun" for d in found[:i]):
+                found[i] = replace(said, head=following.head, key=following.key, noun=following.noun)
+        return iter(found)
 
     def _phrase(self, i: int, depth: int, owner: Restriction | None = None) -> tuple[Description, int]:
         draft = _Draft(i)
@@ -121,7 +138,12 @@ class _Parser:
             draft.head = "it"
             return self._done(draft, i + it), i + it
         i = self._determiners(draft, i)
-        i = self._around_the_noun(draft, i)
+        if not depth and i == 0 and (who := self._sense("who", i)):
+            noun = self._r.nouns.describing.wording["person"]
+            draft.head, draft.key, draft.noun = "noun", self._r.nouns.describing.base(noun), noun
+            draft.is_plural, i = True, who[0]
+        else:
+            i = self._around_the_noun(draft, i)
         if (possessive := self._length("possessive", i)) and draft.head == "noun":
             by = Owned(self._said(draft.first, i), self._done(draft, i))
             made, j = self._phrase(i + possessive, depth, by)
@@ -220,6 +242,7 @@ class _Parser:
             for i in range(first, end)
             for length in range(1, end - i + 1)
             if self._sense(f"noun{length}", i) is not None
+            and not (length > 1 and i > first and self._joins_qualities(i - 1))
         ]
         if spans:
             if is_last:
@@ -236,7 +259,10 @@ class _Parser:
                 if length := self._length(kind, i):
                     draft.head = "anything" if kind == "anything" else "one"
                     if kind == "anything":
-                        draft.is_definite = False
+                        articles = ("definite", "ordinals", "sides")
+                        draft.is_definite = any(
+                            self._length(article, j) for article in articles for j in range(draft.first, i)
+                        )
                     if self._words[i] in ("ones", "things", "objects"):
                         draft.is_plural = True
                     return i, i + length
@@ -265,6 +291,8 @@ class _Parser:
             if either is not None and draft.restrictions:
                 draft.restrictions.append(AnyOf((either, draft.restrictions.pop())))
                 either = None
+        if either is not None:
+            draft.restrictions.append(either)
 
     def _modifier(self, draft: _Draft, i: int, end: int) -> int:
         """One word, or several, beside the noun; where the next one is."""
@@ -319,6 +347,16 @@ class _Parser:
                 self.inner.append(i)
                 if i in self._high:
                     return i
+            if (length := self._length("except", i)) and not self._goes_on(i + length):
+                if depth:  # it is an exception from what was named first
+                    return i
+                if self._ends(i + length):
+                    return i
+                other, j = self._phrase(i + length, depth + 1)
+                said = self._said(i, j)
+                draft.restrictions.append(Not(said, Among(said, other)))
+                i = j
+                continue
             if (length := self._length("or", i)) and self._goes_on(i + length):
                 either, i = True, i + length
                 continue
@@ -327,7 +365,8 @@ class _Parser:
                     return i
                 i += length
                 continue
-            if (length := self._length("not", i)) and length >= self._length("relations", i):
+            length = max(self._length("not", i), self._length("except", i))
+            if length and length >= self._length("relations", i):
                 negated, i = True, i + length
                 continue
             before = len(draft.restrictions)
@@ -340,12 +379,15 @@ class _Parser:
             if len(draft.restrictions) > before:
                 made = draft.restrictions.pop()
                 if negated:
-                    made, negated = Not(made), False
+                    made, negated = Not(self._denied(made.said), made), False
                 if either and draft.restrictions:
                     made, either = AnyOf((draft.restrictions.pop(), made)), False
                 draft.restrictions.append(made)
             i = j
         return i
+
+    def _denied(self, said: str) -> str:
+        return self._r.nouns.describing.wording["not"].format(said)
 
     def _opens(self, i: int) -> bool:
         """Whether a phrase begins here that says more of something."""
@@ -390,8 +432,18 @@ class _Parser:
         if (length := self._length("lack", i)) and length >= self._length("have", i):
             return self._lacking(draft, i, length, depth)
         if length := self._length("have", i):
+            if no := self._length("no", i + length):
+                return self._lacking(draft, i, length + no, depth)
             other, j = self._phrase(i + length, depth + 1)
             draft.restrictions.append(Has(self._said(i, j), other))
+            return j
+        if (length := self._length("where", i)) and not self._ends(j := self._behind_be(i + length)):
+            other, j = self._phrase(j, depth + 1)
+            draft.restrictions.append(Has(self._said(i, self._behind_be(j)), other))
+            return self._behind_be(j)
+        if (length := self._length("to", i)) and draft.head == "noun" and not self._ends(i + length):
+            other, j = self._phrase(i + length, depth + 1)  # the door to the bathroom
+            draft.restrictions.append(Of(self._said(i, j), other))
             return j
         for kind in ("quality", "sizes"):
             if (sense := self._sense(kind, i)) is not None:
@@ -406,6 +458,11 @@ class _Parser:
         if not self._r.senses[i]:
             draft.restrictions.append(Unknown(self._words[i]))
             return i + 1
+        return i
+
+    def _behind_be(self, i: int) -> int:
+        while length := self._length("be", i):
+            i += length
         return i
 
     def _ends(self, i: int) -> bool:
@@ -427,9 +484,14 @@ class _Parser:
         endings = (self._said(j + 1, j + 1 + tail), "") if tail else ("",)
         for ending in endings:
             for form in forms(self._words[j]):
-                for text in (f"{form} {ending}".strip(),):
-                    if text in actions:
-                        return length + 1 + tail, frozenset(actions[text])
+                if (text := f"{form} {ending}".strip()) in actions:
+                    return length + 1 + tail, frozenset(actions[text])
+        if self._length("where", i):  # where can I sit? on what affords sitting on it
+            verbs = tuple(f"{form} " for form in forms(self._words[j]))
+            found = frozenset[str]().union(
+                *(names for text, names in actions.items() if text.startswith(verbs))
+            )
+            return (length + 1, found) if found else None
         return None
 
     def _ordering(self, draft: _Draft, i: int, depth: int) -> int:
@@ -472,7 +534,7 @@ class _Parser:
         j = i + length
         which = self._length("relative", j)
         if (
-            self._ends(j) and not which
+            self._ends(j + self._length("no", j)) and not which
         ):  # what it is near to was named before: with a glass on it, senza bicchiere accanto
             if depth:
                 draft.restrictions.append(Related(self._said(i, j), name, (Description("it", "it"),)))
@@ -482,16 +544,19 @@ class _Parser:
             draft.restrictions.append(Has(self._said(i, end), other))
             return end
         others: list[Description] = []
-        other, end = self._phrase(j, depth + 1)
+        no = self._length("no", j)
+        other, end = self._phrase(j + no, depth + 1)
         others.append(other)
         if name == "outside":
-            inside = Related(self._said(i, end), "isInside", (other,))
-            draft.restrictions.append(Not(inside))
+            said = self._said(i, end)
+            draft.restrictions.append(Not(said, Related(said, "isInside", (other,))))
             return end
         if name == "isBetween" and not other.is_plural and (joined := self._length("and", end)):
             other, end = self._phrase(end + joined, depth + 1)
             others.append(other)
-        draft.restrictions.append(Related(self._said(i, end), name, tuple(others)))
+        said = self._said(i, end)
+        related = Related(said, name, tuple(others))
+        draft.restrictions.append(Not(said, related) if no else related)
         return end
 
     def _lacking(self, draft: _Draft, i: int, length: int, depth: int) -> int:
@@ -502,5 +567,6 @@ class _Parser:
             draft.restrictions.append(State(self._said(i, j), "holding", False))
             return j
         other, end = self._phrase(j, depth + 1)
-        draft.restrictions.append(Not(Has(self._said(i, end), other)))
+        said = self._said(i, end)
+        draft.restrictions.append(Not(said, Has(said, other)))
         return end

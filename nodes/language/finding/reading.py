@@ -85,7 +85,9 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
                 senses["quality"] = (length, frozenset(nouns.qualities[key]))
             if length == 1 and _affords(found, i) and any(form in nouns.verbs for form in forms(words[i])):
                 senses["action"] = (1, None)
-            is_apart = length > 1 and not any((word,) in describing.senses for word in words[i : i + length])
+            is_apart = length > 1 and not any(
+                (words[j],) in describing.senses or bases[j] in nouns.qualities for j in range(i, i + length)
+            )
             for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
                 if length <= MOST_WORDS and nouns.is_noun(form):
                     senses["noun"] = (length, form)

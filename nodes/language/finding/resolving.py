@@ -118,6 +118,8 @@ class Resolver:
 
     def _kind(self, said: Description, scope: Scope) -> Names:
         """All that the noun may mean, and of *a bottle of water* also the water."""
+        if said.head == "one" and not said.restrictions and said.order is None:
+            return ()  # nothing is said of it
         if said.head != "noun":
             return tuple(sorted(name for name, item in self.known.items.items() if not item.is_place))
         found = self.known.called(said.key, self.language)
@@ -154,15 +156,25 @@ class Resolver:
             case Has(_, other):
                 found = meant(other).names
                 says_where = _refers(other, "it")
-                return any(says_where or self._bears(name, borne) for borne in found)
+                bearing = (says_where or self._bears(name, borne) for borne in found)
+                return any(bearing) if other.number is None else sum(bearing) >= other.number
             case Among(_, other):
                 return name in meant(other).names
             case Of(_, other):
                 return self._is_of(item, meant(other))
             case Not(restriction=inside):
-                return not self.fits(name, inside, said, kind, scope)
+                return self._is_denied(item, inside, scope) and not self.fits(name, inside, said, kind, scope)
             case AnyOf(restrictions=inside):
                 return any(self.fits(name, one, said, kind, scope) for one in inside)
+
+    def _is_denied(self, item: Item, restriction: Restriction, scope: Scope) -> bool:
+        """Whether a restriction may be said not to hold: it is understood, and what it is about is known."""
+        match restriction:
+            case State(_, property_name, bool()) if property_name != "holding":
+                return property_name in item.values
+            case Among(_, other) if other.is_definite and other.head == "noun" and not other.is_plural:
+                return bool(self.resolve(other, scope).names)
+        return not _is_unknown(restriction)
 
     def _is_in_state(self, item: Item, property_name: str, value: bool | str) -> bool:
         if property_name == "holding":
@@ -198,7 +210,9 @@ class Resolver:
         return relation in ("isNextTo", "isNear") and (other in adjacent[0] or name in adjacent[1])
 
     def _bears(self, name: str, other: str) -> bool:
-        return any(self.around.related(how, other, name) for how in ("isOn", "isInside"))
+        return self._is_said("isInside", other, name) or any(
+            self.around.related(how, other, name) for how in ("isOn", "isInside")
+        )
 
     def _is_of(self, item: Item, others: Resolved) -> bool:
         """Of a place, an owner, a whole, a thing that bears it, what it holds, or what it is itself."""
@@ -319,6 +333,18 @@ def _embedded(restrictions: Iterable[Restriction]) -> Iterator[Description]:
                 yield from _embedded((inside,))
             case AnyOf(restrictions=inside):
                 yield from _embedded(inside)
+
+
+def _is_unknown(restriction: Restriction) -> bool:
+    """Whether a word in it is not understood."""
+    match restriction:
+        case Unknown():
+            return True
+        case Not(restriction=inside):
+            return _is_unknown(inside)
+        case AnyOf(restrictions=inside):
+            return any(map(_is_unknown, inside))
+    return any(any(map(_is_unknown, inner.restrictions)) for inner in _embedded((restriction,)))
 
 
 def _cost(restriction: Restriction) -> int:

@@ -111,6 +111,8 @@ def _is_short(part: Resolved) -> bool:
 def _missing(part: Resolved) -> str:
     """Which part of a description nothing fits."""
     said, noun = part.description, part.description.noun or "something"
+    if said.head == "one" and not said.restrictions and said.order is None:
+        return f"'{said.said}' names nothing; describe a thing, such as: the red cup on the table"
     unknown = [r.said for r in said.restrictions if isinstance(r, Unknown)]
     if unknown and said.head != "noun":
         return f"nothing is called '{unknown[0]}', and the word is not known"

@@ -39,6 +39,45 @@ def test_what_is_meant_in_the_flat(flat, text, fields, meant):
     assert all(candidate.reasons for candidate in found.candidates)
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("all the doors but the front door", {f"door{i}" for i in range(2, 8)}),
+        ("all the books but the novel", {"book1", "book2"}),
+        ("tutte le porte tranne la porta d'ingresso", set()),
+        ("the cup that is not on the unicorn", set()),
+        ("the room without a window", {"bathroom1"}),
+        ("rooms with windows", {"bedroom1", "kitchen1", "livingroom1", "studio1"}),
+        ("the room with two sinks", set()),
+        ("the room where the bed is", {"bedroom1"}),
+        ("la stanza dove c'è il letto", {"bedroom1"}),
+        ("the door to the bathroom", {"door4"}),
+        ("who is in the studio?", {"person1"}),
+        ("where can I sit?", {"armchair1", "couch1", "toilet1", *(f"chair{i}" for i in range(1, 6))}),
+        ("the glass or the bowl", {"glass1", "bowl1"}),
+        ("the glass or the unicorn", {"glass1"}),
+        ("the cups in no kitchen", {"cup1"}),
+        ("the window which is not open", set()),  # nobody has said so
+        ("the the the", set()),
+        ("of", set()),
+        ("42", set()),
+        ("no chair", set()),
+        ("nothing", set()),
+    ],
+)
+def test_no_word_is_dropped(flat, text, meant):
+    assert names(Finding(flat).find(Find(text=text)).found) == meant
+
+
+def test_what_is_excepted_is_not_among_the_rest(flat):
+    every = names(Finding(flat).find(Find(text="everything in the kitchen")).found)
+    chairs = names(Finding(flat).find(Find(text="the chairs in the kitchen")).found)
+    assert len(chairs) == 4
+    rest = Finding(flat).find(Find(text="everything in the kitchen except the chairs")).found
+    assert names(rest) == every - chairs
+    assert all("except the chairs" in candidate.reasons for candidate in rest.candidates)
+
+
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))

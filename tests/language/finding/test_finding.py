@@ -27,6 +27,8 @@ from tests.language.finding.kitchen import ITEMS, TERMS, Written, found, item, k
         ("both cups on the table", {"cup1", "cup2"}),
         ("all the cups except the blue one", {"cup1", "cup3"}),
         ("red or blue cups", {"cup1", "cup2", "cup3"}),
+        ("the red or blue cup in the sink", {"cup3"}),
+        ("the blue and the big cup", {"cup2", "cup3"}),
         ("the big cup", {"cup3"}),
         ("the biggest cup", {"cup3"}),
         ("the cup nearest to the fridge", {"cup3"}),
