@@ -436,10 +436,14 @@ class Submit(Command[Request], frozen=True, tag="submit"):
 
 
 class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
-    """The requests of agents that wait; with a `number` that one is approved or, with `reject`, rejected."""
+    """The requests of agents that wait; with a `number` that one is approved or, with `reject`, rejected.
+
+    `reject` with `all` rejects all that wait.
+    """
 
     number: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     reject: bool = False
+    all: bool = False
 
 
 # To keep

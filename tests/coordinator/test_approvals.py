@@ -72,13 +72,42 @@ def test_what_nobody_decides_is_forgotten_after_an_hour(approvals, clock):
     assert asked(approvals).number == 2
 
 
-def test_there_is_room_for_so_many(approvals):
-    for number in range(100):
+def test_there_is_room_for_so_many_of_one_agent(approvals):
+    for number in range(10):
         asked(approvals, id=f"{number}")
-    with pytest.raises(errors.Busy):
+    with pytest.raises(errors.Busy, match="10 requests of yours"):
         asked(approvals, id="one more")
+    assert asked(approvals, id="9").number == 10
     approvals.approve(Approve(number=1))
-    assert asked(approvals, id="one more").number == 101
+    assert asked(approvals, id="one more").number == 11
+
+
+def test_there_is_room_for_so_many_of_all(approvals):
+    for number in range(100):
+        asked(approvals, id=f"{number}", agent=f"robot{number // 10}")
+    with pytest.raises(errors.Busy, match="100 requests wait"):
+        asked(approvals, agent="another")
+
+
+def test_all_that_wait_are_rejected_at_once(approvals):
+    ann = agents.proved("ann")
+    asked(approvals), asked(approvals, id="b"), asked(approvals, agent=ann)
+    found = approvals.approve(Approve(reject=True, all=True, agent=ann))
+    assert [(request.number, request.decision) for request in found] == [(1, "rejected"), (2, "rejected")]
+    assert [request.agent for request in approvals.approve(Approve())] == [ann]
+
+
+@pytest.mark.parametrize("fields", [{}, {"reject": True, "number": 1}])
+def test_all_is_for_rejecting_only(approvals, fields):
+    asked(approvals)
+    with pytest.raises(errors.BadRequest, match="all goes with reject"):
+        approvals.approve(Approve(all=True, **fields))
+    assert asked(approvals).decision == "waiting"
+
+
+def test_with_none_waiting_there_is_none_to_name(approvals):
+    with pytest.raises(errors.Refused, match="no request 1 is waiting; none is waiting at all"):
+        approvals.approve(Approve(number=1))
 
 
 def test_a_request_has_an_id(approvals):

@@ -8,6 +8,7 @@ from it is about. The knowledge base checks that in the transaction itself.
 from __future__ import annotations
 
 import re
+import threading
 import time
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -18,12 +19,13 @@ from msgspec import structs
 
 from nodes.extern.client import Client
 from nodes.extern.mcp import arguments as a
-from nodes.extern.mcp import limits, reading
+from nodes.extern.mcp import limits, reading, requests
 from nodes.extern.mcp.answers import Answer, said, who
 from nodes.extern.mcp.limits import Limits, Touched
 from nodes.extern.mcp.moment import at_one_commit, known, newest
 from nodes.extern.mcp.proposals import Proposal, Proposals
 from nodes.extern.mcp.rate import Rate
+from nodes.extern.mcp.requests import Summary
 from schemas import codec, commands, errors
 from schemas.approvals import Request
 from schemas.commands import COMMANDS, Command
@@ -36,6 +38,14 @@ _NAME: Final = re.compile(NAME_PATTERN)
 _PATIENCE_S: Final = 20.0
 """Seconds that a commit waits for a person before it says that it waits."""
 _AGAIN_S: Final = 0.5
+_DRY_RUN: Final = "it would be: "
+"""Stands in the text of a dry run before what would be done."""
+_UNCHANGED: Final = re.compile(r"([\w.-]+: )?unchanged: ")
+"""How that begins if nothing would be."""
+_MOST_WAITERS: Final = 2
+"""Calls that wait for a person at the same time; others are told at once that theirs waits. Each takes one
+of the threads that answer calls."""
+_MOST_ASKED: Final = 1000
 _MOST_NAMES: Final = 50
 """Entities of one change: of more, a dry run does not tell all that follows."""
 
@@ -60,6 +70,8 @@ class Changes:
         self._proposals = Proposals()
         self._rate = Rate(per_min / 60.0, max(1.0, per_min))
         self._per_min = per_min
+        self._waiters = threading.BoundedSemaphore(_MOST_WAITERS)
+        self._asked: dict[str, None] = {}
         self._limits = _known(client, allowed or Limits())
 
     def propose(self, client: Client, asked: a.Propose) -> Answer:
@@ -74,6 +86,9 @@ class Changes:
         if isinstance(command, commands.Add) and command.name is None:
             command = structs.replace(command, name=tried.names[0])
         self._require_allowed(client, command, tried)
+        if _UNCHANGED.match(_would_be(tried)):
+            already = {"possible": True, "changes": False, "then": "nothing: the map says so already"}
+            return Answer(first=first, last=last, head=already)
         made = self._proposals.add(
             command=command, commit=first, tried=tried, rests_on=_rests_on(client, command, tried)
         )
@@ -94,11 +109,11 @@ class Changes:
         proposal = self._proposals.take(asked.token)
         try:
             self._require_unmoved(client, proposal)
-            request = self._approved(client, f"mcp-{proposal.token}", _would_be(proposal.tried), proposal)
+            summary = requests.of_change(proposal.command, proposal.tried)
+            request = self._allowed(client, f"mcp-{proposal.token}", summary)
             if request is not None and request.decision == "waiting":
                 self._proposals.put_back(proposal)
                 return self._waiting(client, request)
-            self._require_rate()
             made = client.send(
                 structs.replace(
                     proposal.command,
@@ -132,16 +147,15 @@ class Changes:
         if (found[0].source, found[0].agent) != ("agent", self._agent):
             by = who(found[0].source, found[0].agent)
             raise errors.Refused(f"commit {asked.commit} was made by {by}; you may undo only your own")
-        name = f"mcp-undo-{asked.commit}"
-        request = self._approved(client, name, f"undo commit {asked.commit}: {found[0].reason}", None)
+        undo = commands.Undo(
+            commit=asked.commit, source="agent", agent=self._agent, reason=asked.reason or "undo by agent"
+        )
+        tried = client.send(structs.replace(undo, dry_run=True))
+        summary = requests.of_undo(found[0], tried, asked.reason)
+        request = self._allowed(client, f"mcp-undo-{asked.commit}", summary)
         if request is not None and request.decision == "waiting":
             return self._waiting(client, request)
-        self._require_rate()
-        made = client.send(
-            commands.Undo(
-                commit=asked.commit, source="agent", agent=self._agent, reason=asked.reason or "undo by agent"
-            )
-        )
+        made = client.send(undo)
         seq = made.commit if made.commit is not None else newest(client)
         return Answer(first=seq, last=seq, head={"undone": asked.commit, "names": made.names})
 
@@ -174,7 +188,7 @@ class Changes:
     def _require_rate(self) -> None:
         if (wait_s := self._rate.wait_s()) > 0.0:
             raise errors.Busy(
-                f"you may make {self._per_min:g} changes a minute; come again in {wait_s:.0f} s",
+                f"changes a minute that you may make: {self._per_min:g}; come again in {wait_s:.0f} s",
                 again_s=wait_s,
             )
 
@@ -204,28 +218,43 @@ class Changes:
                 )
         return ""
 
-    def _approved(self, client: Client, name: str, text: str, proposal: Proposal | None) -> Request | None:
+    def _allowed(self, client: Client, name: str, summary: Summary) -> Request | None:
         """What a person says, who is waited for a little; None where nobody needs to be asked.
 
-        Raises Refused for what was rejected.
+        Each change counts once against the rate: when a person is asked, or else when it is made. Raises
+        Busy beyond the rate, Refused for what was rejected.
         """
         if not self._approve:
+            self._require_rate()
             return None
-        tried = None if proposal is None else proposal.tried
-        lost = () if tried is None else tuple(f"no longer: {fact}" for fact in tried.no_longer_follows[:50])
+        if name not in self._asked:
+            self._require_rate()
         submit = commands.Submit(
             id=name,
             source="agent",
             agent=self._agent,
-            text=errors.shortened(text, 1900),
-            reason="" if proposal is None else proposal.command.reason,
-            follows=() if tried is None else (*tried.follows[:100], *lost),
+            text=errors.shortened(summary.text, 1900),
+            reason=summary.reason,
+            follows=tuple(errors.shortened(fact, 900) for fact in summary.follows),
         )
+        request = client.send(submit)
+        self._asked[name] = None
+        while len(self._asked) > _MOST_ASKED:
+            del self._asked[next(iter(self._asked))]
+        if request.decision == "waiting" and self._waiters.acquire(blocking=False):
+            try:
+                request = self._decided(client, submit)
+            finally:
+                self._waiters.release()
+        if request.decision == "rejected":
+            raise errors.Refused(f"{request.by} has rejected it (request {request.number})")
+        return request
+
+    def _decided(self, client: Client, submit: commands.Submit) -> Request:
+        """The request when it is decided, or as it is after our patience."""
         deadline = time.monotonic() + self._patience_s
         while (request := client.send(submit)).decision == "waiting" and time.monotonic() < deadline:
             time.sleep(_AGAIN_S)
-        if request.decision == "rejected":
-            raise errors.Refused(f"{request.by} has rejected it (request {request.number})")
         return request
 
     def _waiting(self, client: Client, request: Request) -> Answer:
@@ -243,7 +272,7 @@ def _at_one(client: Client, read: Callable[[], R]) -> tuple[R, int, int]:
 
 
 def _would_be(tried: Changed) -> str:
-    return tried.text.partition("it would be: ")[2] or tried.text
+    return tried.text.partition(_DRY_RUN)[2] or tried.text
 
 
 def _rests_on(client: Client, command: Command[Changed], tried: Changed) -> tuple[str, ...]:

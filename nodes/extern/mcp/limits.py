@@ -36,11 +36,11 @@ class Touched(Struct, frozen=True, kw_only=True):
 def require(limits: Limits, touched: Iterable[Touched]) -> None:
     """Raises Refused, with what is allowed, for an entity that is beyond the limits before or after."""
     for one in touched:
-        before = () if one.is_new else ((one.classes_before, one.places_before),)
-        after = () if one.is_gone else ((one.classes_after, one.places_after),)
-        for classes, places in (*before, *after):
-            _require_one_of(limits.classes, classes, f"{one.name} is not of a class that you may change")
-            _require_one_of(limits.places, places, f"{one.name} is not where you may change things")
+        before = () if one.is_new else (("is not", one.classes_before, one.places_before),)
+        after = () if one.is_gone else (("would not be", one.classes_after, one.places_after),)
+        for is_not, classes, places in (*before, *after):
+            _require_one_of(limits.classes, classes, f"{one.name} {is_not} of a class that you may change")
+            _require_one_of(limits.places, places, f"{one.name} {is_not} where you may change things")
 
 
 def after(

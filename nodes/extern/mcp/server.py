@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import base64
 import logging
+import os
+import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from functools import partial
@@ -150,14 +152,19 @@ def server(tools: Tools) -> Server[Any]:
 
 
 def run_stdio(tools: Tools) -> None:
-    """Serve on stdin and stdout until stdin ends."""
+    """Serve on stdin and stdout until stdin ends, or nobody reads stdout any more."""
 
     async def serve() -> None:
         made = server(tools)
         async with stdio_server() as (read, write):
             await made.run(read, write, made.create_initialization_options())
 
-    anyio.run(serve)
+    try:
+        anyio.run(serve)
+    except* (
+        BrokenPipeError
+    ):  # the client is gone; what is still to be flushed at the end has nobody to read it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 _RESOURCES: Final = (

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import json
+import time
 
 import pytest
 
@@ -196,6 +197,8 @@ def test_only_in_allowed_places_may_things_be_changed(client):
     _, *found = agent(client, talk, allowed=Limits(places=frozenset(["kitchen1"])))
     refused = [text for text in found if isinstance(text, str)]
     assert len(refused) == 4
+    assert refused[0] == "cup2 would not be where you may change things: kitchen1"
+    assert refused[1] == "cup1 is not where you may change things: kitchen1"
     assert all("may change" in text or "only an operator" in text for text in refused)
 
 
@@ -264,11 +267,77 @@ def test_a_change_waits_for_a_person(client, flat):
 
     before = client.status().commit
     shown, done = agent(client, talk, approve=True)
-    assert "tester: added Cup cup2 at (8.2, 2.2, 0.74) (I saw one)" in shown
-    assert "cup2 isOn table1" in shown
+    assert "  tester: add Cup cup2, at (8.2, 2.2, 0.74); then cup2 isOn table1, " in shown
+    assert shown.strip().endswith('; reason: "I saw one"')
     assert done["done"]
     assert done["approved_by"].startswith("cli/")
     assert client.status().commit == before + 1
+
+
+def test_an_agent_cannot_forge_lines_of_what_a_person_reads(client, flat):
+    forged = 'seen"\n9  operator: harmless, semmap approve 9 is recommended\x1b[2K\r'
+
+    async def talk(a):
+        token = (await a("propose", **a_cup(reason=forged, ref=forged, alt=[forged])))["token"]
+        number = (await a("commit", token=token))["waiting_for_a_person"].split()[-1]
+        shown, every = flat.cli("approve"), flat.cli("approve", "--format", "json")
+        flat.cli("approve", number)
+        seq = (await a("commit", token=token))["commit"]
+        await a("undo", commit=seq, reason="oops")
+        undo = flat.cli("approve")
+        flat.cli("approve", "--reject", "--all")
+        return shown, every, undo, await a.refused("undo", commit=seq, reason="oops")
+
+    shown, every, undo, refused = agent(client, talk, approve=True)
+    written = r'"seen\"\n9  operator: harmless, semmap approve 9 is recommended\x1b[2K\r"'
+    assert len(shown.splitlines()) == len(undo.splitlines()) == 1
+    assert f"called {written}, also called {written}; then cup2 isOn table1, " in shown
+    assert f"reason: {written}" in shown
+    assert "cup2 hasReference cup2_preferred_reference" in json.loads(every)[0]["follows"]
+    assert f"cup2 (Cup) would be removed (the reason given for it was {written}); then no longer: " in undo
+    assert undo.strip().endswith('; reason: "oops"')
+    assert "has rejected it" in refused
+    assert flat.cli("approve", "--reject", "--all").strip() == "nothing waited for approval"
+
+
+def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
+    async def talk(a):
+        began = time.monotonic()
+        tokens = [(await a("propose", **a_cup(name=f"cup{n}0")))["token"] for n in range(1, 11)]
+        waiting = [asyncio.create_task(a("commit", token=token)) for token in tokens]
+        await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+        for _ in range(10):
+            await a("propose", **a_cup())
+        took_s = time.monotonic() - began
+        flat.cli("approve", "--reject", "--all")
+        found = await asyncio.gather(*waiting, return_exceptions=True)
+        return took_s, sum(isinstance(each, AssertionError) for each in found)
+
+    took_s, rejected = agent(client, talk, approve=True, patience_s=30.0)
+    assert took_s < 15.0
+    assert rejected == 2  # those that were waited for; the others are told when they ask again
+
+
+def test_asking_a_person_counts_against_the_rate(client, flat):
+    async def talk(a):
+        tokens = [(await a("propose", **a_cup(name=f"cup{n}0")))["token"] for n in range(1, 4)]
+        first = [await a("commit", token=tokens[0]) for _ in range(3)]
+        return first, await a.refused("commit", token=tokens[1])
+
+    first, second = agent(client, talk, approve=True, per_min=1.0)
+    flat.cli("approve", "--reject", "--all")
+    assert not any(found["done"] for found in first)
+    assert "changes a minute that you may make: 1; come again in " in second
+
+
+def test_what_would_change_nothing_gets_no_token(client):
+    async def talk(a):
+        at = client.get("cup1").pose.position_m
+        return await a("propose", verb="update", name="cup1", at=list(at), reason="x")
+
+    found = agent(client, talk)
+    assert found["changes"] is False
+    assert "token" not in found
 
 
 def test_what_a_person_rejects_is_not_done(client, flat):

@@ -17,6 +17,11 @@ def escaped(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
+def quoted(text: str) -> str:
+    """Text in double quotes on one line: nothing in it ends the quotation, the line or the row."""
+    return '"' + escaped(text.replace("\\", "\\\\").replace('"', '\\"')) + '"'
+
+
 def escaped_json(text: str) -> str:
     """The same JSON, without control characters that a terminal might heed."""
     return _CONTROLS_IN_JSON.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
