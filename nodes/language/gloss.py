@@ -43,6 +43,11 @@ class Gloss:
         """Their parts of speech, None where the words around are to tell."""
         return tuple(word.kind for word in self.words)
 
+    def said_by_words(self, first: int, last: int) -> str:
+        """The sentence's own words for the English ones from index `first` to `last`."""
+        tokens = self._said_by(range(first + 1, last + 2))
+        return " ".join(self.said[tokens[0] - 1 : tokens[-1]]) if tokens else ""
+
     def told_back(self, understood: Understood, language: Language) -> Understood:
         """What was understood of the English words as of the sentence's own; what nobody said is left out."""
         frames = tuple(

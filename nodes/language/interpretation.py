@@ -10,18 +10,32 @@ from typing import Final
 
 import pycrfsuite
 
-from nodes.language import grounding, italian, languages, lexicon, moods, predicates, pronouns, roles, slots
+from nodes.language import (
+    conjuncts,
+    grounding,
+    italian,
+    languages,
+    lexicon,
+    moods,
+    predicates,
+    pronouns,
+    referents,
+    roles,
+    slots,
+)
+from nodes.language.conjuncts import Span
+from nodes.language.gloss import Gloss
 from nodes.language.grounding import Scene, Thing, Things
+from nodes.language.referents import Referents, Resolve
 from nodes.language.sentence import Sentence, sentence
 from nodes.language.words import PartOfSpeech, split
 from schemas.language import Argument, Frame, Grounded, Language, Understood
 
 _LEAST: Final = 0.05  # a frame less probable than this is not looked at
 _WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
-Narrow = Callable[[str, tuple[str, ...]], tuple[str, ...]]
-"""Of the entities that words may mean, by name, those that they do: whoever sees the whole map knows more."""
+_DESCRIBED: Final = frozenset({"thing", "place", "beneficiary", "goal", "source", "path", "category", "area"})
+"""The slots that entities fill."""
 Seen = Callable[[list[list[str]]], list[list[str]]]
-_Span = tuple[str, int, int]  # slot, index of the first and of the last word
 
 
 class Interpreter:
@@ -45,34 +59,46 @@ class Interpreter:
         text: str,
         scene: Scene,
         language: Language | None = None,
-        narrow: Narrow = lambda _, names: names,
+        resolve: Resolve | None = None,
     ) -> Understood:
         """The frames of a command, in the order of their verbs, with their arguments grounded in a map.
 
-        language: what it is said in; without one its words tell. narrow: asked where several entities may be
-        meant, with the English words for them.
+        language: what it is said in; without one its words tell. resolve: what the noun phrases describe, for
+        whoever sees the whole map; with it things that are listed are an argument each, and what is said of a
+        thing (*that is on the desk*) is no frame of its own. Without, all is as the corpus has it.
         """
         if (language or languages.language_of(text)) == "english":
-            return self.read(split(text), scene, narrow=narrow)
+            return self.read(split(text), scene, resolve=resolve)
         told = italian.gloss(text, scene)
-        return told.told_back(self.read(told.texts, scene, told.kinds, narrow), "italian")
+        return told.told_back(self.read(told.texts, scene, told.kinds, resolve, told), "italian")
 
     def read(
         self,
         texts: Sequence[str],
         scene: Scene,
         kinds: Sequence[PartOfSpeech | None] = (),
-        narrow: Narrow = lambda _, names: names,
+        resolve: Resolve | None = None,
+        told: Gloss | None = None,
     ) -> Understood:
-        """The same of lower-case English words. kinds: the parts of speech that are known."""
+        """The same of lower-case English words.
+
+        kinds: the parts of speech that are known. told: the sentence that the words stand for, if another.
+        """
         s = sentence(texts, scene, self._lexicon, kinds)
         mood = moods.mood(s)
         calls = self._calls(s) if texts and mood == "command" else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
         frames: list[Frame] = []
+        said = _words(s) if told is None else told.said_by_words
+        plural = frozenset(i for i, word in enumerate(told.words if told else ()) if word.is_plural)
+        look_up = None if resolve is None else Referents(s, scene.things.get, resolve, said, plural)
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
-            frames.append(_frame(s, name, (first, last), spans, frames, scene, narrow))
+            if look_up is None:
+                frames.append(_frame(s, name, (first, last), spans, frames, scene, None))
+            elif not (name.startswith("Being_") and frames and referents.is_relative(s, verb)):
+                for clause in conjuncts.clauses(s, name, verb, spans):
+                    frames.append(_frame(s, name, (first, last), clause, frames, scene, look_up))
         unknown = (word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
         return Understood(tuple(texts), tuple(frames), _grounded(s, frames), tuple(unknown), mood=mood)
 
@@ -95,7 +121,7 @@ class Interpreter:
 
     def _filled(
         self, s: Sentence, verb: int, found: list[tuple[float, str]], others: list[int]
-    ) -> tuple[str, list[_Span]]:
+    ) -> tuple[str, list[Span]]:
         """The frame that together with its roles is the most probable, and what fills its slots."""
         best: tuple[float, str, list[str]] | None = None
         for probability, name in found:
@@ -132,9 +158,9 @@ def _verb(s: Sentence, first: int, last: int) -> int:
     return last if s.words[first].text == "there" else first
 
 
-def _spans(labels: Sequence[str]) -> list[_Span]:
+def _spans(labels: Sequence[str]) -> list[Span]:
     """The runs of words with one label, `B-` beginning a new one."""
-    spans: list[_Span] = []
+    spans: list[Span] = []
     open_slot = ""
     for i, label in enumerate(labels):
         slot = label[2:]
@@ -152,30 +178,52 @@ def _frame(
     s: Sentence,
     name: str,
     verb: tuple[int, int],
-    spans: Sequence[_Span],
+    spans: Sequence[Span],
     before: Sequence[Frame],
     scene: Scene,
-    narrow: Narrow,
+    look_up: Referents | None,
 ) -> Frame:
     arguments: list[Argument] = []
-    for slot, first, last in spans:
-        head = _head(s, slot, first, last)
+    source: tuple[int, str] | None = None
+    opened = {span: found for span in spans if look_up and (found := _opened(s, name, span, scene))}
+    heads = {span: opened[span][0] if span in opened else _head(s, *span) for span in spans}
+    meant = dict[Span, Things]()
+    for span in sorted(spans, key=lambda span: span[0] != "source"):
+        slot, first, last = span
+        k = s.phrase_of[heads[span]]
+        if span in opened:
+            meant[span] = opened[span][1]
+        elif look_up is None or slot not in _DESCRIBED:
+            meant[span] = referents.chosen(s, first, last, k)
+        else:
+            where = source if slot == "thing" else None
+            meant[span] = look_up.of(first, last, heads[span], where, _like(s, spans, span))
+        if slot == "source" and len(meant[span]) == 1:
+            source = k, meant[span][0].name
+    for span in spans:
+        slot, first, last = span
+        head, things = heads[span], meant[span]
         k = s.phrase_of[head]
-        role = slots.role(name, slot, s.branches[k], s.words[verb[0]].lemma)
-        things = _chosen(s, first, last, k, narrow)
-        entity = things[0].name if len(things) == 1 else None
-        if s.branches[k] == "pronoun" and entity is None:
-            phrase, said = s.phrases[k], s.words[head].text
-            entity = pronouns.antecedent(said, phrase.preposition, name, role, before, scene)
+        branch = "" if span in opened else s.branches[k]
+        role = slots.role(name, slot, branch, s.words[verb[0]].lemma)
+        names = tuple(sorted(thing.name for thing in things))
+        ambiguous = referents.means_one(s, k)
+        if s.branches[k] == "pronoun" and not names:
+            said = s.words[head].text
+            names = pronouns.antecedent(said, s.phrases[k].preposition, name, role, before, scene)
+            ambiguous = any(
+                names == a.candidates and a.ambiguous for frame in before for a in frame.arguments
+            )
+        several = len(names) > 1
         arguments.append(
             Argument(
                 role,
                 " ".join(word.text for word in s.words[first : last + 1]),
                 (first + 1, last + 1),
                 head + 1,
-                entity,
-                tuple(sorted(thing.name for thing in things)) if len(things) > 1 else (),
-                len(things) > 1 and _means_one(s, k),
+                names[0] if len(names) == 1 else None,
+                names if several else (),
+                several and ambiguous,
             )
         )
     negated = any(word.kind == "neg" for word in s.words[max(0, verb[0] - 2) : verb[0]])
@@ -192,34 +240,34 @@ def _head(s: Sentence, slot: str, first: int, last: int) -> int:
     return min(max(head, first), last)
 
 
-def _means_one(s: Sentence, k: int) -> bool:
-    """Whether a phrase speaks of one thing that is known, and not of any or of several."""
-    phrase = s.phrases[k]
-    inside = s.words[phrase.nominal : phrase.last + 1]
-    any_or_several = any(s.lexicon.is_a(word.text, "any_or_several") or word.kind == "num" for word in inside)
-    head = s.words[phrase.head]
-    return not any_or_several and head.kind == "noun" and (head.text == head.lemma or " " in head.text)
+def _opened(s: Sentence, frame: str, span: Span, scene: Scene) -> tuple[int, Things] | None:
+    """What is opened by its own door, and the word for it: *the door of the fridge* is none between rooms."""
+    head = _head(s, *span)
+    k = s.phrase_of[head]
+    if frame != "Closure" or span[0] != "thing" or s.branches[k] != "Door":
+        return None
+    word, things = head - 1, grounding.called(s.words[head - 1].text, scene, s.lexicon)  # "the fridge door"
+    if k + 1 < len(s.phrases) and s.phrases[k + 1].preposition == "of" and s.phrases[k + 1].last <= span[2]:
+        word, things = s.phrases[k + 1].head, s.meant[k + 1]
+    kinds = [scene.kinds_of(thing.name) for thing in things]
+    opens = bool(kinds) and all("Openable_Thing" in kind and "Location" not in kind for kind in kinds)
+    return (word, things) if opens else None
 
 
-def _chosen(s: Sentence, first: int, last: int, k: int, narrow: Narrow) -> Things:
-    """What phrase k may mean; of several what `narrow` says, or the nearest to what else is spoken of."""
-    things = s.meant[k]
-    if len(things) > 1:
-        names = tuple(thing.name for thing in things)
-        words = (word.text for word in s.words[s.phrases[k].nominal : last + 1])
-        if left := set(narrow(" ".join(words), names)) & set(names):
-            narrowed = tuple(thing for thing in things if thing.name in left)
-            if len(narrowed) < len(things):
-                return narrowed
-    beside = [
-        s.meant[other][0]
-        for other in range(s.phrase_of[first], s.phrase_of[last] + 1)
-        if other != k and len(s.meant[other]) == 1
-    ]
-    if len(things) < 2 or not beside:
-        return things
-    nearest = min(grounding.distance(thing, beside[0]) for thing in things)
-    return tuple(thing for thing in things if grounding.distance(thing, beside[0]) == nearest)
+def _like(s: Sentence, spans: Sequence[Span], span: Span) -> str:
+    """The noun that one thing has and the next goes without: *the blue cup and the red one*; "" for none."""
+    slot, first, last = span
+    alone = [word for word in s.words[first : last + 1] if word.kind not in ("det", "rel")]
+    is_such = all(word.text in ("one", "ones") or s.lexicon.is_a(word.text, "adjective") for word in alone)
+    before = [other for other in spans if other[0] == slot and other[2] < first]
+    if not alone or not is_such or not before or s.meant[s.phrase_of[last]]:
+        return ""
+    return s.words[_head(s, *before[-1])].text
+
+
+def _words(s: Sentence) -> Callable[[int, int], str]:
+    """The words from one index to another."""
+    return lambda first, last: " ".join(word.text for word in s.words[first : last + 1])
 
 
 def _grounded(s: Sentence, frames: Sequence[Frame]) -> tuple[Grounded, ...]:

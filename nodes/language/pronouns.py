@@ -9,6 +9,7 @@ from nodes.language.grounding import Scene
 from schemas.language import Argument, Frame
 
 _PRONOUNS: Final = ("it", "them", "they", "one")
+_SEVERAL: Final = ("them", "they")
 _DOERS: Final = ("Agent", "Perceiver", "Cognizer", "Inspector", "Donor")
 _PEOPLE: Final = ("Beneficiary", "Recipient")
 _ACTED_ON: Final = (
@@ -32,25 +33,39 @@ _NEVER_CARRIED: Final = frozenset({"Location", "Connecting_Architecture"})
 
 def antecedent(
     pronoun: str, preposition: str, frame: str, role: str, before: Sequence[Frame], scene: Scene
-) -> str | None:
-    """The name of the entity that a pronoun stands for, None for what has none.
+) -> tuple[str, ...]:
+    """The names of the entities that a pronoun stands for, none for what has none.
 
     preposition: the words before the pronoun, "" for none. frame, role: what it fills. before: the frames of
     the sentence so far; what fills the same frame is not meant (*put the pizza in it*). The last that was
     acted on comes first, then the last of the others: the first that affords what is to be done is meant,
-    and the first of all where none does. Places are not carried.
+    and the first of all where none does. Places are not carried. Several names are those that may be meant
+    where it was not clear before; of *them*, all that were acted on together.
     """
     if pronoun not in _PRONOUNS:
-        return None
-    named = list(dict.fromkeys(argument.entity for argument in _mentioned(before) if argument.entity))
+        return ()
+    named = list(dict.fromkeys(_mentioned(before, pronoun in _SEVERAL)))
     if frame in _CARRYING and role in _ACTED_ON:
-        named = [name for name in named if not _NEVER_CARRIED & scene.kinds_of(name)]
+        named = [names for names in named if not any(_NEVER_CARRIED & scene.kinds_of(name) for name in names)]
     wanted = _WHERE.get(preposition) or _WANTED.get(frame, {}).get(role)
-    suited = (name for name in named if wanted is None or wanted in scene.kinds_of(name))
-    return next(suited, named[0] if named else None)
+    suited = (
+        names for names in named if wanted is None or all(wanted in scene.kinds_of(name) for name in names)
+    )
+    return next(suited, named[0] if named else ())
 
 
-def _mentioned(before: Sequence[Frame]) -> Iterator[Argument]:
-    last_first = [a for frame in reversed(before) for a in reversed(frame.arguments)]
-    yield from (a for a in last_first if a.role in _ACTED_ON)
-    yield from (a for a in last_first if a.role not in (*_ACTED_ON, *_DOERS, *_PEOPLE))
+def _mentioned(before: Sequence[Frame], together: bool) -> Iterator[tuple[str, ...]]:
+    """What was spoken of, the last first; together: what one frame acts on, all at once."""
+    for frame in reversed(before):
+        acted_on = [names for a in frame.arguments if a.role in _ACTED_ON and (names := _names(a))]
+        if together and len(acted_on) > 1:
+            yield tuple(name for names in acted_on for name in names)
+        yield from reversed(acted_on)
+    for frame in reversed(before):
+        for argument in reversed(frame.arguments):
+            if argument.role not in (*_ACTED_ON, *_DOERS, *_PEOPLE) and (names := _names(argument)):
+                yield names
+
+
+def _names(argument: Argument) -> tuple[str, ...]:
+    return (argument.entity,) if argument.entity else argument.candidates

@@ -71,17 +71,68 @@ def test_any_and_several_are_not_ambiguous(text, ambiguous):
     assert read(text, bottles).frames[0].arguments[0].ambiguous == ambiguous
 
 
-def test_whoever_sees_the_map_narrows():
+def test_whoever_sees_the_map_says_which():
     bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2, 3))
     asked = []
 
-    def narrow(text, names):
-        asked.append((text, sorted(names)))
+    def resolve(text):
+        asked.append(text)
         return ("bottle2", "bottle3", "cup1")
 
-    theme = shipped().understand("take the red bottle", there(bottles), narrow=narrow).frames[0].arguments[0]
-    assert asked == [("the red bottle", ["bottle1", "bottle2", "bottle3"])]
+    theme = (
+        shipped().understand("take the red bottle", there(bottles), resolve=resolve).frames[0].arguments[0]
+    )
+    assert asked == ["the red bottle"]
     assert theme.candidates == ("bottle2", "bottle3")
+
+
+LISTED = (
+    *(thing for thing in THINGS if thing.name != "fridge1"),
+    Thing("oven1", "Oven", ("oven",), (7.0, 0.4, 0.0), ("Openable_Thing",)),
+    Thing("door1", "Door", (), (5.0, 5.0, 0.0)),
+    Thing("door2", "Door", (), (9.0, 5.0, 0.0)),
+    Thing("fridge1", "Fridge", ("fridge",), (6.4, 0.4, 0.0), ("Openable_Thing",)),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("open the fridge and the oven", ["Closure(Containing_object=fridge1, Containing_object=oven1)"]),
+        ("apri il frigo e il forno", ["Closure(Containing_object=fridge1, Containing_object=oven1)"]),
+        (
+            "bring the bottle, the novel and the robot to the kitchen",
+            ["Bringing(Theme=bottle1, Theme=book1, Theme=robot1, Goal=kitchen1)"],
+        ),
+        ("go to the kitchen and the sofa", ["Motion(Goal=kitchen1, Goal=couch1)"]),
+        ("take the bottle and go to the sofa", ["Taking(Theme=bottle1)", "Motion(Goal=couch1)"]),
+        (
+            "place the bottle between the sofa and the fridge",
+            ["Placing(Theme=bottle1, Goal=couch1, Goal=fridge1)"],
+        ),
+        (
+            "grab the bottle from the kitchen table and the novel from the side table",
+            ["Taking(Theme=bottle1, Source=table1)", "Taking(Theme=book1, Source=table2)"],
+        ),
+        ("push the sofa to the side table", ["Manipulation(Entity=couch1, Goal=table2)"]),
+        (
+            "porta la bottiglia e il libro in cucina",
+            ["Bringing(Theme=bottle1, Theme=book1, Goal=kitchen1)"],
+        ),
+        ("open the door of the fridge", ["Closure(Containing_object=fridge1)"]),
+        ("apri la porta del frigo", ["Closure(Containing_object=fridge1)"]),
+        ("open the door", ["Closure(Container_portal=door1|door2)"]),
+        ("take the bottle that is on the side table", ["Taking(Theme=bottle1)"]),
+    ],
+)
+def test_a_list_has_an_argument_for_each_thing(text, understood):
+    told = shipped().understand(text, there(LISTED), resolve=lambda _: ())
+    assert [frame.text for frame in told.frames] == understood
+
+
+def test_the_corpus_has_lists_and_relative_clauses_whole():
+    assert frames("grab the bottle and the novel") == ["Taking(Theme=bottle1)"]
+    assert len(frames("take the bottle that is on the side table")) == 2
 
 
 def test_words_count_from_one_and_heads_are_inside():

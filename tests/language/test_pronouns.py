@@ -42,3 +42,12 @@ def test_what_suits_is_meant(text, entities):
 def test_without_what_things_afford_the_last_acted_on_is_meant():
     things = tuple(Thing(t.name, t.class_name, t.references, t.at) for t in THINGS)
     assert of_last("put the milk in the fridge and close it", things) == ["milk1"]
+
+
+def test_what_may_be_several_may_be_several_again_and_them_are_all():
+    cups = (*THINGS, Thing("cup1", "Cup"), Thing("cup2", "Cup"))
+    placed = shipped().understand("take the cup and put it on the table", there(cups)).frames[-1]
+    assert (placed.arguments[0].candidates, placed.arguments[0].ambiguous) == (("cup1", "cup2"), True)
+    text = "take the milk and the pizza and put them on the table"
+    placed = shipped().understand(text, there(THINGS), resolve=lambda _: ()).frames[-1]
+    assert (placed.arguments[0].candidates, placed.arguments[0].ambiguous) == (("milk1", "pizza1"), False)

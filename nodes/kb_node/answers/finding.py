@@ -55,16 +55,16 @@ class Finding:
             found = telling.told(answer)
         return Sought(structs.replace(found, seq=self._map.seq), missing(answer))
 
-    def narrowed(self, text: str, names: tuple[str, ...]) -> tuple[str, ...]:
-        """Of the entities that a text may mean those that it does; all where that cannot be said."""
+    def described(self, text: str) -> tuple[str, ...]:
+        """The entities that a text describes, by name; none where that cannot be said."""
         space = self._map.places.space()
         around = Asked(space, None, self._map.beliefs.left_out)
         try:
             with space.remembering():
                 found = find(text, self.known(), around)
         except errors.BadRequest:
-            return names
-        return tuple(name for name in found.names if name in names) or names
+            return ()
+        return tuple(sorted(found.names))
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
         """What to ask back to learn which of several entities is meant."""

@@ -24,7 +24,7 @@ class Understanding:
     """Reads commands in the light of the map; owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap, finding: Finding) -> None:
-        """finding: knows which of several entities is meant, and what to ask back."""
+        """finding: knows which entities a description fits, and what to ask back."""
         self._map, self._finding = semantic_map, finding
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
@@ -38,8 +38,7 @@ class Understanding:
             raise errors.BadRequest("there are no words in the text")
         if len(words) > _MOST_WORDS:
             raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
-        narrowed = self._finding.narrowed
-        found = shipped().understand(query.text, self._there(), query.language, narrowed)
+        found = shipped().understand(query.text, self._there(), query.language, self._finding.described)
         open_still = dict.fromkeys(
             argument.candidates
             for frame in found.frames

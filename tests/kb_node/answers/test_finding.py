@@ -78,6 +78,44 @@ def test_what_is_excepted_is_not_among_the_rest(flat):
     assert all("except the chairs" in candidate.reasons for candidate in rest.candidates)
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("the table", {"table1"}),  # the desk is a "writing table", the console a "hall table"
+        ("what is on the table?", {"apple1", "bowl1", "glass1", "plate1", "plate2", "water1"}),
+        ("the things on table1", {"apple1", "bowl1", "glass1", "plate1", "plate2", "water1"}),
+        ("the cup on the table", set()),  # it is on the desk
+        ("the small table", {"coffee_table1"}),
+        ("tables", {"table1", "coffee_table1", "console1", "desk1", "bedstand1"}),
+        ("the 'bowl'", {"bowl1"}),
+        ("‘the bowl’", {"bowl1"}),
+        ("cosa c'e' sulla scrivania?", {"book1", "cup1", "lamp1", "laptop1"}),
+        ("the closest thing to the person", {"book2", "book3"}),
+        ("soft", set()),
+        ("half", set()),
+        ("la tua tazza", set()),
+    ],
+)
+def test_a_thing_is_called_by_all_of_a_name_before_it_is_by_its_head(flat, text, meant):
+    found = Finding(flat).find(Find(text=text)).found
+    assert (names(found), found.read_as) == (meant, ())
+
+
+@pytest.mark.parametrize(
+    ("reference", "text"),
+    [
+        ("the best cup in the world", "the best cup in the world"),
+        ("my favourite spoon", "the favourite spoon"),
+        ("the red chair", "red chair"),
+        ("one of those that nobody ever wants to use", "one of those that nobody ever wants to use"),
+    ],
+)
+def test_a_reference_is_found_by_its_text(flat, reference, text):
+    spoon = stars.star("spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)), preferred=reference)
+    flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
+    assert names(Finding(flat).find(Find(text=text)).found) == {"spoon1"}
+
+
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))
