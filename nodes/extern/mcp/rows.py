@@ -84,7 +84,7 @@ def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
 
 
 def candidate(found: Candidate, by: str) -> dict[str, Any]:
-    """An entity that a description may mean; its reference and the reasons repeat words of the map, `by` whom."""
+    """An entity that a description may mean; its reference and reasons repeat words of the map, `by` whom."""
     told = {"called": found.called, "reasons": found.reasons}
     return {"name": found.entity, "class": found.class_, "said": told, "by": by}
 
