@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Final
 
@@ -10,28 +11,32 @@ from schemas.entities import Entity
 
 SYSTEM: Final = "semmap"
 _MOST: Final = 5
+_WORD: Final = re.compile(r"\w+|[^\w\s]")
+_Words = tuple[str, ...]
 
 
 class Authors:
     """Who wrote the references of these entities."""
 
     def __init__(self, entities: Iterable[Entity]) -> None:
-        self._by_reference: dict[str, set[str]] = {}
+        self._by_words: dict[_Words, set[str]] = {}
+        self._beginning: dict[str, set[_Words]] = {}  # references (as words), by their first word
         for entity in entities:
             by = who(entity.reference_provenance.source, entity.reference_provenance.agent)
             for reference in (entity.preferred_reference, *entity.alternative_references):
-                if reference:
-                    self._by_reference.setdefault(reference.casefold(), set()).add(by)
+                if words := _words(reference or ""):
+                    self._by_words.setdefault(words, set()).add(by)
+                    self._beginning.setdefault(words[0], set()).add(words)
 
     def by(self, *texts: str) -> str:
         """Who is behind texts of the system: `semmap`, or `semmap, quoting agent helper and file`."""
-        said = [text.casefold() for text in texts if text]
-        found = {
-            author
-            for reference, authors in self._by_reference.items()
-            if any(_stands_in(reference, text) for text in said)
-            for author in authors
-        }
+        found: set[str] = set()
+        for text in texts:
+            words = _words(text)
+            for start, word in enumerate(words):
+                for reference in self._beginning.get(word, ()):
+                    if words[start : start + len(reference)] == reference:
+                        found |= self._by_words[reference]
         if not found:
             return SYSTEM
         named = sorted(found)[:_MOST]
@@ -39,14 +44,6 @@ class Authors:
         return f"{SYSTEM}, quoting {' and '.join([*named, *others])}"
 
 
-def _stands_in(reference: str, text: str) -> bool:
-    """Does it stand there as words of its own, and not as a part of longer ones?"""
-    at = text.find(reference)
-    while at >= 0:
-        end = at + len(reference)
-        if not (text[at - 1 : at].isalnum() and reference[0].isalnum()) and not (
-            text[end : end + 1].isalnum() and reference[-1].isalnum()
-        ):
-            return True
-        at = text.find(reference, at + 1)
-    return False
+def _words(text: str) -> _Words:
+    """Words and signs, in lower case."""
+    return tuple(_WORD.findall(text.casefold()))

@@ -1,3 +1,5 @@
+import time
+
 import pytest
 
 from nodes.extern.mcp.authors import Authors
@@ -43,3 +45,13 @@ def authors():
 )
 def test_whose_words_a_sentence_repeats(authors, texts, by):
     assert authors.by(*texts) == by
+
+
+def test_many_texts_of_a_large_map_take_no_time():
+    entities = [entity(f"cup{n}", f"the cup of shelf {n}", FILE) for n in range(3000)]
+    entities += [entity(f"mug{n}", "mug", AGENT) for n in range(3000)]
+    authors = Authors(entities)
+    began_s = time.process_time()
+    for n in range(3000):
+        assert authors.by(f"a mug next to shelf {n}") == "semmap, quoting agent helper"
+    assert time.process_time() - began_s < 2.0

@@ -390,13 +390,15 @@ def test_find_says_whose_words_it_repeats(client):
     client.add("Cup", "cup9", at=(8.0, 2.4, 0.74))
 
     async def talk(a):
-        return await a("find", text="the cup on the table1")
+        return await a("find", text="the cup on the table1"), await a("find", text=evil.lower())
 
-    found = agent(client, talk)
-    (shown,) = [each for each in found["candidates"] if each["name"] == "evil1"]
-    assert "agent helper" in shown["by"]
-    for answer in (found["answer"], found.get("question_to_ask_back", {"said": "", "by": ""})):
-        assert ("agent helper" in answer["by"]) == (evil.casefold() in answer["said"].casefold())
+    for found in agent(client, talk):
+        told = [found["answer"], found.get("question_to_ask_back"), *found["candidates"]]
+        for answer in filter(None, told):
+            quotes = evil.casefold() in json.dumps(answer["said"]).casefold()
+            assert ("agent helper" in answer["by"]) == quotes, answer
+    assert f"called {evil}" in found["candidates"][0]["said"]["reasons"]
+    assert "agent helper" in found["candidates"][0]["by"]
 
 
 def test_over_stdio_with_limits_from_the_command_line(flat, client):
