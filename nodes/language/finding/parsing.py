@@ -196,7 +196,7 @@ class _Parser:
             elif best == "he":
                 draft.restrictions.append(Owned(self._said(i, i + length), Description("it", "it")))
             elif best == "bounds":
-                draft.is_definite, draft.beyond = False, value
+                draft.is_definite, draft.beyond = False, int(value or 0)
             elif best == "numbers" and value:
                 draft.is_definite = draft.is_definite and draft.first != i
                 self._number(draft, value)
