@@ -98,9 +98,9 @@ class Found(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a description means in the map, as of commit `seq`.
 
     `candidates` are what is meant (*one*, *several*) or may be (*ambiguous*, with the `question` to ask
-    back), the best first; *none* has none. `text` says the outcome in a sentence. `nearest` fit all but one
-    part of the description; `gone` says when such a thing was last there. `read_as` pairs each word that was
-    taken for another, mistyped or misheard, with that.
+    back), the best first, at most 50, and `others` counts the rest; *none* has none. `text` says the outcome
+    in a sentence. `nearest` fit all but one part of the description; `gone` says when such a thing was last
+    there. `read_as` pairs each word that was taken for another, mistyped or misheard, with that.
     """
 
     outcome: Outcome
@@ -108,6 +108,7 @@ class Found(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     text: str = ""
     question: str = ""
     nearest: tuple[Candidate, ...] = ()
+    others: int = 0
     gone: tuple[str, ...] = ()
     read_as: tuple[tuple[str, str], ...] = ()
     seq: int = 0

@@ -75,7 +75,7 @@ def said_of_files(words, said):
 
 
 def programs(page):
-    return [text for text in blocks(page, "python") if "import semmap" in text or "from semmap" in text]
+    return [text for text in blocks(page, "python") if re.search("import semmap|from (semmap|mcp)", text)]
 
 
 LINES = [pytest.param(page, id=page.name) for page in PAGES if any(commands(page))]

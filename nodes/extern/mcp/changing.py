@@ -7,6 +7,7 @@ from it is about. The knowledge base checks that in the transaction itself.
 
 from __future__ import annotations
 
+import math
 import re
 import threading
 import time
@@ -20,6 +21,7 @@ from msgspec import structs
 from nodes.extern.client import Client
 from nodes.extern.mcp import arguments as a
 from nodes.extern.mcp import limits, reading, requests
+from nodes.extern.mcp.advice import for_agents
 from nodes.extern.mcp.answers import Answer, said, who
 from nodes.extern.mcp.limits import Limits, Touched
 from nodes.extern.mcp.moment import at_one_commit, known, newest
@@ -80,7 +82,7 @@ class Changes:
         try:
             tried, first, last = _at_one(client, lambda: client.send(structs.replace(command, dry_run=True)))
         except (errors.Inconsistent, errors.PreconditionFailed) as error:
-            against = said(errors.shortened(error.text, 2000), "the knowledge base")
+            against = said(for_agents(errors.shortened(error.text, 2000)), "the knowledge base")
             seq = newest(client)
             return Answer(first=seq, last=seq, head={"possible": False, "against": against})
         if isinstance(command, commands.Add) and command.name is None:
@@ -96,7 +98,7 @@ class Changes:
             "possible": True,
             "token": made.token,
             "would_be": said(_would_be(tried), who("agent", self._agent)),
-            **({"notes": said("; ".join(tried.notes), "the map")} if tried.notes else {}),
+            **({"notes": said(for_agents("; ".join(tried.notes)), "the map")} if tried.notes else {}),
             "rests_on": made.rests_on,
             "then": "commit with this token" + (", which a person must approve" if self._approve else ""),
         }
@@ -188,7 +190,7 @@ class Changes:
     def _require_rate(self) -> None:
         if (wait_s := self._rate.wait_s()) > 0.0:
             raise errors.Busy(
-                f"changes a minute that you may make: {self._per_min:g}; come again in {wait_s:.0f} s",
+                f"changes a minute that you may make: {self._per_min:g}; come again in {math.ceil(wait_s)} s",
                 again_s=wait_s,
             )
 

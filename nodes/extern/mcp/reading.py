@@ -10,11 +10,13 @@ from nodes.extern.client import Client
 from nodes.extern.mcp import arguments as a
 from nodes.extern.mcp import rows
 from nodes.extern.mcp.answers import Answer, read_cursor, said, when
+from nodes.extern.mcp.authors import Authors
 from nodes.extern.mcp.moment import at_one_commit, known, newest
 from nodes.extern.mcp.overview import overview as _overview
 from ontology import vocabulary as v
 from schemas import errors
 from schemas.entities import Entity
+from schemas.language import Candidate
 from schemas.moments import When
 
 R = TypeVar("R")
@@ -25,7 +27,6 @@ _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
 _FEW: Final = 5
-_THE_MAP: Final = "the map"
 _ON_A_PAGE: Final = 60
 """More rows of a list than fit on a page."""
 
@@ -43,16 +44,24 @@ def overview(client: Client, _: a.Overview) -> Answer:
 def find(client: Client, asked: a.Find) -> Answer:
     """Which entities a noun phrase describes."""
     found = client.find(asked.text, viewer=asked.viewer, viewpoint=asked.viewpoint, asker=asked.asker)
-    head: dict[str, Any] = {"outcome": found.outcome, "answer": said(found.text, _THE_MAP)}
+    authors = Authors(client.list())
+
+    def told(text: str) -> dict[str, str]:
+        return said(text, authors.by(text))
+
+    def candidate(each: Candidate) -> dict[str, Any]:
+        return rows.candidate(each, authors.by(each.called, *each.reasons))
+
+    head: dict[str, Any] = {"outcome": found.outcome, "answer": told(found.text)}
     if found.question:
-        head["question_to_ask_back"] = said(found.question, _THE_MAP)
+        head["question_to_ask_back"] = told(found.question)
     if found.nearest:
-        head["nearest"] = [rows.candidate(candidate) for candidate in found.nearest[:_FEW]]
+        head["nearest"] = [candidate(each) for each in found.nearest[:_FEW]]
     if found.gone:
-        head["gone"] = [said(text, _THE_MAP) for text in found.gone[:_FEW]]
+        head["gone"] = [told(text) for text in found.gone[:_FEW]]
     if found.read_as:
         head["read_as"] = dict(found.read_as)
-    items = [rows.candidate(candidate) for candidate in found.candidates]
+    items = [candidate(each) for each in found.candidates]
     return Answer(first=found.seq, last=found.seq, head=head, items=items, of="candidates")
 
 

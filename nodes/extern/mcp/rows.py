@@ -83,10 +83,10 @@ def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
         yield names[start : start + _FEW_NAMES]
 
 
-def candidate(found: Candidate) -> dict[str, Any]:
-    """An entity that a description may mean; its reference and the reasons are words of the map."""
+def candidate(found: Candidate, by: str) -> dict[str, Any]:
+    """An entity that a description may mean; its reference and reasons repeat words of the map, `by` whom."""
     told = {"called": found.called, "reasons": found.reasons}
-    return {"name": found.entity, "class": found.class_, "said": told}
+    return {"name": found.entity, "class": found.class_, "said": told, "by": by}
 
 
 def relation(found: Relation) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import msgspec
 from nodes.extern.client import Client
 from nodes.extern.mcp import answers, reading, resources
 from nodes.extern.mcp import arguments as a
+from nodes.extern.mcp.advice import for_agents
 from nodes.extern.mcp.answers import Answer
 from nodes.extern.mcp.changing import Changes
 from nodes.extern.mcp.rate import Rate
@@ -204,7 +205,7 @@ class Tools:
     def _require_rate(self) -> None:
         if (wait_s := self._rate.wait_s()) > 0.0:
             raise errors.Busy(
-                f"too many calls: {CALLS_PER_S:g} a second are answered; come again in {wait_s:.2f} s",
+                f"too many calls: {CALLS_PER_S:g} a second are answered; come again in {_shown(wait_s):g} s",
                 again_s=wait_s,
             )
 
@@ -223,8 +224,13 @@ def complaint(error: errors.SemmapError) -> str:
     """An error as a model reads it: the sentence, and when to come again where it may."""
     said: dict[str, Any] = {
         "error": error.code,
-        "text": errors.shortened(error.text.removeprefix(codec.MALFORMED), 3000),
+        "text": errors.shortened(for_agents(error.text.removeprefix(codec.MALFORMED)), 3000),
     }
     if error.again_s is not None:
-        said["again_s"] = math.ceil(error.again_s * 100.0) / 100.0
+        said["again_s"] = _shown(error.again_s)
     return json.dumps(said, ensure_ascii=False, separators=(",", ":"))
+
+
+def _shown(seconds: float) -> float:
+    """Rounded up to hundredths: who comes again then does not come too early."""
+    return math.ceil(seconds * 100.0) / 100.0

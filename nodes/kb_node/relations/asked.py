@@ -13,6 +13,7 @@ from nodes.kb_node.relations.measuring import measures
 from nodes.kb_node.relations.measuring.arrangement import attached, between
 from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.viewing import View, on_side
+from nodes.kb_node.relations.reasons import stands_on_floor
 from nodes.kb_node.relations.selection import is_in, is_on
 from nodes.kb_node.relations.support import bearers, borne
 from schemas import errors
@@ -126,6 +127,11 @@ class Asked:
             return any(self.related("isInside", other, name) for other in self._space.solids)
         return next(iter(borne(self._space, solid)), None) is not None
 
+    def is_on_floor(self, name: str) -> bool:
+        """Whether a thing stands on the floor of its place, and in or on nothing else."""
+        solid = self._space.solids.get(name)
+        return solid is not None and stands_on_floor(self._space, solid)
+
     def whereabouts(self, name: str) -> tuple[tuple[RelationName, str], ...]:
         """What a thing is inside, what it is on, and in which place, those that it has."""
         if (solid := self._space.solids.get(name)) is None:
@@ -143,7 +149,7 @@ class Asked:
     def _seen(self) -> View:
         if self._view is None:
             raise errors.BadRequest(
-                "left, right, in front and behind depend on who looks; say who it is: --from VIEWER,"
+                "left, right, in front, behind and nearest depend on who looks; say who it is: --from VIEWER,"
                 " or --from-pose X Y Z YAW"
             )
         return self._view

@@ -80,9 +80,17 @@ def stance(space: Space, solid: Solid) -> str:
         return f"is inside {container[0].name}"
     if supports:
         return f"is on {' and '.join(bearer.name for bearer, _ in supports)}"
-    if place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m:
+    if place is not None and stands_on_floor(space, solid):
         return f"is on the floor of {place[0].name}"
     return "is on nothing that is known"
+
+
+def stands_on_floor(space: Space, solid: Solid) -> bool:
+    """Whether a thing is in and on nothing but the floor of its place."""
+    container, supports, place = space.whereabouts(solid)
+    if container is not None or supports or place is None:
+        return False
+    return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
 
 
 def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:

@@ -71,7 +71,8 @@ def _apart(told: Sequence[_Told]) -> list[_Tail] | None:
 def _called(item: Item, resolver: Resolver) -> _Told:
     """What it is called by itself."""
     describing = resolver.known.nouns[resolver.language].describing
-    reference = next(iter(item.references), "")
+    is_plain = resolver.known.nouns[resolver.language].is_plain
+    reference = next(filter(is_plain, item.references), "")
     return (describing.wording["called"].format(reference), False) if reference else None
 
 

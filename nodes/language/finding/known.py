@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Final
 
 from nodes.language.lexicon import describing
@@ -12,6 +14,8 @@ from nodes.language.vocabulary import spoken
 
 _PURPOSE: Final = ("da", "of", "di")
 """An Italian noun keeps its name before it says what it is for; before *of* comes what it is in both."""
+_ARTICLES: Final = ("definite", "indefinite", "mine", "he")
+_PLAIN: Final = re.compile(r"[^\W\d_]+(?:[ -][^\W\d_]+){0,3}")
 MOST_WORDS: Final = 5
 """Of a noun."""
 
@@ -54,6 +58,12 @@ class Nouns:
         self.describing: Final[Describing] = describing.load(language)
         self.classes: Final[dict[str, set[str]]] = {}
         self.entities: Final[dict[str, dict[str, None]]] = {}
+        self.whole: Final[dict[str, set[str]]] = {}
+        """Classes by all of a label, not by its head alone."""
+        self.exact: Final[dict[str, dict[str, None]]] = {}
+        """Entities by all of a reference, or by name."""
+        self.heads: Final[set[str]] = set()
+        """Last words of what classes are called."""
         self.qualities: Final[dict[str, set[str]]] = {}
         self.actions: Final[dict[str, set[str]]] = {}
         self.words: Final[dict[str, int]] = {}
@@ -67,6 +77,8 @@ class Nouns:
         for name, keys in named:
             for key in keys[:1]:
                 self.classes.setdefault(key, set()).add(name)
+                self.whole.setdefault(key, set()).add(name)
+            self.heads.update(key.rpartition(" ")[2] for key in keys)
         whole = frozenset(self.classes)
         for name, keys in named:
             for key in keys[1:]:
@@ -88,6 +100,8 @@ class Nouns:
     def keys(self, text: str) -> Iterator[str]:
         """What a thing of that label may be called: by the whole, or by its head alone."""
         words = self.describing.split(spoken(text))
+        while len(words) > 1 and any(kind in self.describing.sense((words[0],)) for kind in _ARTICLES):
+            words = words[1:]
         if not words:
             return
         for word in words:
@@ -101,20 +115,41 @@ class Nouns:
 
     def put(self, item: Item) -> None:
         """Index what an entity is called."""
-        for text in {*item.references, item.name}:
-            for key in self.keys(text):
-                self.entities.setdefault(key, {})[item.name] = None
-                for word in key.split():
-                    self.words[word] = self.words.get(word, 0) + 1
+        for is_exact, key in self._said(item):
+            self.entities.setdefault(key, {})[item.name] = None
+            if is_exact:
+                self.exact.setdefault(key, {})[item.name] = None
+            for word in key.split():
+                self.words[word] = self.words.get(word, 0) + 1
 
     def take(self, item: Item) -> None:
         """The entity is gone, or is called something else."""
-        for text in {*item.references, item.name}:
-            for key in self.keys(text):
-                if (there := self.entities.get(key)) is not None:
+        for _, key in self._said(item):
+            for index in (self.entities, self.exact):
+                if (there := index.get(key)) is not None:
                     there.pop(item.name, None)
                     if not there:
-                        del self.entities[key]
+                        del index[key]
+
+    def _said(self, item: Item) -> Iterator[tuple[bool, str]]:
+        """What an entity is called: whether by all of a reference or its name, and the key.
+
+        The head alone of a name is nothing that it is called by: coffee_table1 is no table1.
+        """
+        for text in set(item.references):
+            for i, key in enumerate(self.keys(text)):
+                yield i == 0, key
+        yield from ((True, key) for key in islice(self.keys(item.name), 1))
+
+    def is_plain(self, reference: str) -> bool:
+        """Whether a reference looks like a noun phrase, so that it may be repeated in a sentence."""
+        if not _PLAIN.fullmatch(reference):
+            return False
+        words = self.describing.split(reference)
+        first = self.describing.sense((words[0],))
+        return not any(kind in first for kind in _ARTICLES) and (
+            len(words) == 1 or self.describing.base(words[-1]) in self.heads
+        )
 
     def is_noun(self, key: str) -> bool:
         """Whether anything may be called so."""
@@ -160,13 +195,26 @@ class Known:
             found.update(self.members.get(class_name, {}))
         return found
 
+    def called_exactly(self, key: str, language: Language) -> frozenset[str]:
+        """Of those the ones whose name, whole reference or own class it is: a desk is no such table."""
+        nouns = self.nouns[language]
+        classes = nouns.whole.get(key, set())
+        of_class = (
+            name
+            for cls in classes
+            for name in self.members.get(cls, ())
+            if self.items[name].class_name in classes
+        )
+        return frozenset((*nouns.exact.get(key, ()), *of_class))
+
     def spoken(self, item: Item, language: Language) -> str:
         """What an entity is called in a language: by a reference, or by its class's label.
 
-        References are taken for English; of those that are not, the label says in which language.
+        References are taken for English; of those that are not, the label says in which language. What
+        does not look like a noun is never repeated.
         """
         nouns = self.nouns[language]
-        for reference in item.references:
+        for reference in filter(nouns.is_plain, item.references):
             key = nouns.describing.key(nouns.describing.split(reference))
             if language == "english" or reference[:1].isupper() or key in nouns.classes:
                 return reference

@@ -504,6 +504,8 @@ class _Parser:
         if (place := self._sense("places", end)) is not None:
             draft.axis = place[1]
             end += place[0]
+        elif draft.axis is not None and (me := self._length("possibly", end)):  # nearest to me
+            end += me
         elif (draft.axis is None or draft.axis[0] == "distance") and not self._ends(end):
             draft.axis = draft.axis or ("distance", 1)
             draft.to, end = self._phrase(end, depth + 1)

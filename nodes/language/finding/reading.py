@@ -10,6 +10,8 @@ from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from nodes.language.finding.known import MOST_WORDS, Nouns
+from nodes.language.lexicon import describing
+from nodes.language.lexicon.describing import LANGUAGES
 
 _UNKNOWN: Final = 3.0
 """What a word costs that nobody knows; one that is mended costs as much as it was changed."""
@@ -73,12 +75,16 @@ def _unknown(words: Sequence[str], senses: Sequence[Mapping[str, tuple[int, Any]
 
 
 def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any]], ...]:
-    describing, bases = nouns.describing, [nouns.describing.base(word) for word in words]
+    language, bases = nouns.describing, [nouns.describing.base(word) for word in words]
     found: list[dict[str, tuple[int, Any]]] = []
     for i in range(len(words)):
         senses: dict[str, tuple[int, Any]] = {}
-        for length in range(1, min(max(describing.longest, MOST_WORDS), len(words) - i) + 1):
-            for kind, value in describing.sense(tuple(words[i : i + length])).items():
+        left = len(words) - i
+        lengths = list(range(1, min(max(language.longest, MOST_WORDS), left) + 1))
+        if left > MOST_WORDS and " ".join(bases[i:]) in nouns.exact:
+            lengths.append(left)  # a reference may be longer than a noun
+        for length in lengths:
+            for kind, value in language.sense(tuple(words[i : i + length])).items():
                 senses[kind] = (length, value)
             key = " ".join(bases[i : i + length])
             if key in nouns.qualities:
@@ -86,10 +92,12 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
             if length == 1 and _affords(found, i) and any(form in nouns.verbs for form in forms(words[i])):
                 senses["action"] = (1, None)
             is_apart = length > 1 and not any(
-                (words[j],) in describing.senses or bases[j] in nouns.qualities for j in range(i, i + length)
+                (words[j],) in language.senses or bases[j] in nouns.qualities for j in range(i, i + length)
             )
             for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
-                if length <= MOST_WORDS and nouns.is_noun(form):
+                if senses.get("anything", (0,))[0] == length:
+                    break  # a thing is no place
+                if (length <= MOST_WORDS or length == left) and nouns.is_noun(form):
                     senses["noun"] = (length, form)
                     senses[f"noun{length}"] = (length, form)
                     break
@@ -104,7 +112,7 @@ def nearest(word: str, nouns: Nouns) -> str | None:
 
     Words that things of the map are called by come before those of the TBox alone.
     """
-    if len(word) < 3 or not word.isalpha():
+    if len(word) < 3 or not word.isalpha() or any(describing.load(name).has(word) for name in LANGUAGES):
         return None
     base, sound = nouns.describing.base(word), _sound(word)
     most = 1 if len(word) < 7 else 2

@@ -111,6 +111,9 @@ class Resolver:
             names = fitting
         if len(names) > 1 and said.is_definite and not said.is_plural:
             names = self._smallest_of_the_small(names, said)
+            if said.head == "noun" and said.order is None:
+                exactly = self.known.called_exactly(said.key, self.language)
+                names = tuple(name for name in names if name in exactly) or names
         is_tied = False
         if said.order is not None and names:
             names, is_tied = self._ordered(names, said.order, said)
@@ -179,6 +182,8 @@ class Resolver:
     def _is_in_state(self, item: Item, property_name: str, value: bool | str) -> bool:
         if property_name == "holding":
             return self.around.holds_anything(item.name) == value
+        if property_name == "standing":
+            return not item.is_place and self.around.is_on_floor(item.name)
         if property_name == "within":
             holders = self.known.members.get(str(value), {})
             return any(self.around.related("isInside", item.name, holder) for holder in holders)
@@ -193,6 +198,8 @@ class Resolver:
 
     def _is_related(self, name: str, relation: str, others: Sequence[Resolved]) -> bool:
         found = [tuple(n for n in other.names if n != name) for other in others]
+        if relation == "isUnder" and any(self.around.related("isOn", other, name) for other in found[0]):
+            return True
         if relation == "isBetween":
             pairs = ((a, b) for a in found[0] for b in found[-1] if a != b)
             return any(name in self.around.between(*pair) for pair in pairs)

@@ -41,5 +41,8 @@ class Surroundings(Protocol):
     def holds_anything(self, name: str) -> bool:
         """Whether anything is in or on it."""
 
+    def is_on_floor(self, name: str) -> bool:
+        """Whether a thing stands on the floor of its place, and in or on nothing else."""
+
     def whereabouts(self, name: str) -> tuple[tuple[RelationName, str], ...]:
         """What a thing is inside, what it is on, and in which place, those that it has."""

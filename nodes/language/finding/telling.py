@@ -8,13 +8,16 @@ from typing import Final
 from nodes.language.finding import asking_back
 from nodes.language.finding.description import (
     Description,
+    Not,
     Owned,
     Related,
     Restriction,
+    State,
     Unknown,
 )
 from nodes.language.finding.finding import Answer
 from nodes.language.finding.resolving import Resolved, Resolver, Scope
+from nodes.language.nouns import counted, is_counted, listed
 from schemas.language import Candidate, Found
 
 _MOST: Final = 50
@@ -42,11 +45,11 @@ def told(answer: Answer) -> Found:
             question = asking_back.question(names, resolver)
         case "none":
             part = next((part for part in answer.parts if _is_short(part)), answer.parts[-1])
-            text = _missing(part)
+            text = _missing(part, resolver)
             nearest = tuple(_nearest(part, resolver))
     return Found(
         outcome=answer.outcome, candidates=candidates, text=text, question=question, nearest=nearest,
-        read_as=answer.reading.mended,
+        read_as=answer.reading.mended, others=max(len(names) - _MOST, 0),
     )  # fmt: skip
 
 
@@ -73,9 +76,9 @@ def _called(name: str, part: Resolved, resolver: Resolver) -> str:
     nouns = resolver.known.nouns[resolver.language]
     for reference in item.references:
         if said.key in nouns.keys(reference):
-            return f"called {reference}"
+            return f"called {reference if nouns.is_plain(reference) else f'“{reference}”'}"
     label = resolver.known.label(item.class_name, "english")
-    return f"{'an' if label[0] in 'aeiou' else 'a'} {label}"
+    return counted(1, label) if is_counted(label) else f"some {label}"
 
 
 def _reasons(name: str, part: Resolved, resolver: Resolver) -> Iterator[str]:
@@ -108,7 +111,26 @@ def _is_short(part: Resolved) -> bool:
     return len(part.names) < (part.description.number or 1)
 
 
-def _missing(part: Resolved) -> str:
+def _unsaid(part: Resolved, resolver: Resolver) -> str | None:
+    """That nobody has said whether things are open or on, where that is why nothing fits."""
+    failed = part.failed.restriction if isinstance(part.failed, Not) else part.failed
+    if not isinstance(failed, State) or not isinstance(failed.value, bool) or failed.property == "holding":
+        return None
+    items = resolver.known.items
+    others = [r for r in part.description.restrictions if r is not part.failed]
+    unsaid = [
+        name
+        for name in part.kind
+        if failed.property not in items[name].values
+        and all(resolver.fits(name, r, part.description, part.kind, Scope()) for r in others)
+    ]
+    if not unsaid or part.description.head != "noun":
+        return None
+    few = unsaid if len(unsaid) <= _NEAREST else [*unsaid[:_NEAREST], f"{len(unsaid) - _NEAREST} others"]
+    return f"nobody has said whether {listed(few)} {'is' if len(unsaid) == 1 else 'are'} {failed.said}"
+
+
+def _missing(part: Resolved, resolver: Resolver) -> str:
     """Which part of a description nothing fits."""
     said, noun = part.description, part.description.noun or "something"
     if said.head == "one" and not said.restrictions and said.order is None:
@@ -118,6 +140,8 @@ def _missing(part: Resolved) -> str:
         return f"nothing is called '{unknown[0]}', and the word is not known"
     if not part.kind:
         return f"there is nothing that is called '{noun}'"
+    if (unsaid := _unsaid(part, resolver)) is not None:
+        return unsaid
     if part.failed is not None and len(part.kind) == 1:
         return f"the only thing called '{noun}' does not fit '{part.failed.said}'"
     if part.failed is not None:

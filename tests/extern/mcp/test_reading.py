@@ -209,12 +209,16 @@ def test_a_very_long_reference_and_very_many_keep_to_the_budget(client):
         ("get", {"name": "cup1", "as_of": 10_000_000}, ""),
         ("when", {"name": "cup1", "relation": "sits_on", "other": "desk1"}, "one of isAttachedTo"),
         ("diff", {}, "since is missing"),
+        ("find", {"text": "the cup left of the plate"}, "viewer, or viewpoint as x, y, z, yaw"),
+        ("list", {"nearest": 3}, "nearest and to go together"),
+        ("query", {"query": "SELECT * { ?a ?b ?c . ?d ?e ?f }"}, "narrow it, or add LIMIT and OFFSET to it"),
     ],
 )
 def test_bad_input_is_refused_in_a_sentence(client, tool, arguments, sentence):
     refused = asked(client, lambda agent: agent.refused(tool, **arguments))
     assert sentence in refused
     assert "Traceback" not in refused
+    assert "--" not in refused
     assert len(refused) < BUDGET
 
 

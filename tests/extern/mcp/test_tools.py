@@ -1,11 +1,14 @@
 import json
+import re
+from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
 from nodes.extern.mcp import arguments
 from nodes.extern.mcp.answers import Answer
 from nodes.extern.mcp.rate import Rate
-from nodes.extern.mcp.tools import READING, Tool, Tools, complaint
+from nodes.extern.mcp.tools import READING, Tool, Tools, changing, complaint
 from schemas import errors
 from schemas.commands import COMMANDS
 
@@ -86,3 +89,13 @@ def test_arguments_are_named_as_the_fields_of_the_command(name):
     tool = next(tool for tool in READING if tool.name == name)
     fields = set(COMMANDS[name].__struct_encode_fields__)
     assert set(tool.schema["properties"]) - {"cursor"} <= fields
+
+
+def test_the_page_on_agents_says_what_each_tool_takes():
+    page = (Path(__file__).parents[3] / "docs" / "agents.md").read_text()
+    rows = re.findall(r"^\| `(\w+)` \| ([^|]*) \|", page, re.MULTILINE)
+    page_says = {tool: set(takes.split(", ")) - {"nothing"} for tool, takes in rows}
+    for tool in (*READING, *changing(Mock())):
+        required = tool.schema.get("required", ())
+        takes = {f"**{name}**" if name in required else name for name in tool.schema["properties"]}
+        assert page_says[tool.name] == takes, tool.name

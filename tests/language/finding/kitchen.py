@@ -102,6 +102,9 @@ class Written:
     def holds_anything(self, name):
         return any(other == name for _, _, other in HOLDS)
 
+    def is_on_floor(self, name):
+        return AT[name][2] == 0
+
     def whereabouts(self, name):
         return tuple((r, other) for r, one, other in sorted(HOLDS) if one == name and other != "kitchen1")
 

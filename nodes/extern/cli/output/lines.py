@@ -87,6 +87,8 @@ def found(answer: Found) -> Iterable[str]:
     for candidate in (*answer.candidates, *answer.nearest):
         indent = "  " if answer.outcome == "none" else ""
         yield f"{indent}{candidate.entity}: {', '.join(candidate.reasons) or candidate.called}"
+    if answer.others:
+        yield f"and {answer.others} others"
     yield from answer.gone
     if answer.question:
         yield answer.question

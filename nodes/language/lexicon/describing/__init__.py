@@ -23,6 +23,9 @@ _TOKENS: Final[dict[Language, re.Pattern[str]]] = {
     "english": re.compile(r"n't\b|'s?\b|'|[^\W_]+?(?=n't\b)|[^\W_]+"),
     "italian": re.compile(r"[^\W_]+'|[^\W_]+"),
 }
+_QUOTED: Final = re.compile(r"(?<!\w)'([^']*)'(?!\w)")
+_TYPED: Final = re.compile(r"e'(?!\w)")
+"""An accent that the keyboard has not: c'e', cos'e'."""
 _INFLECTED: Final = ("states", "sizes", "sides", "ordinals")
 _Words = tuple[str, ...]
 
@@ -46,10 +49,14 @@ class Describing:
     those: Mapping[str, str]  # the same -> what stands for such a thing: the one, quello, quella
     feminine: str  # how feminine nouns are written, as a regular expression
     contractions: Mapping[str, str]  # a preposition with an article -> how the two are said
+    unmended: frozenset[str]  # words that describe nothing here, and are not another one mistyped
 
     def split(self, text: str) -> list[str]:
         """The words of a text in lower case, without punctuation; hyphens and elisions separate words."""
-        return _TOKENS[self.language].findall(_plain(text))
+        text = _QUOTED.sub(r"\1", _plain(text))
+        if self.language == "italian":
+            text = _TYPED.sub("è", text)
+        return _TOKENS[self.language].findall(text)
 
     def base(self, word: str) -> str:
         """A word without the ending that its number and gender give it."""
@@ -83,14 +90,21 @@ class Describing:
             text = text.replace(apart, together)
         return text
 
+    def has(self, word: str) -> bool:
+        """Whether it is a word of the language as it stands."""
+        return (word,) in self.senses or word in self.unmended
+
     def sense(self, words: _Words) -> Mapping[str, Any]:
         """What words together may be: kind of word to what it stands for."""
         exact = self.senses.get(words, {})
         return {**self.stems.get(tuple(map(self.base, words)), {}), **exact}
 
 
+_APOSTROPHES: Final = str.maketrans({"’": "'", "‘": "'", "`": "'"})
+
+
 def _plain(text: str) -> str:
-    return unicodedata.normalize("NFC", text).lower().replace("’", "'").replace("`", "'")
+    return unicodedata.normalize("NFC", text).lower().translate(_APOSTROPHES)
 
 
 def _stem(word: str) -> str:
@@ -121,6 +135,7 @@ def load(language: Language) -> Describing:
         those=table["that"],
         feminine=table["feminine"]["nouns"],
         contractions=table["contractions"],
+        unmended=frozenset(table["words"]["unmended"]),
     )
     senses: dict[_Words, dict[str, Any]] = {}
     stems: dict[_Words, dict[str, Any]] = {}
@@ -140,7 +155,7 @@ def load(language: Language) -> Describing:
 
 def _entries(table: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     for kind, words in table["words"].items():
-        if kind != "content":
+        if kind not in ("content", "unmended"):
             yield from ((text, kind, True) for text in words)
     for kind in ("ordinals", "numbers", "places", "sides", "sizes", "states"):
         yield from ((text, kind, value) for text, value in table[kind].items())

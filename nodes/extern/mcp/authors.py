@@ -1,0 +1,49 @@
+"""Whose words a sentence of the system repeats: it calls things what somebody once called them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Final
+
+from nodes.extern.mcp.answers import who
+from schemas.entities import Entity
+
+SYSTEM: Final = "semmap"
+_MOST: Final = 5
+_WORD: Final = re.compile(r"\w+|[^\w\s]")
+_Words = tuple[str, ...]
+
+
+class Authors:
+    """Who wrote the references of these entities."""
+
+    def __init__(self, entities: Iterable[Entity]) -> None:
+        self._by_words: dict[_Words, set[str]] = {}
+        self._beginning: dict[str, set[_Words]] = {}  # references (as words), by their first word
+        for entity in entities:
+            by = who(entity.reference_provenance.source, entity.reference_provenance.agent)
+            for reference in (entity.preferred_reference, *entity.alternative_references):
+                if words := _words(reference or ""):
+                    self._by_words.setdefault(words, set()).add(by)
+                    self._beginning.setdefault(words[0], set()).add(words)
+
+    def by(self, *texts: str) -> str:
+        """Who is behind texts of the system: `semmap`, or `semmap, quoting agent helper and file`."""
+        found: set[str] = set()
+        for text in texts:
+            words = _words(text)
+            for start, word in enumerate(words):
+                for reference in self._beginning.get(word, ()):
+                    if words[start : start + len(reference)] == reference:
+                        found |= self._by_words[reference]
+        if not found:
+            return SYSTEM
+        named = sorted(found)[:_MOST]
+        others = ["others"] if len(found) > _MOST else []
+        return f"{SYSTEM}, quoting {' and '.join([*named, *others])}"
+
+
+def _words(text: str) -> _Words:
+    """Words and signs, in lower case."""
+    return tuple(_WORD.findall(text.casefold()))
