@@ -121,6 +121,7 @@ def _fitted(
         return _words(account.text) <= most_words
 
     full = [paragraph for paragraph in paragraphs if paragraph.groups]
+    is_in_sum = bool(in_sum) and (not full or len(full) > most_words or not fits(with_(full, ())))
     if (in_sum and not full) or len(full) > most_words or not fits(with_(full, ())):
         full = [Paragraph("There {be}", tuple(in_sum))]
         if not fits(with_(full, ())):
@@ -128,7 +129,10 @@ def _fitted(
     largest_first = sorted(full, key=lambda paragraph: -paragraph.all)
     in_turn = chain.from_iterable(paragraph.pieces[:most_words] for paragraph in largest_first)
     pieces = sorted(in_turn, key=lambda piece: piece.position)[:most_words]
-    return with_(full, pieces[: _most(len(pieces), lambda count: fits(with_(full, pieces[:count])))])
+    told = with_(full, pieces[: _most(len(pieces), lambda count: fits(with_(full, pieces[:count])))])
+    if is_in_sum and told.left_out == full[0].all:  # the opening has said how many there are
+        return Account(" ".join(first), told.left_out)
+    return told
 
 
 def _of_troubles(troubles: Sequence[str], most_words: int) -> Iterator[str]:
@@ -140,12 +144,14 @@ def _of_troubles(troubles: Sequence[str], most_words: int) -> Iterator[str]:
             yield text
             return
     if troubles:
-        yield f"{_capital(nouns.number(len(troubles), 'thing'))} not as it should be."
+        verb = "is" if len(troubles) == 1 else "are"
+        yield f"{_capital(nouns.number(len(troubles), 'thing'))} {verb} not as it should be."
 
 
 def _at_it(how: How, groups: Sequence[Group], most_words: int) -> Account:
     """What is on, in or round the thing spoken of: `On it are 2 plates and one other thing.`."""
-    where, count = f"{how.capitalize()} it", sum(group.all for group in groups)
+    count = sum(group.all for group in groups)
+    where = "At it" if how == "round" and count == 1 else f"{how.capitalize()} it"
 
     def with_(shown: int) -> Account:
         if not shown:

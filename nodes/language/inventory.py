@@ -34,6 +34,8 @@ class Thing:
     """What it is on, in or round, by name."""
     volume_m3: float = 0.0
     fixed: bool = False
+    kind: str = ""
+    """What its class is called, where it is itself called something else."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +120,10 @@ class Inventory:
         return [thing for thing in self.things.values() if thing.place == place]
 
     def in_sum(self, things: Iterable[Thing]) -> tuple[Group, ...]:
-        """Things by noun, wherever they are: the most first."""
+        """Things by kind, wherever they are: the most first."""
         together: dict[str, list[Thing]] = {}
         for thing in things:
-            together.setdefault(thing.noun, []).append(thing)
+            together.setdefault(thing.kind or thing.noun, []).append(thing)
         groups = [Group(noun, "", tuple(those), {}) for noun, those in together.items()]
         return tuple(sorted(groups, key=lambda group: (-len(group.things), group.noun)))
 

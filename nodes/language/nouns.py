@@ -59,8 +59,8 @@ _NUMBERS: Final = ("no", "one")
 
 
 def is_counted(noun: str) -> bool:
-    """Whether one says "a chair", and not, as of milk and scissors, "a milk"."""
-    return noun.lower().rpartition(" ")[2] not in _WITHOUT_ARTICLE
+    """Whether one says "a chair", and not, as of milk, scissors and Anna, "a milk"."""
+    return not noun.istitle() and noun.lower().rpartition(" ")[2] not in _WITHOUT_ARTICLE
 
 
 def article(noun: str) -> str:

@@ -87,10 +87,14 @@ class Accounts:
             yield f"It is called {' or '.join(f'“{text}”' for text in called)}."
         if troubles := list(self._troubles({entity.name})):
             yield f"Not as it should be: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
+        wrong = {(r.subject, r.relation, r.object) for r in self._now.denied()}
         known = {row.name: row for row in self._map.classes.stated.rows()}
         for property_, stated in entity.properties.items():
             if (row := known.get(property_)) is not None:
-                yield _stated(row, stated)
+                values = stated if isinstance(stated, tuple) else (stated,)
+                left = tuple(value for value in values if (entity.name, property_, value) not in wrong)
+                if left:
+                    yield _stated(row, left if len(left) > 1 else left[0])
 
     def _at_last(self, entity: Entity) -> Iterator[str]:
         if entity.pose is not None:

@@ -100,7 +100,8 @@ def spells(
 
     `history` are the commits in order, `first` the entities before them; what held before the first of
     them begins with 0. All is measured with the thresholds given. A thing is located in the smallest place
-    that it is in; with `in_any_place` also in all that this is a part of.
+    that it is in; with `in_any_place` also in all that this is a part of,
+    and a place in those that it is within.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
@@ -173,9 +174,11 @@ class _Spot:
     def holding(self) -> frozenset[Fact]:
         """Which of the facts hold."""
         solid = self._space.solids.get(self._name)
-        if solid is None or solid.is_place:
+        if solid is None:
             return frozenset()
-        found = {(self._name, *about) for rule in RULES for about in rule.facts(self._space, solid)}
+        found: set[Fact] = set()
+        if not solid.is_place:
+            found = {(self._name, *about) for rule in RULES for about in rule.facts(self._space, solid)}
         if self._in_any_place:
             found.update(fact for fact in self.facts if self._is_within(solid, fact))
         return self.facts & found
@@ -184,9 +187,9 @@ class _Spot:
         """Whether the fact says that the thing is in a place, and it is."""
         _, relation, other = fact
         place = self._space.solids.get(other) if relation == "isLocatedIn" else None
-        if place is None or not place.is_place:
+        if place is None or not place.is_place or place is solid:
             return False
-        made = measures.within(solid, place, self._space.limits)
+        made = measures.within(solid, place, self._space.limits, also_places=True)
         return made is not None and made.holds
 
     def _is_near(self, placed: Placed | None) -> bool:

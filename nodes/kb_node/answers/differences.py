@@ -9,9 +9,12 @@ from typing import Final, get_args
 from nodes.kb_node.answers.beginnings import Moves
 from nodes.kb_node.answers.beginnings import spells as spells_of
 from nodes.kb_node.relations.facts.place_facts import Fact, Facts
+from nodes.kb_node.relations.geometry.placed import Placed
+from nodes.kb_node.relations.geometry.solids import Solid
 from nodes.kb_node.relations.measuring.phrases import SPOKEN
+from nodes.kb_node.relations.measuring.space import Space
 from nodes.kb_node.relations.measuring.thresholds import Thresholds
-from nodes.kb_node.relations.selection import only_meant
+from nodes.kb_node.relations.selection import is_in, is_on, only_meant
 from nodes.kb_node.storage.history import Past
 from nodes.kb_node.storage.journal import Journal
 from schemas import errors, wording
@@ -77,7 +80,27 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
     """When the relation held. Raises UnknownName, BadRequest for a word that several things have."""
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
-    fact = (one, query.relation, other)
+    text, told = _told(one, query.relation, other, journal, past, limits)
+    if not told and (bearer := _borne_by(one, query.relation, other, there, limits)) is not None:
+        relation, below = bearer
+        borne = _told(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
+        where = f"{_spoken(query.relation)} {other}"
+        text = f"{one} was never itself {where}; {borne}, and {below} is {where}"
+    return Spells(
+        subject=one,
+        relation=query.relation,
+        object=other,
+        spells=told,
+        total_s=sum(_lasted_s(spell, time.time_ns()) for spell in told),
+        text=text,
+    )
+
+
+def _told(
+    one: str, relation: KeptRelation, other: str, journal: Journal, past: Past, limits: Thresholds
+) -> tuple[str, tuple[Spell, ...]]:
+    """When a relation held, in words and as spells."""
+    fact = (one, relation, other)
     first = past.at_the_beginning().values()
     found = spells_of(journal.outlines(Moves), first, [fact], limits, in_any_place=True)[fact]
     told = tuple(
@@ -89,16 +112,31 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
         )
         for since, until in found
     )
-    now_ns = time.time_ns()
-    total_s = sum(_lasted_s(spell, now_ns) for spell in told)
-    return Spells(
-        subject=one,
-        relation=query.relation,
-        object=other,
-        spells=told,
-        total_s=total_s,
-        text=_in_words(one, f"{SPOKEN[query.relation].removeprefix('is ')} {other}", told, now_ns),
-    )
+    return _in_words(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
+
+
+def _spoken(relation: KeptRelation) -> str:
+    return SPOKEN[relation].removeprefix("is ")
+
+
+def _borne_by(
+    one: str, relation: KeptRelation, other: str, there: Mapping[str, Entity], limits: Thresholds
+) -> tuple[KeptRelation, str] | None:
+    """What a thing is on or inside now, where that is in turn on or inside the other; else None."""
+    if relation not in ("isOn", "isInside"):
+        return None
+    space = Space(map(Placed.of, there.values()), limits)
+    if (solid := space.solids.get(one)) is None:
+        return None
+    container, supports, _ = space.whereabouts(solid)
+    below: list[tuple[KeptRelation, Solid]] = [("isOn", support) for support, _ in supports]
+    if container is not None:
+        below.insert(0, ("isInside", container[0]))
+    holds = is_on if relation == "isOn" else is_in
+    for how, bearer in below:
+        if holds(space, bearer, {other}, frozenset()):
+            return how, bearer.name
+    return None
 
 
 def _name(word: str, there: Mapping[str, Entity], past: Past) -> str:

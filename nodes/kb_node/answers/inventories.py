@@ -26,6 +26,7 @@ _SEATS: Final = frozenset(("Chair", "Stool"))
 _TABLES: Final = frozenset(("Table", "Desk"))
 _PARTS: Final = "hasSubLocation"
 _PLAIN: Final = re.compile(r"[^\W\d_]+(?:[ -][^\W\d_]+){0,2}")
+_NO_NAMES: Final = frozenset(("nothing", "something", "anything", "none", "it"))
 _DETERMINERS: Final = frozenset(("a", "an", "the", "my", "your", "his", "her", "its", "our", "their", "this"))
 
 
@@ -55,7 +56,11 @@ class Inventories:
         noun = self.nouns.of
         entities = tuple(self._map.entities())
         return Inventory(
-            (Thing(entity.name, noun(entity)) for entity in entities if not entity.place),
+            (
+                Thing(entity.name, noun(entity), kind=self.nouns.kind(entity))
+                for entity in entities
+                if not entity.place
+            ),
             (Place(entity.name, noun(entity)) for entity in entities if entity.place),
         )
 
@@ -106,6 +111,7 @@ class Inventories:
             at,
             math.prod(entity.size_m or own_size_m(entity.model) or (0.0,)),
             entity.fixed,
+            self.nouns.kind(entity),
         )
 
     def _table_of(self, entity: Entity) -> str | None:
@@ -172,11 +178,20 @@ class Nouns:
         }
         """Of properties that are true or false, what they say of a thing."""
 
+    def kind(self, entity: Entity) -> str:
+        """What its class is called."""
+        return self._labels.get(entity.class_) or spoken(entity.class_)
+
     def of(self, entity: Entity) -> str:
-        """A singular noun phrase without article. What is no such phrase by its looks is not repeated."""
-        label = self._labels.get(entity.class_) or spoken(entity.class_)
+        """A singular noun phrase without article. What is no such phrase by its looks is not repeated.
+
+        In title case it is a proper name: of a reference that ends in a noun, the noun is in lower case.
+        """
+        label = self.kind(entity)
         reference = (entity.preferred_reference or "").strip()
         if not _PLAIN.fullmatch(reference) or reference.partition(" ")[0].lower() in _DETERMINERS:
             return label
         head = reference.rpartition(" ")[2].lower()
-        return reference if head == reference.lower() or head in self._heads else label
+        if head in self._heads:
+            return reference.lower() if reference.istitle() else reference
+        return reference if head == reference.lower() and head not in _NO_NAMES else label

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence, Set
 from functools import partial
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from nodes.kb_node.relations.facts.beside import are_near
 from nodes.kb_node.relations.facts.place_facts import Fact
@@ -15,6 +15,8 @@ from nodes.kb_node.relations.measuring.space import Space
 from schemas import errors, wording
 from schemas.entities import Entity
 from schemas.relations import Where
+
+_ARTICLES: Final = frozenset(("the", "a", "an", "il", "lo", "la", "i", "gli", "le", "un", "uno", "una"))
 
 
 class Meant(NamedTuple):
@@ -143,7 +145,8 @@ def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
 def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
     """The entities that a word means: that name, else that reference, else that class. Raises UnknownName.
 
-    A class that is written as it is (`Table`) comes before a reference (`table`).
+    A class that is written as it is (`Table`) comes before a reference (`table`). An article before it does
+    not count, unless something is called so with it.
     """
     if not any(word == e.name for e in everyone) and (names := [e.name for e in everyone if word in e.types]):
         return frozenset(names)
@@ -156,6 +159,9 @@ def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
         names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
         if names:
             return frozenset(names)
+    article, _, noun = folded.partition(" ")
+    if article in _ARTICLES and noun:
+        return meant(everyone, noun)
     called_so = sorted({word for e in everyone for word in (e.name, e.preferred_reference or "", e.class_)})
     known = {word.casefold(): word for word in called_so}.values()  # of Table and table, table
     raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")

@@ -125,7 +125,7 @@ def test_chairs_are_round_a_table_that_is_in_no_place(accounts, semantic_map):
 def test_of_a_large_map_only_numbers_are_told(accounts, room, monkeypatch):
     monkeypatch.setattr("nodes.kb_node.answers.accounts.LARGEST", 3)
     assert accounts.tell(Tell()).text == (
-        "The map has one place and 7 things. There are 3 chairs, 2 cups, a kitchen table and a lamp."
+        "The map has one place and 7 things. There are 3 chairs, 2 cups, a lamp and a table."
     )
 
 
@@ -139,3 +139,19 @@ def test_the_empty_map_and_who_is_not_there(accounts, semantic_map):
 def test_a_word_that_may_mean_several_is_refused(accounts, room):
     with pytest.raises(errors.BadRequest, match="'cup' may mean cup1 and cup2; name one of them"):
         accounts.tell(Tell(name="cup"))
+
+
+def test_what_was_wrongly_said_is_not_said_again(accounts, room):
+    said = Statement(property="isOn", values=("table1",))
+    room(2, edit=(Edit(name="chair3", set=(said,)),))
+    told = accounts.tell(Tell(name="chair3")).text
+    assert "Not as it should be: chair3 was said to be on table1; it stands" in told
+    assert "It is on table1" not in told
+
+
+def test_names_have_no_article_and_what_is_no_name_is_no_noun(accounts, room):
+    room(2, add=(new("person1", "Person", (2.0, 2.0, 0.0), (0.5, 0.5, 1.7), "Anna"),))
+    room(3, add=(new("chair4", "Chair", (-1.0, -2.0, 0.0), (0.45, 0.45, 0.9), "nothing"),))
+    assert accounts.tell(Tell(name="the Anna")).text.startswith("person1 is Anna in the kitchen")
+    assert accounts.tell(Tell(name="nothing")).text.startswith("chair4 is a chair in the kitchen")
+    assert "round it, Anna, 2 chairs and a lamp" in accounts.tell(Tell()).text

@@ -99,3 +99,20 @@ def test_what_cannot_be_asked_is_said(told):
         told.diff("99")
     with pytest.raises(errors.UnknownName):
         told.when("nothing1", "isOn", "table1")
+
+
+def test_a_place_is_in_a_place_and_a_thing_on_what_bears_it(told):
+    told.add("Location", "flat1", at=(0, 0, 0), size=(9, 9, 3))
+    found = told.when("kitchen1", "isLocatedIn", "flat1")
+    assert [spell.until for spell in found.spells] == [None]
+    told.add("Bowl", "bowl1", at=(1.3, 1, 0.7), size=(0.2, 0.2, 0.1))
+    told.add("Book", "book1", at=(0.8, 0.8, 0.7), size=(0.2, 0.2, 0.05))
+    told.add("Book", "book2", at=(0.8, 0.8, 0.75), size=(0.2, 0.2, 0.05))
+    found = told.when("book2", "isOn", "the table1")
+    assert found.spells == ()
+    assert re.fullmatch(
+        r"book2 was never itself on table1; it has been on book1 since commit \d+ \(for \d+ s\),"
+        r" and book1 is on table1",
+        found.text,
+    )
+    assert told.when("bowl1", "isOn", "book1").text == "bowl1 was never on book1"

@@ -198,9 +198,12 @@ def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
     return None if nearest is None else Measure(True, nearest, limit=limit)
 
 
-def within(solid: Solid, place: Solid, limits: Thresholds) -> Measure | None:
-    """The share of one's footprint that is in a place; of what has no size, whether its position is."""
-    if not place.is_place or not place.is_measured or solid.is_place:
+def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool = False) -> Measure | None:
+    """The share of one's footprint that is in a place; of what has no size, whether its position is.
+
+    None where the other is no place with an extent, and of a place, unless with `also_places`.
+    """
+    if not place.is_place or not place.is_measured or (solid.is_place and not also_places):
         return None
     height = solid.centre[2] if solid.is_measured else solid.position[2]
     limit = limits.place_share
