@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from nodes.extern.cli.output.sparql_formats import spoken
+from nodes.extern.mcp.advice import for_agents
 from nodes.extern.mcp.answers import metres, said, stands, when, who
 from ontology import vocabulary as v
 from schemas import changes
@@ -62,7 +63,7 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
     for relation in found.denied:
         yield {"not_so": relation.text}
     for text in found.withheld:
-        yield {"withheld": text}
+        yield {"withheld": for_agents(text)}
     if found.on_nothing:
         yield {"where": found.on_nothing}
     for types in _by_tens(found.types):
