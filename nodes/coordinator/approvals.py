@@ -31,7 +31,8 @@ class Approvals:
     def submit(self, command: Submit) -> Request:
         """Ask, or look what became of it: the same id of the same agent is the same request.
 
-        Raises BadRequest without an id, Busy when very many wait, or many of this agent.
+        Raises BadRequest without an id; Refused when very many wait, or many of this agent: not Busy, for
+        clients ask again who is, and a person takes longer than they wait.
         """
         self._forget()
         if not command.id:
@@ -41,14 +42,11 @@ class Approvals:
             return known
         waiting = [request.agent for request in self._by_id.values() if request.decision == "waiting"]
         if waiting.count(command.agent) >= _MOST_OF_ONE:
-            raise errors.Busy(
-                f"{_MOST_OF_ONE} requests of yours wait for a person already; wait until some are decided",
-                again_s=60.0,
+            raise errors.Refused(
+                f"{_MOST_OF_ONE} requests of yours wait for a person already; wait until some are decided"
             )
         if len(waiting) >= _MOST:
-            raise errors.Busy(
-                f"{_MOST} requests wait for a person already; wait until some are decided", again_s=60.0
-            )
+            raise errors.Refused(f"{_MOST} requests wait for a person already; wait until some are decided")
         self._last += 1
         self._by_id[key] = made = Request(
             number=self._last,

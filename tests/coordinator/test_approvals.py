@@ -75,7 +75,7 @@ def test_what_nobody_decides_is_forgotten_after_an_hour(approvals, clock):
 def test_there_is_room_for_so_many_of_one_agent(approvals):
     for number in range(10):
         asked(approvals, id=f"{number}")
-    with pytest.raises(errors.Busy, match="10 requests of yours"):
+    with pytest.raises(errors.Refused, match="10 requests of yours"):
         asked(approvals, id="one more")
     assert asked(approvals, id="9").number == 10
     approvals.approve(Approve(number=1))
@@ -85,7 +85,7 @@ def test_there_is_room_for_so_many_of_one_agent(approvals):
 def test_there_is_room_for_so_many_of_all(approvals):
     for number in range(100):
         asked(approvals, id=f"{number}", agent=f"robot{number // 10}")
-    with pytest.raises(errors.Busy, match="100 requests wait"):
+    with pytest.raises(errors.Refused, match="100 requests wait"):
         asked(approvals, agent="another")
 
 

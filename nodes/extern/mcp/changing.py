@@ -47,6 +47,8 @@ _UNCHANGED: Final = re.compile(r"([\w.-]+: )?unchanged: ")
 _MOST_WAITERS: Final = 2
 """Calls that wait for a person at the same time; others are told at once that theirs waits. Each takes one
 of the threads that answer calls."""
+_LATER_S: Final = 30.0
+"""Seconds after which to come again where too many changes wait for a person."""
 _MOST_ASKED: Final = 1000
 _MOST_NAMES: Final = 50
 """Entities of one change: of more, a dry run does not tell all that follows."""
@@ -239,7 +241,10 @@ class Changes:
             reason=summary.reason,
             follows=tuple(errors.shortened(fact, 900) for fact in summary.follows),
         )
-        request = client.send(submit)
+        try:
+            request = client.send(submit)
+        except errors.Refused as error:  # too many wait; the proposal stays good
+            raise errors.Busy(error.text, again_s=_LATER_S) from None
         self._asked[name] = None
         while len(self._asked) > _MOST_ASKED:
             del self._asked[next(iter(self._asked))]
