@@ -37,7 +37,18 @@ _BEFORE_A_NOUN: Final = (
     *("quality", "states", "sizes", "sides", "ordinals", "numbers", "mine", "he", "filler", "every"),
 )
 _DETERMINERS: Final = (
-    *("every", "pair", "definite", "indefinite", "mine", "he", "filler", "numbers", "plural_determiner"),
+    *(
+        "every",
+        "pair",
+        "bounds",
+        "definite",
+        "indefinite",
+        "mine",
+        "he",
+        "filler",
+        "numbers",
+        "plural_determiner",
+    ),
 )
 _BEGINS: Final = (
     *("definite", "indefinite", "noun", "it", "one", "mine", "quality", "numbers", "sizes"),
@@ -74,6 +85,7 @@ class _Draft:
     is_definite: bool = True
     is_plural: bool = False
     number: int | None = None
+    beyond: int = 0
     restrictions: list[Restriction] = field(default_factory=list)
     place: int | None = None
     axis: tuple[Axis, int] | None = None
@@ -105,7 +117,11 @@ class _Parser:
 
     def all(self) -> tuple[Description, ...]:
         """The things that are named together."""
-        i, found, is_alternative = self._length("opening", 0), list[Description](), False
+        i, found, is_alternative = 0, list[Description](), False
+        while i < len(self._words) and (
+            length := max(self._length("opening", i), self._length("filler", i), self._length("polite", i))
+        ):
+            i += length
         while i < len(self._words):
             made, j = self._phrase(i, 0)
             if j == i:  # nothing begins here that is understood: the word must not be lost
@@ -179,6 +195,8 @@ class _Parser:
                 draft.restrictions.append(Owned(self._said(i, i + length)))
             elif best == "he":
                 draft.restrictions.append(Owned(self._said(i, i + length), Description("it", "it")))
+            elif best == "bounds":
+                draft.is_definite, draft.beyond = False, int(value or 0)
             elif best == "numbers" and value:
                 draft.is_definite = draft.is_definite and draft.first != i
                 self._number(draft, value)
@@ -186,8 +204,8 @@ class _Parser:
         return i
 
     def _number(self, draft: _Draft, value: int) -> None:
-        draft.number = value
-        draft.is_plural = value > 1
+        draft.number = value + draft.beyond
+        draft.is_plural = draft.number > 1
 
     def _run_end(self, i: int) -> int:
         """Behind the words around a noun that begin at i."""
@@ -405,6 +423,7 @@ class _Parser:
         if (action := self._action(i)) is not None:
             length, affordances = action
             draft.restrictions.append(Affords(self._said(i, i + length), affordances))
+            draft.is_definite = draft.is_definite and not self._length("where", i)
             return i + length
         ordering = self._ordering(draft, i, depth)
         if ordering != i:

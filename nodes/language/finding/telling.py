@@ -9,6 +9,7 @@ from nodes.language.finding import asking_back
 from nodes.language.finding.description import (
     Description,
     Not,
+    Order,
     Owned,
     Related,
     Restriction,
@@ -42,7 +43,7 @@ def told(answer: Answer) -> Found:
             text = f"{len(names)} things are meant"
         case "ambiguous":
             text = f"any of {len(names)} things may be meant"
-            question = asking_back.question(names, resolver)
+            question = _from_where(answer) or asking_back.question(names, resolver)
         case "none":
             part = next((part for part in answer.parts if _is_short(part)), answer.parts[-1])
             text = _missing(part, resolver)
@@ -87,11 +88,35 @@ def _reasons(name: str, part: Resolved, resolver: Resolver) -> Iterator[str]:
         if resolver.fits(name, restriction, said, part.kind, Scope()):
             yield _reason(name, restriction, said, resolver)
     if said.order is not None:
-        yield (
-            f"{said.order.said} {said.order.to.said}"
-            if said.order.to and said.order.to.said not in said.order.said
-            else said.order.said
-        )
+        yield from _ordered(name, said.order, resolver)
+
+
+def _ordered(name: str, order: Order, resolver: Resolver) -> Iterator[str]:
+    """What an order says of a thing, and what was measured for it."""
+    has_said_to = order.to is None or order.to.said in order.said
+    yield order.said if has_said_to or order.to is None else f"{order.said} {order.to.said}"
+    around = resolver.around
+    if order.axis == "distance" and order.to is not None:
+        others = [other for other in resolver.resolve(order.to).names if other != name]
+        if others:
+            nearest = min(others, key=lambda other: around.distance(name, other))
+            yield f"{around.distance(name, nearest):.2f} m from {nearest}"
+    elif order.axis == "distance":
+        yield f"{around.distance_from_viewer(name):.2f} m from who looks"
+    elif order.axis == "height" and (at := around.position(name)) is not None:
+        yield f"at a height of {at[2]:.2f} m"
+    elif order.axis in ("volume", "tallness", "length") and (size := around.size(name)) is not None:
+        yield f"of {' x '.join(f'{extent:.2f}' for extent in size)} m"
+
+
+def _from_where(answer: Answer) -> str:
+    """What to ask where nothing says from where the first and second are counted."""
+    if answer.resolver.around.has_viewer:
+        return ""
+    wording = answer.reading.nouns.describing.wording
+    orders = (part.description.order for part in answer.parts if part.is_tied)
+    unclear = (order.said for order in orders if order is not None and order.axis == "")
+    return next((wording["from_where"].format(said) for said in unclear), "")
 
 
 def _reason(name: str, restriction: Restriction, said: Description, resolver: Resolver) -> str:
@@ -138,6 +163,10 @@ def _missing(part: Resolved, resolver: Resolver) -> str:
     unknown = [r.said for r in said.restrictions if isinstance(r, Unknown)]
     if unknown and said.head != "noun":
         return f"nothing is called '{unknown[0]}', and the word is not known"
+    if unknown:
+        return f"'{said.said}' is not understood: the word '{unknown[0]}' is not known"
+    if part.failed is not None and said.head == "anything":
+        return f"nothing fits '{part.failed.said}'"
     if not part.kind:
         return f"there is nothing that is called '{noun}'"
     if (unsaid := _unsaid(part, resolver)) is not None:

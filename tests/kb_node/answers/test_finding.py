@@ -152,6 +152,35 @@ def test_a_reference_that_is_no_noun_is_never_a_part_of_the_question(flat):
     assert f"called “{said}”" in quoted.candidates[0].reasons
 
 
+@pytest.mark.parametrize(
+    ("text", "outcome", "number"),
+    [
+        ("please give me the bowl", "one", 1),
+        ("could you bring me the bowl", "one", 1),
+        ("at least 3 chairs", "several", 6),
+        ("more than five chairs", "several", 6),
+        ("more than six chairs", "none", 0),
+        ("almeno sei sedie", "several", 6),
+        ("più di sei sedie", "none", 0),
+        ("zero chairs", "none", 0),
+    ],
+)
+def test_bounds_and_polite_words(flat, text, outcome, number):
+    found = Finding(flat).find(Find(text=text)).found
+    assert (found.outcome, len(found.candidates)) == (outcome, number)
+
+
+def test_an_order_says_what_was_measured_and_asks_from_where(flat):
+    found = Finding(flat).find(Find(text="the chair nearest to the kitchen window")).found
+    assert found.candidates[0].reasons[-1] == "1.12 m from window2"
+    found = Finding(flat).find(Find(text="the lowest book")).found
+    assert "at a height of 0.74 m" in found.candidates[0].reasons
+    found = Finding(flat).find(Find(text="the third book")).found
+    assert found.question.startswith("The third from where?")
+    found = Finding(flat).find(Find(text="the third book", viewpoint=(7.4, 6.5, 0.0, 0.0))).found
+    assert "from where" not in found.question
+
+
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))

@@ -157,7 +157,7 @@ def _entries(table: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     for kind, words in table["words"].items():
         if kind not in ("content", "unmended"):
             yield from ((text, kind, True) for text in words)
-    for kind in ("ordinals", "numbers", "places", "sides", "sizes", "states"):
+    for kind in ("ordinals", "numbers", "bounds", "places", "sides", "sizes", "states"):
         yield from ((text, kind, value) for text, value in table[kind].items())
     for relation, phrases in table["relations"].items():
         yield from ((text, "relations", relation) for text in phrases)
