@@ -397,7 +397,7 @@ def test_find_says_whose_words_it_repeats(client):
         for answer in filter(None, told):
             quotes = evil.casefold() in json.dumps(answer["said"]).casefold()
             assert ("agent helper" in answer["by"]) == quotes, answer
-    assert f"called {evil}" in found["candidates"][0]["said"]["reasons"]
+    assert any(evil in reason for reason in found["candidates"][0]["said"]["reasons"])
     assert "agent helper" in found["candidates"][0]["by"]
 
 
