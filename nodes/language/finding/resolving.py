@@ -219,7 +219,7 @@ class Resolver:
         return relation in ("isNextTo", "isNear") and (other in adjacent[0] or name in adjacent[1])
 
     def _bears(self, name: str, other: str) -> bool:
-        """Whether another thing is on or in it, or both stand side by side on the floor: a chair with a table."""
+        """Whether another is on or in it, or both stand side by side on the floor: a chair with a table."""
         if self._is_said("isInside", other, name) or any(
             self.around.related(how, other, name) for how in ("isOn", "isInside")
         ):
