@@ -112,8 +112,8 @@ class Resolver:
         if len(names) > 1 and said.is_definite and not said.is_plural:
             names = self._smallest_of_the_small(names, said)
             if said.head == "noun" and said.order is None:
-                exactly = self.known.called_exactly(said.key, self.language)
-                names = tuple(name for name in names if name in exactly) or names
+                so = (name for name in names if self.known.is_called(name, said.key, self.language))
+                names = tuple(so) or names
         is_tied = False
         if said.order is not None and names:
             names, is_tied = self._ordered(names, said.order, said)
