@@ -40,6 +40,7 @@ def understanding(flat):
         ("take the blue cup and the red one", ["Taking(Theme=bluecup, Theme=redcup)"]),
         ("give me something to read", ['Giving(Recipient="me", Theme=book1|book2|book3)']),
         ("portami qualcosa da bere", ['Bringing(Beneficiary="mi", Theme=milk1|water1)']),
+        ("portami qualcosa da leggere", ['Bringing(Beneficiary="mi", Theme=book1|book2|book3)']),
         ("bring something to me", ['Bringing(Theme="something", Beneficiary="to me")']),
         ("spegni le lampade", ["Change_operational_state(Device=abat_jour1|lamp1)"]),
         ("open the fridge door", ["Closure(Containing_object=fridge1)"]),
